@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace carom {
+
+/// How contacts are solved; docs/how-a-step-works.md says what each is for.
+enum class Solver : std::uint8_t {
+    automatic,  ///< what suits the scene; `World::plan()` says which and why
+    pairwise,   ///< the naive loop over all pairs: `carom::Pairwise`, not a solver of `World`
+    impulse,    ///< time of impact inside the step: bouncy, gas-like scenes
+    soft,       ///< not built yet
+    rigid,      ///< not built yet
+    event,      ///< not built yet
+    rattle,     ///< not built yet
+};
+
+enum class Precision : std::uint8_t { single_, double_ };
+
+/// What a scene asks for in accuracy. What is left out takes the solver's own default.
+struct Accuracy {
+    Solver solver = Solver::automatic;
+    std::optional<int> substeps;    ///< parts a step is cut into, 1 ... 1024; `impulse` takes 1 by default
+    std::optional<int> iterations;  ///< 1 ... 1024; `impulse` iterates to convergence and has no use for it
+    Precision precision = Precision::single_;
+};
+
+/// The name a solver has in scene files and on the command line ("auto", "impulse", ...).
+std::string_view name_of(Solver solver) noexcept;
+
+/// The solver of that name, if there is one.
+std::optional<Solver> solver_named(std::string_view name) noexcept;
+
+}  // namespace carom

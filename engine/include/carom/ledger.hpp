@@ -1,0 +1,55 @@
+#pragma once
+
+#include <carom/vec2.hpp>
+
+namespace carom {
+
+/// Mechanical energy of all dynamic bodies at one moment [J]. Potential is zero at the origin: -m g·x.
+struct Energy {
+    double kinetic = 0;     ///< translation
+    double rotational = 0;  ///< spin
+    double potential = 0;
+    double total() const { return kinetic + rotational + potential; }
+};
+
+/// Work done on the dynamic bodies since the start, by cause [J]. Always
+/// kinetic + rotational - (their start) = sum(); and as gravity = -(change of potential),
+/// total - (total at the start) = sum() - gravity.
+struct EnergyByCause {
+    double gravity = 0;
+    double drag = 0;
+    double restitution = 0;  ///< lost where bodies or walls meet with restitution < 1
+    double friction = 0;     ///< zero in this version
+    double correction = 0;   ///< spent on pushing overlapping bodies apart against gravity
+    double joints = 0;       ///< zero in this version
+    double drive = 0;        ///< by kinematic bodies
+    double unexplained = 0;  ///< what the columns say minus what the causes add up to: the error of the run
+    double sum() const {
+        return gravity + drag + restitution + friction + correction + joints + drive + unexplained;
+    }
+};
+
+/// Momentum given to the dynamic bodies since the start, by cause [kg m/s].
+struct MomentumByCause {
+    Vec2 gravity;
+    Vec2 drag;
+    Vec2 walls;
+    Vec2 immovable;  ///< by static and kinematic bodies
+    Vec2 unexplained;
+};
+
+/// The books of a world: sums over its dynamic bodies, in double precision whatever the world's own.
+struct Ledger {
+    double time = 0;  ///< s
+    Energy initial;
+    Energy energy;
+    Vec2 initial_momentum;  ///< kg m/s
+    Vec2 momentum;
+    double initial_angular_momentum = 0;  ///< kg m²/s about the origin, spin included
+    double angular_momentum = 0;
+    EnergyByCause energy_by_cause;      ///< zero unless the ledger effect is on
+    MomentumByCause momentum_by_cause;  ///< zero unless the ledger effect is on
+    double wall_impulse = 0;  ///< N s, sum of |impulse| on all walls; pressure = this / (perimeter · time)
+};
+
+}  // namespace carom

@@ -1,0 +1,16 @@
+#pragma once
+
+namespace carom {
+
+/// Surface and bulk of a body or of the walls. A pair takes the larger restitution of its two materials and
+/// the geometric mean of its friction coefficients (docs/conventions.md).
+struct Material {
+    double density = 1;             ///< kg/m², > 0; used where a body gives no mass
+    double friction = 0;            ///< Coulomb coefficient, >= 0; above zero is not built yet
+    double restitution = 0;         ///< normal speed after / before, 0 ... 1
+    double rolling_resistance = 0;  ///< no unit, >= 0; above zero is not built yet
+
+    friend bool operator==(const Material&, const Material&) = default;
+};
+
+}  // namespace carom

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace carom {
+
+/// Time spent in one stage of the step since the world was made.
+struct StageTime {
+    std::string_view name;
+    std::int64_t calls = 0;
+    double seconds = 0;
+};
+
+/// What a world has done since it was made. Counting costs below 1 % of a step.
+struct Profile {
+    std::vector<StageTime> stages;  ///< in the order of the step
+    std::int64_t steps = 0;
+    std::int64_t rebuilds = 0;         ///< steps that built the candidate pairs anew
+    std::int64_t candidate_pairs = 0;  ///< now
+    std::int64_t impacts = 0;          ///< collisions resolved, walls included
+    std::int64_t wall_impacts = 0;
+    std::int64_t simultaneous_impacts = 0;  ///< of these, solved together with others at the same instant
+    std::int64_t resting_contacts = 0;      ///< in the last step
+    std::int64_t overlaps_corrected = 0;    ///< pairs or walls pushed apart
+    std::int64_t unresolved_impacts = 0;    ///< left to the next step at the limit of impacts a body and step
+    std::int64_t quarantined = 0;           ///< bodies disabled because their state left the limits
+    std::size_t bytes = 0;                  ///< memory the world holds now
+};
+
+/// One effect, and why it is on or off.
+struct EffectReport {
+    std::string name;
+    bool on = false;
+    std::string reason;
+};
+
+/// One stage of the step as planned.
+struct StageReport {
+    std::string name;
+    std::string kernel;  ///< the variant chosen
+    std::string reads;
+    std::string writes;
+};
+
+struct ColumnReport {
+    std::string name;
+    std::string unit;
+    std::size_t bytes_per_body = 0;
+};
+
+/// What a world runs and why: `carom explain` prints it.
+struct Plan {
+    std::string solver;
+    std::string solver_reason;
+    int substeps = 1;
+    std::string precision;
+    std::string isa;
+    int threads = 1;
+    std::vector<EffectReport> effects;
+    std::vector<StageReport> stages;
+    std::vector<ColumnReport> columns;
+    std::size_t bytes_per_body = 0;  ///< the columns' sum; scratch memory is in Profile::bytes
+};
+
+}  // namespace carom

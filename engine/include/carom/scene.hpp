@@ -1,0 +1,104 @@
+#pragma once
+
+#include <carom/accuracy.hpp>
+#include <carom/effects.hpp>
+#include <carom/materials.hpp>
+#include <carom/shapes.hpp>
+#include <carom/vec2.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace carom {
+
+/// Names a body for good: rows of the columns move, handles do not. A removed body's handle goes stale.
+struct BodyId {
+    std::uint32_t index = UINT32_MAX;
+    std::uint32_t generation = 0;
+
+    friend bool operator==(BodyId, BodyId) = default;
+};
+
+enum class BodyType : std::uint8_t {
+    dynamic_body,    ///< moved by gravity, drag and impulses
+    static_body,     ///< never moves
+    kinematic_body,  ///< moves at its set velocity, whatever it meets
+};
+
+/// One body as a person describes it. Everything has a default; SI units.
+struct Body {
+    std::string name;  ///< empty, or unique in the scene
+    BodyType type = BodyType::dynamic_body;
+    Shape shape = Disc{};
+    Vec2 position;                ///< m, the centre of mass; each component within ±kLargestPosition
+    double angle = 0;             ///< rad, counter-clockwise
+    Vec2 velocity;                ///< m/s, speed at most kLargestSpeed; zero for static bodies
+    double angular_velocity = 0;  ///< rad/s
+    std::optional<double> mass;   ///< kg, > 0; else density times area. Without meaning unless dynamic
+    Material material;
+    bool fixed_rotation = false;
+    std::string color;  ///< empty, or "#rrggbb"; for pictures only
+};
+
+/// A closed axis-aligned box around the bodies; each side can be left open.
+struct Walls {
+    Vec2 min;  ///< m, lower left corner
+    Vec2 max;  ///< m, upper right corner; > min
+    bool left = true;
+    bool right = true;
+    bool bottom = true;
+    bool top = true;
+    Material material;
+};
+
+/// velocity ← velocity · exp(-linear · dt), angular velocity likewise.
+struct Drag {
+    double linear = 0;   ///< 1/s, >= 0
+    double angular = 0;  ///< 1/s, >= 0
+};
+
+struct StepSettings {
+    double dt = 1.0 / 60;     ///< s, > 0
+    std::int64_t count = 60;  ///< steps a run takes, >= 0
+};
+
+struct Record {
+    std::int64_t every = 1;  ///< steps a frame of the trajectory, >= 1
+    std::int64_t trail = 0;  ///< frames a body's trail shows in the report, >= 0
+};
+
+/// Limits of what a scene may hold; beyond them single precision itself fails.
+inline constexpr double kLargestPosition = 1e8;             // m
+inline constexpr double kLargestSpeed = 1e7;                // m/s; its fourth power must stay finite in float
+inline constexpr double kSmallestRadius = 1e-9;             // m
+inline constexpr double kLargestRadius = 1e7;               // m
+inline constexpr double kLargestRadiusRatio = 1e7;          // largest / smallest in one scene
+inline constexpr double kLargestStep = 10;                  // s
+inline constexpr double kLargestAcceleration = 1e7;         // m/s²
+inline constexpr std::size_t kLargestBodyCount = 1u << 26;  // rows are 32-bit; 64 Mi bodies need about 12 GiB
+
+/// What a person describes: bodies, walls, laws, accuracy. Plain data; `World` makes columns of it.
+struct Scene {
+    std::string name;
+    Vec2 gravity;  ///< m/s²
+    Drag drag;
+    std::optional<Walls> walls;
+    std::vector<Body> bodies;
+    StepSettings step;
+    Accuracy accuracy;
+    EffectOverrides effects;
+    Record record;
+
+    /// Appends a body; it is checked when a `World` is made of the scene, or by `validate`.
+    /// @return the handle that body has in every world made of this scene.
+    BodyId add(Body body);
+
+    /// Checks every value: finite, within its limits, consistent, built in this version.
+    /// Cost: O(bodies).
+    /// @throws Error naming the first item that is wrong, its value, the limit and the remedy.
+    void validate() const;
+};
+
+}  // namespace carom

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string_view>
+
+namespace carom {
+
+/// The version of the library, `major.minor.patch`; the program prints it with `carom --version`.
+inline constexpr std::string_view kVersion = "0.1.0";
+
+}  // namespace carom

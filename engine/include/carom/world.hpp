@@ -1,0 +1,126 @@
+#pragma once
+
+#include <carom/ledger.hpp>
+#include <carom/profile.hpp>
+#include <carom/scene.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace carom {
+
+/// Runs task(0) ... task(count - 1), in any order and on any threads, and returns when all are done.
+using ParallelFor = std::function<void(std::size_t count, const std::function<void(std::size_t)>& task)>;
+
+/// How a world runs; what is left out comes from the scene, then from the defaults.
+struct WorldOptions {
+    std::optional<Solver> solver;
+    std::optional<int> substeps;
+    std::optional<int> iterations;
+    std::string isa =
+        "auto";       ///< "auto" (or CAROM_ISA from the environment), "scalar", "sse2", "avx2", "avx512"
+    int threads = 0;  ///< 0: as many as OpenMP gives; results do not depend on it
+    ParallelFor parallel_for;   ///< an embedding program's own threads in place of OpenMP
+    EffectOverrides effects{};  ///< over the scene's own
+};
+
+/// Spans over the columns, without a copy; valid until the next call that changes the world. Rows may be
+/// reordered by a step: keep handles, not rows. A column that no effect needs is empty.
+template <class Real>
+struct BodyView {
+    std::size_t count = 0;
+    std::span<const Real> position_x, position_y;  ///< m, [count]
+    std::span<const Real> velocity_x, velocity_y;  ///< m/s, [count]
+    std::span<const Real> angle;                   ///< rad, [count] or empty
+    std::span<const Real> angular_velocity;        ///< rad/s, [count] or empty
+    std::span<const BodyId> id;                    ///< handle of each row, [count]
+};
+
+/// One body's state, converted to double.
+struct BodyState {
+    Vec2 position;
+    double angle = 0;
+    Vec2 velocity;
+    double angular_velocity = 0;
+};
+
+/// How deep bodies and walls overlap now, measured from positions. Overlaps are fractions of the smaller
+/// body's radius over touching pairs (separation < 0).
+struct OverlapReport {
+    std::int64_t candidates = 0;
+    std::int64_t touching = 0;
+    double mean = 0;
+    double max = 0;
+};
+
+/// All state of a simulation, stepped forward. `Real` is the precision of columns and kernels.
+///
+/// The same scene and calls give the same bits for any number of threads and every instruction set.
+template <class Real>
+class BasicWorld {
+  public:
+    /// Validates the scene and makes columns of it. Cost: O(bodies log bodies).
+    /// @throws Error as `Scene::validate`, or for options out of range or an instruction set that is missing.
+    explicit BasicWorld(const Scene& scene, const WorldOptions& options = {});
+    ~BasicWorld();
+    BasicWorld(BasicWorld&&) noexcept;
+    BasicWorld& operator=(BasicWorld&&) noexcept;
+
+    /// Advances the world by dt.
+    /// @param dt  s, finite, 0 <= dt <= kLargestStep; 0 changes no bit of any body.
+    /// @throws Error if dt is out of range; the world is then unchanged.
+    /// Cost: O(bodies + candidate pairs); no allocation once the world has reached its largest size.
+    void step(double dt);
+
+    std::size_t body_count() const noexcept;
+    BodyView<Real> bodies() const noexcept;
+
+    /// The row a body has now. @throws Error (stale_handle)
+    std::uint32_t row(BodyId body) const;
+    /// @throws Error (stale_handle)
+    BodyState state(BodyId body) const;
+
+    /// Adds a body between steps. @throws Error as `Scene::validate`; names need not be unique here.
+    BodyId add(const Body& body);
+    /// Removes a body; its handle goes stale. @throws Error (stale_handle)
+    void remove(BodyId body);
+    /// @throws Error (stale_handle, not_finite, out_of_range); the world is then unchanged.
+    void set_position(BodyId body, Vec2 position);
+    void set_velocity(BodyId body, Vec2 velocity);
+    void set_angular_velocity(BodyId body, double angular_velocity);
+
+    double time() const noexcept;  ///< s, sum of all steps
+    /// Energy and momentum now; by cause if the ledger effect is on. Cost: O(bodies).
+    Ledger ledger() const;
+    /// Seconds by stage and counters since the world was made. Cost: O(1).
+    Profile profile() const;
+    /// What runs and why.
+    Plan plan() const;
+    /// Overlaps measured from positions. Cost: O(candidate pairs).
+    OverlapReport overlaps() const;
+    /// Bodies that were disabled because their state left the limits, in handle order.
+    std::vector<BodyId> quarantined() const;
+    /// Hash over the bit patterns of position, velocity, angle and spin of all bodies in handle order.
+    std::uint64_t state_hash() const;
+
+    struct Implementation;
+
+  private:
+    std::unique_ptr<Implementation> implementation_;
+};
+
+extern template class BasicWorld<float>;
+extern template class BasicWorld<double>;
+
+using World = BasicWorld<float>;
+using World64 = BasicWorld<double>;
+
+/// The instruction sets compiled in that this machine can run, slowest first: "scalar", "sse2", ...
+std::vector<std::string> runnable_instruction_sets();
+
+}  // namespace carom
