@@ -1,4 +1,4 @@
-#include "carom/version.hpp"
+#include <carom/version.hpp>
 
 namespace carom {
 
