@@ -1,7 +1,7 @@
 // The published figures of the teaching program that the naive engine reproduces, to the printed digits.
 #include <carom/pairwise.hpp>
 
-#include "../support/seed_scenes.hpp"
+#include "support/seed_scenes.hpp"
 
 #include <doctest/doctest.h>
 

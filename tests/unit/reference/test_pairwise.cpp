@@ -1,7 +1,7 @@
 #include <carom/errors.hpp>
 #include <carom/pairwise.hpp>
 
-#include "../../support/seed_scenes.hpp"
+#include "support/seed_scenes.hpp"
 
 #include <doctest/doctest.h>
 
