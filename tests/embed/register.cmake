@@ -1,0 +1,29 @@
+# Tests that other projects can embed Carom: installed, by add_subdirectory, and as README.md shows it.
+set(embed ${CAROM_TEST_PREFIX}embed)
+set(embed_folder ${CMAKE_CURRENT_LIST_DIR})
+set(embed_work ${CMAKE_BINARY_DIR}/embed)
+
+function(carom_add_embed_test name)  # further arguments: options for CMake
+    add_test(NAME ${embed}.${name}
+        COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${embed_folder} ${embed_work}/${name}
+                --build-generator Ninja --build-options -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER} ${ARGN}
+                --test-command embed)
+endfunction()
+
+add_test(NAME ${embed}.install
+    COMMAND sh -c "rm -rf '${embed_work}/prefix' && '${CMAKE_COMMAND}' --install '${CMAKE_BINARY_DIR}' \
+                   --prefix '${embed_work}/prefix'")
+set_tests_properties(${embed}.install PROPERTIES FIXTURES_SETUP installed)
+carom_add_embed_test(installed -DCMAKE_PREFIX_PATH=${embed_work}/prefix -DCMAKE_BUILD_TYPE=Release)
+set_tests_properties(${embed}.installed PROPERTIES FIXTURES_REQUIRED installed)
+
+# Also shows that the library builds without OpenMP.
+carom_add_embed_test(subdirectory -DCAROM_FOLDER=${PROJECT_SOURCE_DIR} -DCAROM_OPENMP=OFF -DCMAKE_BUILD_TYPE=Debug)
+
+add_test(NAME ${embed}.extract_example
+    COMMAND ${CAROM_PYTHON} ${embed_folder}/extract_example.py
+            ${PROJECT_SOURCE_DIR}/README.md ${embed_work}/readme_example.cpp)
+set_tests_properties(${embed}.extract_example PROPERTIES FIXTURES_SETUP readme_example)
+carom_add_embed_test(readme_example -DCMAKE_PREFIX_PATH=${embed_work}/prefix -DCMAKE_BUILD_TYPE=Release
+                                    -DEMBED_SOURCE=${embed_work}/readme_example.cpp)
+set_tests_properties(${embed}.readme_example PROPERTIES FIXTURES_REQUIRED "installed;readme_example")

@@ -1,0 +1,24 @@
+# Tests under the thread sanitizer: what runs on several threads, and a race that it must find.
+# Works with clang and libomp only: libomp loads its tool archer by itself, which tells the sanitizer about OpenMP's
+# barriers; gcc's libgomp has nothing like it and every parallel loop looks like a race. The option keeps the
+# sanitizer from reporting libomp's own internals.
+set(tsan_options "TSAN_OPTIONS=ignore_noninstrumented_modules=1 halt_on_error=1")
+set(tsan_tests "")
+
+foreach(folder determinism unit/parallel)
+    if(test_sources MATCHES "/tests/${folder}/")
+        string(REPLACE "/" "." name ${folder})
+        carom_add_doctest(${name} */tests/${folder}/* "")
+        list(APPEND tsan_tests ${CAROM_TEST_PREFIX}${name})
+    endif()
+endforeach()
+
+add_executable(carom_race ${CMAKE_CURRENT_LIST_DIR}/race.cpp)
+carom_set_flags(carom_race)
+target_link_libraries(carom_race PRIVATE carom_private)
+foreach(kind clean racy)
+    add_test(NAME ${CAROM_TEST_PREFIX}sanitizer.${kind} COMMAND carom_race ${kind})
+    list(APPEND tsan_tests ${CAROM_TEST_PREFIX}sanitizer.${kind})
+endforeach()
+set_tests_properties(${CAROM_TEST_PREFIX}sanitizer.racy PROPERTIES PASS_REGULAR_EXPRESSION "data race")
+set_tests_properties(${tsan_tests} PROPERTIES ENVIRONMENT "${tsan_options};OMP_NUM_THREADS=4")
