@@ -2,6 +2,8 @@
 
 namespace carom {
 
-std::string_view version() noexcept { return kVersion; }
+std::string_view version() noexcept {
+    return kVersion;
+}
 
 }  // namespace carom

@@ -1,0 +1,110 @@
+#!/usr/bin/env python3
+"""Folders of engine/ are layers: a file includes only lower layers or its own folder. Also keeps OpenMP and xsimd
+in their places, and everything outside of engine/ but tests and benchmarks on the public headers.
+
+usage: check_layers.py [ROOT]
+"""
+import pathlib
+import re
+import sys
+
+from sources import ROOT, project_files, report, without_comments
+
+# docs/architecture.md has the same table with what each folder is for.
+LAYER_OF_FOLDER = {
+    "include": -1,  # the public headers: everybody may include them, they include only each other
+    "math": 0,
+    "state": 1, "simd": 1, "parallel": 1,
+    "effects": 2,
+    "kernels": 3,
+    "world": 4, "isa": 4,
+    "broadphase": 5, "narrowphase": 5, "solver": 5, "joints": 5, "ledger": 5, "scene": 5,
+    "reference": 5,  # and see SHARES_NOTHING
+}
+LAYER_OF_FILE = {  # by path without suffix; these differ from their folder or have none
+    "version": 0,
+    "stage_info": 1,
+    "kernels/arguments": 2,
+    "step_plan": 6,
+    "step": 7,
+}
+TOP_LAYER = 8  # other files directly in engine/: what joins the step to the public headers
+SHARES_NOTHING = "reference"  # the yardstick: includes the public headers and itself, nobody in engine/ includes it
+
+MAY_USE_OPENMP = ("parallel/",)
+MAY_INCLUDE_XSIMD = ("simd/", "kernels/", "isa/", "state/")  # state/: for the aligned allocator only
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
+
+
+def layer_of(path):
+    """path: relative to engine/, in posix form."""
+    stem = re.sub(r"\.\w+$", "", path)
+    for known, layer in LAYER_OF_FILE.items():
+        if stem == known or stem.startswith(known + "/"):
+            return layer
+    folder = path.split("/")[0] if "/" in path else ""
+    return LAYER_OF_FOLDER.get(folder) if folder else TOP_LAYER
+
+
+def folder_of(path):
+    return path.split("/")[0] if "/" in path else ""
+
+
+def resolve(root, includer, bracket, name):
+    """Path relative to engine/ of an include that names one of our files there, else None."""
+    engine = root / "engine"
+    places = [engine, engine / "include"] if bracket == "<" else [includer.parent, engine, engine / "include", root]
+    for place in places:
+        found = (place / name).resolve()
+        if found.is_file() and found.is_relative_to(engine.resolve()):
+            return found.relative_to(engine.resolve()).as_posix()
+    return None
+
+
+def check_include(path, target):
+    """What is wrong if engine/`path` includes engine/`target`, or None."""
+    mine, theirs = layer_of(path), layer_of(target)
+    if mine is None or theirs is None:
+        return f"engine/{folder_of(path if mine is None else target)} is in no layer; add it to the table"
+    if folder_of(target) == "include":
+        return None
+    if folder_of(path) == "include":
+        return "public headers include only public headers"
+    if SHARES_NOTHING in (folder_of(path), folder_of(target)):
+        alone = folder_of(path) == folder_of(target) or layer_of(path) == TOP_LAYER
+        return None if alone else f"engine/{SHARES_NOTHING} shares no code with the rest"
+    if folder_of(path) == folder_of(target) and mine >= theirs:
+        return None
+    return None if theirs < mine else f"layer {mine} includes layer {theirs}"
+
+
+def findings_in(root, file):
+    text = without_comments(file.read_text())
+    in_engine = file.is_relative_to(root / "engine")
+    path = file.relative_to(root / "engine" if in_engine else root).as_posix()
+
+    def finding(position, message):
+        return f"{file.relative_to(root)}:{text.count(chr(10), 0, position) + 1}: {message}"
+
+    for match in INCLUDE.finditer(text):
+        bracket, name = match.groups()
+        target = resolve(root, file, bracket, name)
+        if in_engine and target and (wrong := check_include(path, target)):
+            yield finding(match.start(1), f"includes {name}: {wrong}")
+        if not in_engine and target and folder_of(target) != "include":
+            yield finding(match.start(1), f"includes {name}: tools use the public headers only")
+        if in_engine and name.startswith("xsimd/") and not path.startswith(MAY_INCLUDE_XSIMD):
+            yield finding(match.start(1), "includes xsimd outside of " + ", ".join(MAY_INCLUDE_XSIMD))
+    if not path.startswith(MAY_USE_OPENMP) or not in_engine:
+        for match in re.finditer(r"#\s*pragma\s+omp|include\s*<omp\.h>|\bomp_\w+\s*\(", text):
+            yield finding(match.start(), "uses OpenMP outside of engine/" + ", ".join(MAY_USE_OPENMP))
+
+
+def check(root):
+    files = project_files(root, {".cpp", ".hpp"}, "engine") + project_files(root, {".cpp", ".hpp"}, "tools")
+    return [finding for file in files for finding in findings_in(root, file)]
+
+
+if __name__ == "__main__":
+    root = pathlib.Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else ROOT
+    report("check_layers", check(root), "A file includes only lower layers or its own folder; see docs/architecture.md")
