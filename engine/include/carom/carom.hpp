@@ -5,6 +5,7 @@
 #include <carom/accuracy.hpp>
 #include <carom/effects.hpp>
 #include <carom/errors.hpp>
+#include <carom/generators.hpp>
 #include <carom/ledger.hpp>
 #include <carom/materials.hpp>
 #include <carom/profile.hpp>

@@ -17,6 +17,18 @@ enum class ErrorCode : std::uint8_t {
     too_large,        ///< more bodies or memory than the stated limit
     unsupported_isa,  ///< an instruction set that this build or this machine does not have
     not_built_yet,    ///< part of the format, but not of this version
+    malformed,        ///< text that is not what its format says (files only)
+    wrong_type,       ///< a value of another type than expected (files only)
+    missing,          ///< something required that is not there (files only)
+    unreadable,       ///< a file that cannot be opened or read
+};
+
+/// One thing that is wrong with a description, in pieces, so that a reader of files can say where it stands
+/// there.
+struct Problem {
+    ErrorCode code;
+    std::string pointer;    ///< where, as in the scene file: "/bodies/3/shape/disc/radius"
+    std::string statement;  ///< what: `body 3 ("ball") has radius -0.4 m; expected ...`
 };
 
 /// The one exception type of the library. Thrown at the door only (scene building, `World` calls), never

@@ -2,6 +2,7 @@
 
 #include <carom/accuracy.hpp>
 #include <carom/effects.hpp>
+#include <carom/errors.hpp>
 #include <carom/materials.hpp>
 #include <carom/shapes.hpp>
 #include <carom/vec2.hpp>
@@ -33,9 +34,9 @@ struct Body {
     BodyType type = BodyType::dynamic_body;
     Shape shape = Disc{};
     Vec2 position;                ///< m, the centre of mass; each component within ±kLargestPosition
-    double angle = 0;             ///< rad, counter-clockwise
+    double angle = 0;             ///< rad, counter-clockwise; within ±kLargestAngle
     Vec2 velocity;                ///< m/s, speed at most kLargestSpeed; zero for static bodies
-    double angular_velocity = 0;  ///< rad/s
+    double angular_velocity = 0;  ///< rad/s, within ±kLargestAngularVelocity; zero for static bodies
     std::optional<double> mass;   ///< kg, > 0; else density times area. Without meaning unless dynamic
     Material material;
     bool fixed_rotation = false;
@@ -55,12 +56,12 @@ struct Walls {
 
 /// velocity ← velocity · exp(-linear · dt), angular velocity likewise.
 struct Drag {
-    double linear = 0;   ///< 1/s, >= 0
-    double angular = 0;  ///< 1/s, >= 0
+    double linear = 0;   ///< 1/s, 0 ... kLargestDrag
+    double angular = 0;  ///< 1/s, 0 ... kLargestDrag
 };
 
 struct StepSettings {
-    double dt = 1.0 / 60;     ///< s, > 0
+    double dt = 1.0 / 60;     ///< s, kSmallestStep ... kLargestStep
     std::int64_t count = 60;  ///< steps a run takes, >= 0
 };
 
@@ -75,6 +76,12 @@ inline constexpr double kLargestSpeed = 1e7;                // m/s; its fourth p
 inline constexpr double kSmallestRadius = 1e-9;             // m
 inline constexpr double kLargestRadius = 1e7;               // m
 inline constexpr double kLargestRadiusRatio = 1e7;          // largest / smallest in one scene
+inline constexpr double kSmallestMass = 1e-30;              // kg, and kg/m² for densities
+inline constexpr double kLargestMass = 1e30;                // kg, and kg/m² for densities
+inline constexpr double kLargestAngle = 1e8;                // rad
+inline constexpr double kLargestAngularVelocity = 1e7;      // rad/s
+inline constexpr double kLargestDrag = 1e9;                 // 1/s
+inline constexpr double kSmallestStep = 1e-12;              // s; 1/dt must stay finite in float
 inline constexpr double kLargestStep = 10;                  // s
 inline constexpr double kLargestAcceleration = 1e7;         // m/s²
 inline constexpr std::size_t kLargestBodyCount = 1u << 26;  // rows are 32-bit; 64 Mi bodies need about 12 GiB
@@ -93,12 +100,16 @@ struct Scene {
 
     /// Appends a body; it is checked when a `World` is made of the scene, or by `validate`.
     /// @return the handle that body has in every world made of this scene.
+    /// @throws Error (too_large) if the scene already holds kLargestBodyCount bodies.
     BodyId add(Body body);
 
     /// Checks every value: finite, within its limits, consistent, built in this version.
     /// Cost: O(bodies).
     /// @throws Error naming the first item that is wrong, its value, the limit and the remedy.
     void validate() const;
+
+    /// The first thing that is wrong, as `validate` would report it; nothing if all is well.
+    std::optional<Problem> find_problem() const;
 };
 
 }  // namespace carom

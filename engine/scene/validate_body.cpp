@@ -1,0 +1,163 @@
+#include "scene/limits.hpp"
+#include "scene/mass.hpp"
+#include "scene/validation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom {
+namespace {
+
+constexpr std::string_view kFrictionComes =
+    "friction is not built yet: it comes with the solver \"soft\". Set it to 0.";
+
+std::optional<Problem> find_velocity_problem(const Item& item, Vec2 velocity) {
+    if (auto found = check(item, "/velocity/0", velocity.x, kVelocityX)) return found;
+    if (auto found = check(item, "/velocity/1", velocity.y, kVelocityY)) return found;
+    // Only the sum of two large components can exceed the limit that each of them keeps.
+    if (std::abs(velocity.x) + std::abs(velocity.y) <= kLargestSpeed) return std::nullopt;
+    return check(item, "/velocity", std::sqrt(velocity.x * velocity.x + velocity.y * velocity.y), kSpeed);
+}
+
+std::optional<Problem> find_position_problem(const Item& item, Vec2 position) {
+    if (auto found = check(item, "/position/0", position.x, kPositionX)) return found;
+    return check(item, "/position/1", position.y, kPositionY);
+}
+
+std::optional<Problem> find_mass_problem(const Item& item, const Body& body) {
+    if (body.mass) return check(item, "/mass", *body.mass, kMass);
+    if (body.type != BodyType::dynamic_body) return std::nullopt;
+    return check(item, "/material/density", mass_of(body), kMassOfDensity);
+}
+
+std::optional<Problem> find_motion_problem(const Item& item, const Body& body) {
+    if (body.type == BodyType::static_body && body.velocity != Vec2{})
+        return problem(
+            ErrorCode::inconsistent, item, "/velocity",
+            "velocity " + to_text(body.velocity) +
+                " m/s but is static; expected [0, 0]. Make it kinematic to move at a set velocity.");
+    if (body.angular_velocity == 0) return std::nullopt;
+    const std::string spin = "angular velocity " + to_text(body.angular_velocity) + " rad/s but ";
+    if (body.type == BodyType::static_body)
+        return problem(ErrorCode::inconsistent, item, "/angular_velocity",
+                       spin + "is static; expected 0. Make it kinematic to turn at a set velocity.");
+    if (body.fixed_rotation)
+        return problem(ErrorCode::inconsistent, item, "/angular_velocity",
+                       spin + "fixed rotation; expected 0. Drop one of the two.");
+    return std::nullopt;
+}
+
+bool is_hex_digit(char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');
+}
+
+std::optional<Problem> find_color_problem(const Item& item, const std::string& color) {
+    if (color.empty()) return std::nullopt;
+    if (color.size() == 7 && color[0] == '#' && std::all_of(color.begin() + 1, color.end(), is_hex_digit))
+        return std::nullopt;
+    return problem(ErrorCode::out_of_range, item, "/color",
+                   "color " + quoted(color) + "; expected \"#rrggbb\" with six hexadecimal digits.");
+}
+
+struct Axis {
+    std::string_view name;
+    std::string_view tail;
+    double position, min, max;
+    bool low_side, high_side;
+    std::string_view low_name, high_name;
+};
+
+std::optional<Problem> find_axis_problem(const Item& item, const Axis& axis, double radius) {
+    const bool below = axis.low_side && axis.position < axis.min;
+    const bool above = axis.high_side && axis.position > axis.max;
+    if (below || above) {
+        std::string words =
+            "position " + std::string(axis.name) + " " + to_text(axis.position) + " m, outside the ";
+        words.append(below ? axis.low_name : axis.high_name).append(" wall; expected ");
+        words.append(to_text(axis.min))
+            .append(" <= ")
+            .append(axis.name)
+            .append(" <= ")
+            .append(to_text(axis.max));
+        words.append(" m. Move the body inside, or leave that side open.");
+        return problem(ErrorCode::out_of_range, item, axis.tail, words);
+    }
+    if (axis.low_side && axis.high_side && 2 * radius > axis.max - axis.min) {
+        std::string words =
+            "diameter " + to_text(2 * radius) + " m but the " + std::string(axis.low_name) + " and ";
+        words.append(axis.high_name).append(" walls are ").append(to_text(axis.max - axis.min));
+        words.append(" m apart; expected a body that fits between them. Make it smaller, or the box larger.");
+        return problem(ErrorCode::inconsistent, item, "/shape/disc/radius", words);
+    }
+    return std::nullopt;
+}
+
+constexpr Item kSingleBody{"the body has", "", -1, ""};
+
+}  // namespace
+
+std::optional<Problem> find_material_problem(const Item& item, std::string_view tail,
+                                             const Material& material) {
+    const auto in = [tail](std::string_view key) { return std::string(tail).append(key); };
+    if (!(material.density >= kDensity.low && material.density <= kDensity.high))
+        return check(item, in("/density"), material.density, kDensity);
+    if (!(material.restitution >= kRestitution.low && material.restitution <= kRestitution.high))
+        return check(item, in("/restitution"), material.restitution, kRestitution);
+    if (material.friction == 0 && material.rolling_resistance == 0) return std::nullopt;
+    if (auto found = check(item, in("/friction"), material.friction, kFriction)) return found;
+    if (auto found = check(item, in("/rolling_resistance"), material.rolling_resistance, kRollingResistance))
+        return found;
+    if (material.friction > 0)
+        return problem(ErrorCode::not_built_yet, item, in("/friction"),
+                       "friction " + to_text(material.friction) + "; " + std::string(kFrictionComes));
+    return problem(
+        ErrorCode::not_built_yet, item, in("/rolling_resistance"),
+        "rolling resistance " + to_text(material.rolling_resistance) +
+            "; rolling resistance is not built yet: it comes with the solver \"soft\". Set it to 0.");
+}
+
+std::optional<Problem> find_body_problem(const Item& item, const Body& body) {
+    if (auto found = check(item, "/shape/disc/radius", radius_of(body.shape), kRadius)) return found;
+    if (auto found = find_position_problem(item, body.position)) return found;
+    if (auto found = check(item, "/angle", body.angle, kAngle)) return found;
+    if (auto found = find_velocity_problem(item, body.velocity)) return found;
+    if (auto found = check(item, "/angular_velocity", body.angular_velocity, kAngularVelocity)) return found;
+    if (auto found = find_material_problem(item, "/material", body.material)) return found;
+    if (auto found = find_mass_problem(item, body)) return found;
+    if (auto found = find_motion_problem(item, body)) return found;
+    return find_color_problem(item, body.color);
+}
+
+std::optional<Problem> find_inside_problem(const Item& item, const Body& body, const Walls& walls) {
+    if (body.type != BodyType::dynamic_body)
+        return std::nullopt;  // what walls do not move may stand anywhere
+    const double radius = radius_of(body.shape);
+    const Axis x{"x",        "/position/0", body.position.x, walls.min.x, walls.max.x,
+                 walls.left, walls.right,   "left",          "right"};
+    if (auto found = find_axis_problem(item, x, radius)) return found;
+    const Axis y{"y",          "/position/1", body.position.y, walls.min.y, walls.max.y,
+                 walls.bottom, walls.top,     "bottom",        "top"};
+    return find_axis_problem(item, y, radius);
+}
+
+void validate_body(const Body& body, std::string_view where) {
+    raise_if(where, find_body_problem(kSingleBody, body));
+}
+
+void validate_inside(const Body& body, const Walls& walls, std::string_view where) {
+    raise_if(where, find_inside_problem(kSingleBody, body, walls));
+}
+
+void validate_position(Vec2 position, std::string_view where) {
+    raise_if(where, find_position_problem(kSingleBody, position));
+}
+
+void validate_velocity(Vec2 velocity, std::string_view where) {
+    raise_if(where, find_velocity_problem(kSingleBody, velocity));
+}
+
+void validate_angular_velocity(double angular_velocity, std::string_view where) {
+    raise_if(where, check(kSingleBody, "/angular_velocity", angular_velocity, kAngularVelocity));
+}
+
+}  // namespace carom

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <carom/scene.hpp>
+
+#include "scene/wording.hpp"
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace carom {
+
+// Checks of single values, for whoever takes them one by one. `where` opens the message: "World::add".
+
+/// Everything but the name's uniqueness and the walls. @throws Error
+void validate_body(const Body& body, std::string_view where);
+/// That a dynamic body starts between the closed walls, and fits there. @throws Error
+void validate_inside(const Body& body, const Walls& walls, std::string_view where);
+void validate_position(Vec2 position, std::string_view where);
+void validate_velocity(Vec2 velocity, std::string_view where);
+void validate_angular_velocity(double angular_velocity, std::string_view where);
+/// A step: 0, or kSmallestStep ... kLargestStep. @throws Error
+void validate_dt(double dt, std::string_view where);
+/// Solver (`pairwise` passes), substeps, iterations. @throws Error
+void validate_accuracy(const Accuracy& accuracy, std::string_view where);
+/// That nothing is forced off which the scene needs, nor on which is not built. `effects`: the ones in force,
+/// in place of the scene's own. Cost: O(bodies) if rotation or restitution is forced off. @throws Error
+void validate_effects(const Scene& scene, const EffectOverrides& effects, std::string_view where);
+
+// The same as problems, for Scene::find_problem and the generators.
+
+std::optional<Problem> find_body_problem(const Item& item, const Body& body);
+std::optional<Problem> find_inside_problem(const Item& item, const Body& body, const Walls& walls);
+std::optional<Problem> find_material_problem(const Item& item, std::string_view tail,
+                                             const Material& material);
+/// Gravity, drag, walls, step, record, accuracy.
+std::optional<Problem> find_settings_problem(const Scene& scene);
+std::optional<Problem> find_accuracy_problem(const Accuracy& accuracy);
+std::optional<Problem> find_effects_problem(const Scene& scene, const EffectOverrides& effects);
+/// The first body whose name an earlier one has. Cost: O(bodies), nothing if none has a name.
+std::optional<Problem> find_duplicate_name(const std::vector<Body>& bodies);
+
+}  // namespace carom

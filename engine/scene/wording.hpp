@@ -1,0 +1,53 @@
+#pragma once
+
+#include <carom/errors.hpp>
+#include <carom/vec2.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace carom {
+
+/// Whose value a check looks at: says it in words and as a JSON pointer. Built for every body, so it owns
+/// nothing.
+struct Item {
+    std::string_view words;     ///< "the walls have", or the kind of a numbered item: "body"
+    std::string_view pointer;   ///< "/walls", "/bodies"
+    std::ptrdiff_t index = -1;  ///< of a numbered item
+    std::string_view name;      ///< of a numbered item, may be empty
+
+    std::string subject() const;  ///< `body 3 ("ball") has`
+    std::string path() const;     ///< `/bodies/3`
+};
+
+/// A kind of value with its limits.
+struct Quantity {
+    std::string_view name;
+    std::string_view unit;
+    double low;
+    double high;
+    std::string_view remedy;
+};
+
+/// The shortest text that reads back as the same number.
+std::string to_text(double value);
+std::string to_text(Vec2 value);
+/// In quotes, with control characters made visible; cut when long.
+std::string quoted(std::string_view text);
+
+/// A problem if the value is not finite or outside the limits of its quantity. `tail`: its place in the item.
+std::optional<Problem> check(const Item& item, std::string_view tail, double value, const Quantity& quantity);
+
+/// A problem of an item, in words that follow its subject.
+Problem problem(ErrorCode code, const Item& item, std::string_view tail, std::string_view words);
+
+/// @throws Error of that problem.
+[[noreturn]] void raise(std::string_view where, const Problem& found);
+
+inline void raise_if(std::string_view where, const std::optional<Problem>& found) {
+    if (found) raise(where, *found);
+}
+
+}  // namespace carom
