@@ -21,12 +21,12 @@ LAYER_OF_FOLDER = {
     "broadphase": 5, "narrowphase": 5, "solver": 5, "joints": 5, "ledger": 5, "scene": 5,
     "reference": 5,  # and see SHARES_NOTHING
 }
-LAYER_OF_FILE = {  # by path without suffix; these differ from their folder or have none
-    "version": 0,
-    "stage_info": 1,
-    "kernels/arguments": 2,
-    "step_plan": 6,
-    "step": 7,
+LAYER_OF_FILE = {  # patterns of paths without suffix: files that differ from their folder or have none
+    r"version": 0,
+    r"stage_info": 1,
+    r"kernels/(\w+_)?arguments": 2,
+    r"step_plan": 6,
+    r"step": 7,
 }
 TOP_LAYER = 8  # other files directly in engine/: what joins the step to the public headers
 SHARES_NOTHING = "reference"  # the yardstick: includes the public headers and itself, nobody in engine/ includes it
@@ -39,10 +39,10 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 def layer_of(path):
     """path: relative to engine/, in posix form."""
     stem = re.sub(r"\.\w+$", "", path)
-    for known, layer in LAYER_OF_FILE.items():
-        if stem == known or stem.startswith(known + "/"):
+    for pattern, layer in LAYER_OF_FILE.items():
+        if re.fullmatch(pattern, stem):
             return layer
-    folder = path.split("/")[0] if "/" in path else ""
+    folder = folder_of(path)
     return LAYER_OF_FOLDER.get(folder) if folder else TOP_LAYER
 
 
