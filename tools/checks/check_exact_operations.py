@@ -2,7 +2,7 @@
 """The same bits everywhere: engine/ uses no fused, approximate or library-dependent arithmetic and no sum across
 lanes, and no build file asks the compiler for them. With object files, their instructions are read as well.
 
-A line that has to do it says why, on the line or the one above:  // inexact: <reason>
+A line that has to do it says why, on the line or in the comment right above:  // inexact: <reason>
 
 usage: check_exact_operations.py [ROOT] [--objects FILE ...]
 """
@@ -36,13 +36,20 @@ BANNED_INSTRUCTIONS = (r"\t(v?fn?m(add|sub)\w*|v?rcp(ss|ps|14\w+|28\w+)|v?rsqrt\
 REASON = re.compile(r"//.*\binexact: \S")
 
 
+def is_excused(lines, number):
+    """lines[number] gives a reason, or the comment lines right above it do."""
+    first = number
+    while first > 0 and lines[first - 1].lstrip().startswith("//"):
+        first -= 1
+    return any(REASON.search(line) for line in lines[first:number + 1])
+
+
 def findings_in_text(name, text, banned, code=None):
     lines = text.splitlines()
     for number, line in enumerate((code or text).splitlines()):
         for pattern, why in banned.items():
             found = re.search(pattern, line)
-            excused = any(REASON.search(text) for text in lines[max(0, number - 1):number + 1])
-            if found and not excused:
+            if found and not is_excused(lines, number):
                 yield f"{name}:{number + 1}: {found.group().strip()}: {why}"
 
 

@@ -116,9 +116,10 @@ class CheckExactOperations(WithFolder):
 
     def test_a_reason_excuses_a_line_and_no_other(self):
         self.assertEqual(self.findings("y = std::exp(x);  // inexact: once per scene, result is stored"), [])
-        self.assertEqual(self.findings("// inexact: once per scene\ny = std::exp(x);"), [])
+        self.assertEqual(self.findings("// inexact: once per scene,\n// not per step\ny = std::exp(x);"), [])
         self.assertEqual(len(self.findings("y = std::exp(x);  // inexact:")), 1)
         self.assertEqual(len(self.findings("// inexact: once per scene\n\ny = std::exp(x);")), 1)
+        self.assertEqual(len(self.findings("x = 1;  // inexact: not this\ny = 2;\ny = std::exp(x);")), 1)
 
     def test_flags_that_change_results_are_found_in_build_files(self):
         for flag in ("-ffast-math", "-Ofast", "-ffp-contract=fast", "-mfma", "-march=native"):
