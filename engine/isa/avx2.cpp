@@ -1,0 +1,8 @@
+#include "isa/make_table.hpp"
+
+namespace carom {
+
+extern const KernelTables kAvx2Kernels;
+constexpr KernelTables kAvx2Kernels = make_tables<xsimd::avx2>("avx2");
+
+}  // namespace carom

@@ -1,0 +1,8 @@
+#include "isa/make_table.hpp"
+
+namespace carom {
+
+extern const KernelTables kAvx512Kernels;
+constexpr KernelTables kAvx512Kernels = make_tables<xsimd::avx512bw>("avx512");
+
+}  // namespace carom

@@ -1,0 +1,8 @@
+#include "isa/make_table.hpp"
+
+namespace carom {
+
+extern const KernelTables kScalarKernels;
+constexpr KernelTables kScalarKernels = make_tables<simd::Scalar>("scalar");
+
+}  // namespace carom

@@ -1,0 +1,8 @@
+#include "isa/make_table.hpp"
+
+namespace carom {
+
+extern const KernelTables kSse2Kernels;
+constexpr KernelTables kSse2Kernels = make_tables<xsimd::sse2>("sse2");
+
+}  // namespace carom

@@ -1,0 +1,149 @@
+#pragma once
+
+#include "simd/batch.hpp"
+
+#include <immintrin.h>
+#include <array>
+
+namespace carom::simd {
+namespace {
+
+/// Row `bits` lists the lanes whose bit is set, in order; the rest do not matter.
+template <std::size_t kLanes>
+using CompressTable = std::array<std::array<std::uint8_t, 8>, std::size_t{1} << kLanes>;
+
+template <std::size_t kLanes>
+constexpr CompressTable<kLanes> make_compress_table() {
+    CompressTable<kLanes> table{};
+    for (std::size_t bits = 0; bits < table.size(); ++bits) {
+        std::size_t count = 0;
+        for (std::size_t lane = 0; lane < kLanes; ++lane)
+            if ((bits >> lane) & 1u) table[bits][count++] = static_cast<std::uint8_t>(lane);
+    }
+    return table;
+}
+
+constexpr CompressTable<8> kCompress8 = make_compress_table<8>();  // 2 KiB
+constexpr CompressTable<4> kCompress4 = make_compress_table<4>();
+
+inline __m256i compress_order8(unsigned bits) {
+    return _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(&kCompress8[bits])));
+}
+inline __m128i compress_order4(unsigned bits) {
+    return _mm_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(&kCompress4[bits])));
+}
+
+inline unsigned bitmask(xsimd::batch_bool<float, xsimd::avx2> mask) {
+    return static_cast<unsigned>(_mm256_movemask_ps(mask));
+}
+inline unsigned bitmask(xsimd::batch_bool<double, xsimd::avx2> mask) {
+    return static_cast<unsigned>(_mm256_movemask_pd(mask));
+}
+
+template <>
+struct Lanes<float, xsimd::avx2> : BatchLanes<float, xsimd::avx2> {
+    using Rows = __m256i;
+
+    static Rows broadcast_row(std::int32_t row) { return _mm256_set1_epi32(row); }
+    static Rows load_rows(const std::int32_t* from) {
+        return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
+    }
+    static void store_rows(std::int32_t* to, Rows rows) {
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), rows);
+    }
+
+    // xsimd 8.1 emulates float gathers lane by lane.
+    static Batch gather(const float* column, Rows rows) {
+        return Batch::Raw(_mm256_i32gather_ps(column, rows, sizeof(float)));
+    }
+
+    static std::size_t compress_store(std::int32_t* out, Rows values, unsigned bits) {
+        store_rows(out, _mm256_permutevar8x32_epi32(values, compress_order8(bits)));
+        return static_cast<std::size_t>(__builtin_popcount(bits));
+    }
+
+    static Batch4 load_rows4(const float* packed, const std::int32_t* rows) {
+        const auto two = [&](int low, int high) {
+            const __m128 first = _mm_loadu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[low]));
+            const __m128 second = _mm_loadu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[high]));
+            return _mm256_insertf128_ps(_mm256_castps128_ps256(first), second, 1);
+        };
+        return transposed(two(0, 4), two(1, 5), two(2, 6), two(3, 7));
+    }
+    static void store_rows4(float* packed, const std::int32_t* rows, const Batch4& values) {
+        const Batch4 records = transposed(values[0].raw, values[1].raw, values[2].raw, values[3].raw);
+        for (int i = 0; i < 4; ++i)
+            _mm_storeu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[i]),
+                          _mm256_castps256_ps128(records.lane[i].raw));
+        for (int i = 0; i < 4; ++i)
+            _mm_storeu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[i + 4]),
+                          _mm256_extractf128_ps(records.lane[i].raw, 1));
+    }
+
+  private:
+    /// 4 x 4 in each 128-bit half.
+    static Batch4 transposed(__m256 a, __m256 b, __m256 c, __m256 d) {
+        const __m256d ab_low = _mm256_castps_pd(_mm256_unpacklo_ps(a, b));
+        const __m256d ab_high = _mm256_castps_pd(_mm256_unpackhi_ps(a, b));
+        const __m256d cd_low = _mm256_castps_pd(_mm256_unpacklo_ps(c, d));
+        const __m256d cd_high = _mm256_castps_pd(_mm256_unpackhi_ps(c, d));
+        return {{Batch::Raw(_mm256_castpd_ps(_mm256_unpacklo_pd(ab_low, cd_low))),
+                 Batch::Raw(_mm256_castpd_ps(_mm256_unpackhi_pd(ab_low, cd_low))),
+                 Batch::Raw(_mm256_castpd_ps(_mm256_unpacklo_pd(ab_high, cd_high))),
+                 Batch::Raw(_mm256_castpd_ps(_mm256_unpackhi_pd(ab_high, cd_high)))}};
+    }
+};
+
+template <>
+struct Lanes<double, xsimd::avx2> : BatchLanes<double, xsimd::avx2> {
+    using Rows = __m128i;
+
+    static Rows broadcast_row(std::int32_t row) { return _mm_set1_epi32(row); }
+    static Rows load_rows(const std::int32_t* from) {
+        return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
+    }
+    static void store_rows(std::int32_t* to, Rows rows) {
+        _mm_storeu_si128(reinterpret_cast<__m128i*>(to), rows);
+    }
+
+    static Batch gather(const double* column, Rows rows) {
+        return Batch::Raw(_mm256_i32gather_pd(column, rows, sizeof(double)));
+    }
+
+    static std::size_t compress_store(std::int32_t* out, Rows values, unsigned bits) {
+        const __m128 compressed = _mm_permutevar_ps(_mm_castsi128_ps(values), compress_order4(bits));
+        store_rows(out, _mm_castps_si128(compressed));
+        return static_cast<std::size_t>(__builtin_popcount(bits));
+    }
+
+    static Batch4 load_rows4(const double* packed, const std::int32_t* rows) {
+        const auto record = [&](int i) {
+            return _mm256_loadu_pd(packed + 4 * static_cast<std::ptrdiff_t>(rows[i]));
+        };
+        return transposed(record(0), record(1), record(2), record(3));
+    }
+    static void store_rows4(double* packed, const std::int32_t* rows, const Batch4& values) {
+        const Batch4 records = transposed(values[0].raw, values[1].raw, values[2].raw, values[3].raw);
+        for (int i = 0; i < 4; ++i)
+            _mm256_storeu_pd(packed + 4 * static_cast<std::ptrdiff_t>(rows[i]), records.lane[i].raw);
+    }
+
+    static Batch load_converted(const float* from) { return Batch::Raw(_mm256_cvtps_pd(_mm_loadu_ps(from))); }
+    static Batch load_converted(const double* from) { return load_unaligned(from); }
+    /// Toward minus infinity; |value| < 2^31.
+    static Rows floor_to_rows(Batch value) { return _mm256_cvttpd_epi32(floor(value).raw); }
+    static Batch floor(Batch value) { return Batch::Raw(_mm256_floor_pd(value.raw)); }
+
+  private:
+    static Batch4 transposed(__m256d a, __m256d b, __m256d c, __m256d d) {
+        const __m256d ab_even = _mm256_unpacklo_pd(a, b), ab_odd = _mm256_unpackhi_pd(a, b);
+        const __m256d cd_even = _mm256_unpacklo_pd(c, d), cd_odd = _mm256_unpackhi_pd(c, d);
+        return {{Batch::Raw(_mm256_permute2f128_pd(ab_even, cd_even, 0x20)),
+                 Batch::Raw(_mm256_permute2f128_pd(ab_odd, cd_odd, 0x20)),
+                 Batch::Raw(_mm256_permute2f128_pd(ab_even, cd_even, 0x31)),
+                 Batch::Raw(_mm256_permute2f128_pd(ab_odd, cd_odd, 0x31))}};
+    }
+};
+
+}  // namespace
+}  // namespace carom::simd

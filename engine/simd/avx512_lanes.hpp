@@ -1,0 +1,132 @@
+#pragma once
+
+#include "simd/batch.hpp"
+
+#include <immintrin.h>
+
+namespace carom::simd {
+namespace {
+
+inline unsigned bitmask(xsimd::batch_bool<float, xsimd::avx512bw> mask) {
+    return static_cast<__mmask16>(mask.data);
+}
+inline unsigned bitmask(xsimd::batch_bool<double, xsimd::avx512bw> mask) {
+    return static_cast<__mmask8>(mask.data);
+}
+
+template <>
+struct Lanes<float, xsimd::avx512bw> : BatchLanes<float, xsimd::avx512bw> {
+    using Rows = __m512i;
+
+    static Rows broadcast_row(std::int32_t row) { return _mm512_set1_epi32(row); }
+    static Rows load_rows(const std::int32_t* from) { return _mm512_loadu_si512(from); }
+    static void store_rows(std::int32_t* to, Rows rows) { _mm512_storeu_si512(to, rows); }
+
+    static Batch gather(const float* column, Rows rows) {
+        return Batch::Raw(_mm512_i32gather_ps(rows, column, sizeof(float)));
+    }
+
+    // In a register, then a full store: the form that compresses to memory is microcoded on Zen 4.
+    static std::size_t compress_store(std::int32_t* out, Rows values, unsigned bits) {
+        store_rows(out, _mm512_maskz_compress_epi32(static_cast<__mmask16>(bits), values));
+        return static_cast<std::size_t>(__builtin_popcount(bits));
+    }
+
+    static Batch4 load_rows4(const float* packed, const std::int32_t* rows) {
+        const auto record = [&](int i) {
+            return _mm_loadu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[i]));
+        };
+        const auto four = [&](int i) {
+            __m512 records = _mm512_castps128_ps512(record(i));
+            records = _mm512_insertf32x4(records, record(i + 4), 1);
+            records = _mm512_insertf32x4(records, record(i + 8), 2);
+            return _mm512_insertf32x4(records, record(i + 12), 3);
+        };
+        return transposed(four(0), four(1), four(2), four(3));
+    }
+    static void store_rows4(float* packed, const std::int32_t* rows, const Batch4& values) {
+        const Batch4 records = transposed(values[0].raw, values[1].raw, values[2].raw, values[3].raw);
+        const auto to = [&](int i) { return packed + 4 * static_cast<std::ptrdiff_t>(rows[i]); };
+        for (int i = 0; i < 4; ++i) _mm_storeu_ps(to(i), _mm512_castps512_ps128(records.lane[i].raw));
+        for (int i = 0; i < 4; ++i) _mm_storeu_ps(to(i + 4), _mm512_extractf32x4_ps(records.lane[i].raw, 1));
+        for (int i = 0; i < 4; ++i) _mm_storeu_ps(to(i + 8), _mm512_extractf32x4_ps(records.lane[i].raw, 2));
+        for (int i = 0; i < 4; ++i) _mm_storeu_ps(to(i + 12), _mm512_extractf32x4_ps(records.lane[i].raw, 3));
+    }
+
+  private:
+    /// 4 x 4 in each 128-bit quarter.
+    static Batch4 transposed(__m512 a, __m512 b, __m512 c, __m512 d) {
+        const __m512d ab_low = _mm512_castps_pd(_mm512_unpacklo_ps(a, b));
+        const __m512d ab_high = _mm512_castps_pd(_mm512_unpackhi_ps(a, b));
+        const __m512d cd_low = _mm512_castps_pd(_mm512_unpacklo_ps(c, d));
+        const __m512d cd_high = _mm512_castps_pd(_mm512_unpackhi_ps(c, d));
+        return {{Batch::Raw(_mm512_castpd_ps(_mm512_unpacklo_pd(ab_low, cd_low))),
+                 Batch::Raw(_mm512_castpd_ps(_mm512_unpackhi_pd(ab_low, cd_low))),
+                 Batch::Raw(_mm512_castpd_ps(_mm512_unpacklo_pd(ab_high, cd_high))),
+                 Batch::Raw(_mm512_castpd_ps(_mm512_unpackhi_pd(ab_high, cd_high)))}};
+    }
+};
+
+template <>
+struct Lanes<double, xsimd::avx512bw> : BatchLanes<double, xsimd::avx512bw> {
+    using Rows = __m256i;
+
+    static Rows broadcast_row(std::int32_t row) { return _mm256_set1_epi32(row); }
+    static Rows load_rows(const std::int32_t* from) {
+        return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
+    }
+    static void store_rows(std::int32_t* to, Rows rows) {
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), rows);
+    }
+
+    static Batch gather(const double* column, Rows rows) {
+        return Batch::Raw(_mm512_i32gather_pd(rows, column, sizeof(double)));
+    }
+
+    static std::size_t compress_store(std::int32_t* out, Rows values, unsigned bits) {
+        store_rows(out, _mm256_maskz_compress_epi32(static_cast<__mmask8>(bits), values));
+        return static_cast<std::size_t>(__builtin_popcount(bits));
+    }
+
+    static Batch4 load_rows4(const double* packed, const std::int32_t* rows) {
+        const auto two = [&](int i) {
+            const __m256d low = _mm256_loadu_pd(packed + 4 * static_cast<std::ptrdiff_t>(rows[i]));
+            const __m256d high = _mm256_loadu_pd(packed + 4 * static_cast<std::ptrdiff_t>(rows[i + 4]));
+            return _mm512_insertf64x4(_mm512_castpd256_pd512(low), high, 1);
+        };
+        return transposed(two(0), two(1), two(2), two(3));
+    }
+    static void store_rows4(double* packed, const std::int32_t* rows, const Batch4& values) {
+        const Batch4 records = transposed(values[0].raw, values[1].raw, values[2].raw, values[3].raw);
+        const auto to = [&](int i) { return packed + 4 * static_cast<std::ptrdiff_t>(rows[i]); };
+        for (int i = 0; i < 4; ++i) _mm256_storeu_pd(to(i), _mm512_castpd512_pd256(records.lane[i].raw));
+        for (int i = 0; i < 4; ++i)
+            _mm256_storeu_pd(to(i + 4), _mm512_extractf64x4_pd(records.lane[i].raw, 1));
+    }
+
+    static Batch load_converted(const float* from) {
+        return Batch::Raw(_mm512_cvtps_pd(_mm256_loadu_ps(from)));
+    }
+    static Batch load_converted(const double* from) { return load_unaligned(from); }
+    /// Toward minus infinity; |value| < 2^31.
+    static Rows floor_to_rows(Batch value) { return _mm512_cvttpd_epi32(floor(value).raw); }
+    static Batch floor(Batch value) {
+        return Batch::Raw(_mm512_roundscale_pd(value.raw, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC));
+    }
+
+  private:
+    /// 4 x 4 in each 256-bit half.
+    static Batch4 transposed(__m512d a, __m512d b, __m512d c, __m512d d) {
+        const __m512d ab_even = _mm512_unpacklo_pd(a, b), ab_odd = _mm512_unpackhi_pd(a, b);
+        const __m512d cd_even = _mm512_unpacklo_pd(c, d), cd_odd = _mm512_unpackhi_pd(c, d);
+        const __m512i low = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
+        const __m512i high = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+        return {{Batch::Raw(_mm512_permutex2var_pd(ab_even, low, cd_even)),
+                 Batch::Raw(_mm512_permutex2var_pd(ab_odd, low, cd_odd)),
+                 Batch::Raw(_mm512_permutex2var_pd(ab_even, high, cd_even)),
+                 Batch::Raw(_mm512_permutex2var_pd(ab_odd, high, cd_odd))}};
+    }
+};
+
+}  // namespace
+}  // namespace carom::simd

@@ -1,0 +1,36 @@
+#pragma once
+
+/// One kernel text for every instruction set: `Lanes<Real, Isa>` with Isa = simd::Scalar, xsimd::sse2,
+/// xsimd::avx2 or xsimd::avx512bw. Included by kernels only, and so by the files of isa/ alone; everything
+/// has internal linkage. A lane operation gives the bits of the scalar one: no fma, no approximation.
+///
+///   size                 lanes in a batch
+///   Batch, Mask, Rows    Real lanes; booleans (&, |, !); as many int32 row numbers
+///   Batch4               four batches, [0] ... [3]
+///   broadcast(value), load(p), load_unaligned(p), store(p, batch), store_unaligned(p, batch)
+///   broadcast_row(row), load_rows(p), store_rows(p, rows)         unaligned
+///   gather(column, rows)                                          column[row] a lane
+///   compress_store(out, rows, bits)   the lanes whose bit is set, in order, to out; returns how many.
+///                                     Writes a whole batch: out needs room for `size` more numbers
+///   load_rows4(packed, rows*)         records of four Reals -> four batches, e.g. (vx, vy, spin, spare)
+///   store_rows4(packed, rows*, Batch4)  the same back; of equal rows the last lane wins
+///
+/// On a Batch: + - * / += -= *=, unary -, < <= > >= ==. As free functions in carom::simd, for scalars too:
+///   sqrt, abs, min, max (the second operand if one is NaN or both are zeros), select(mask, if_true,
+///   if_false), any(mask), all(mask), bitmask(mask) -> unsigned, lane 0 in bit 0.
+///
+/// For Real = double also
+///   load_converted(float* or double*)   unaligned
+///   floor(batch), floor_to_rows(batch)  toward minus infinity, |value| < 2^31
+
+#include "simd/scalar_lanes.hpp"
+
+#if defined(__SSE2__)
+#include "simd/sse2_lanes.hpp"
+#endif
+#if defined(__AVX2__)
+#include "simd/avx2_lanes.hpp"
+#endif
+#if defined(__AVX512BW__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
+#include "simd/avx512_lanes.hpp"
+#endif

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace carom::simd {
+
+/// The instruction set of plain C++: batches of one lane, so the scalar table has the same kernel text.
+struct Scalar {};
+
+namespace {
+
+/// The lanes of one instruction set for one precision; what they offer is listed in lanes.hpp.
+template <class Real, class Isa>
+struct Lanes;
+
+// Built-ins, not std::sqrt: an inline function of the library could be emitted out of line as a weak symbol.
+inline float sqrt(float value) {
+    return __builtin_sqrtf(value);
+}
+inline double sqrt(double value) {
+    return __builtin_sqrt(value);
+}
+inline float abs(float value) {
+    return __builtin_fabsf(value);
+}
+inline double abs(double value) {
+    return __builtin_fabs(value);
+}
+// As MINPS and MAXPS: the second operand if either is NaN or both are zeros.
+inline float min(float a, float b) {
+    return a < b ? a : b;
+}
+inline double min(double a, double b) {
+    return a < b ? a : b;
+}
+inline float max(float a, float b) {
+    return a > b ? a : b;
+}
+inline double max(double a, double b) {
+    return a > b ? a : b;
+}
+inline float select(bool mask, float if_true, float if_false) {
+    return mask ? if_true : if_false;
+}
+inline double select(bool mask, double if_true, double if_false) {
+    return mask ? if_true : if_false;
+}
+inline bool any(bool mask) {
+    return mask;
+}
+inline bool all(bool mask) {
+    return mask;
+}
+inline unsigned bitmask(bool mask) {
+    return mask ? 1u : 0u;
+}
+
+template <class Real>
+struct ScalarLanes {
+    static constexpr std::size_t size = 1;
+    using Batch = Real;
+    using Mask = bool;
+    using Rows = std::int32_t;
+
+    struct Batch4 {
+        Batch lane[4];
+        Batch& operator[](std::size_t k) { return lane[k]; }
+        const Batch& operator[](std::size_t k) const { return lane[k]; }
+    };
+
+    static Batch broadcast(Real value) { return value; }
+    static Batch load(const Real* from) { return *from; }
+    static Batch load_unaligned(const Real* from) { return *from; }
+    static void store(Real* to, Batch value) { *to = value; }
+    static void store_unaligned(Real* to, Batch value) { *to = value; }
+
+    static Rows broadcast_row(std::int32_t row) { return row; }
+    static Rows load_rows(const std::int32_t* from) { return *from; }
+    static void store_rows(std::int32_t* to, Rows rows) { *to = rows; }
+
+    static Batch gather(const Real* column, Rows rows) { return column[rows]; }
+
+    static std::size_t compress_store(std::int32_t* out, Rows values, unsigned bits) {
+        *out = values;
+        return bits;
+    }
+
+    static Batch4 load_rows4(const Real* packed, const std::int32_t* rows) {
+        const Real* record = packed + 4 * static_cast<std::ptrdiff_t>(*rows);
+        return {{record[0], record[1], record[2], record[3]}};
+    }
+    static void store_rows4(Real* packed, const std::int32_t* rows, const Batch4& values) {
+        Real* record = packed + 4 * static_cast<std::ptrdiff_t>(*rows);
+        for (int k = 0; k < 4; ++k) record[k] = values.lane[k];
+    }
+};
+
+template <>
+struct Lanes<float, Scalar> : ScalarLanes<float> {};
+
+template <>
+struct Lanes<double, Scalar> : ScalarLanes<double> {
+    static Batch load_converted(const float* from) { return static_cast<double>(*from); }
+    static Batch load_converted(const double* from) { return *from; }
+    /// Toward minus infinity; |value| < 2^31.
+    static Rows floor_to_rows(Batch value) {
+        const auto toward_zero = static_cast<std::int32_t>(value);
+        return toward_zero - (static_cast<double>(toward_zero) > value ? 1 : 0);
+    }
+    static Batch floor(Batch value) { return static_cast<double>(floor_to_rows(value)); }
+};
+
+}  // namespace
+
+}  // namespace carom::simd

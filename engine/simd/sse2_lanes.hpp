@@ -1,0 +1,122 @@
+#pragma once
+
+#include "simd/batch.hpp"
+
+#include <emmintrin.h>
+
+namespace carom::simd {
+namespace {
+
+inline unsigned bitmask(xsimd::batch_bool<float, xsimd::sse2> mask) {
+    return static_cast<unsigned>(_mm_movemask_ps(mask));
+}
+inline unsigned bitmask(xsimd::batch_bool<double, xsimd::sse2> mask) {
+    return static_cast<unsigned>(_mm_movemask_pd(mask));
+}
+
+template <>
+struct Lanes<float, xsimd::sse2> : BatchLanes<float, xsimd::sse2> {
+    using Rows = __m128i;
+
+    static Rows broadcast_row(std::int32_t row) { return _mm_set1_epi32(row); }
+    static Rows load_rows(const std::int32_t* from) {
+        return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
+    }
+    static void store_rows(std::int32_t* to, Rows rows) {
+        _mm_storeu_si128(reinterpret_cast<__m128i*>(to), rows);
+    }
+
+    static Batch gather(const float* column, Rows rows) {
+        alignas(16) std::int32_t row[size];
+        _mm_store_si128(reinterpret_cast<__m128i*>(row), rows);
+        return Batch::Raw(_mm_setr_ps(column[row[0]], column[row[1]], column[row[2]], column[row[3]]));
+    }
+
+    // SSE2 cannot permute by a register: four scalar stores, each advancing by its bit, have no branch.
+    static std::size_t compress_store(std::int32_t* out, Rows values, unsigned bits) {
+        alignas(16) std::int32_t value[size];
+        _mm_store_si128(reinterpret_cast<__m128i*>(value), values);
+        std::size_t count = 0;
+        for (std::size_t lane = 0; lane < size; ++lane) {
+            out[count] = value[lane];
+            count += (bits >> lane) & 1u;
+        }
+        return count;
+    }
+
+    static Batch4 load_rows4(const float* packed, const std::int32_t* rows) {
+        __m128 r0 = _mm_loadu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[0]));
+        __m128 r1 = _mm_loadu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[1]));
+        __m128 r2 = _mm_loadu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[2]));
+        __m128 r3 = _mm_loadu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[3]));
+        _MM_TRANSPOSE4_PS(r0, r1, r2, r3);
+        return {{Batch::Raw(r0), Batch::Raw(r1), Batch::Raw(r2), Batch::Raw(r3)}};
+    }
+    static void store_rows4(float* packed, const std::int32_t* rows, const Batch4& values) {
+        __m128 r0 = values[0].raw, r1 = values[1].raw, r2 = values[2].raw, r3 = values[3].raw;
+        _MM_TRANSPOSE4_PS(r0, r1, r2, r3);
+        _mm_storeu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[0]), r0);
+        _mm_storeu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[1]), r1);
+        _mm_storeu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[2]), r2);
+        _mm_storeu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[3]), r3);
+    }
+};
+
+template <>
+struct Lanes<double, xsimd::sse2> : BatchLanes<double, xsimd::sse2> {
+    using Rows = __m128i;  // two rows in the low half
+
+    static Rows broadcast_row(std::int32_t row) { return _mm_set1_epi32(row); }
+    static Rows load_rows(const std::int32_t* from) {
+        return _mm_loadl_epi64(reinterpret_cast<const __m128i*>(from));
+    }
+    static void store_rows(std::int32_t* to, Rows rows) {
+        _mm_storel_epi64(reinterpret_cast<__m128i*>(to), rows);
+    }
+
+    static Batch gather(const double* column, Rows rows) {
+        const std::int32_t first = _mm_cvtsi128_si32(rows);
+        const std::int32_t second = _mm_cvtsi128_si32(_mm_shuffle_epi32(rows, 1));
+        return Batch::Raw(_mm_setr_pd(column[first], column[second]));
+    }
+
+    static std::size_t compress_store(std::int32_t* out, Rows values, unsigned bits) {
+        const std::size_t first = bits & 1u;
+        out[0] = _mm_cvtsi128_si32(values);
+        out[first] = _mm_cvtsi128_si32(_mm_shuffle_epi32(values, 1));
+        return first + ((bits >> 1) & 1u);
+    }
+
+    static Batch4 load_rows4(const double* packed, const std::int32_t* rows) {
+        const double* a = packed + 4 * static_cast<std::ptrdiff_t>(rows[0]);
+        const double* b = packed + 4 * static_cast<std::ptrdiff_t>(rows[1]);
+        const __m128d a01 = _mm_loadu_pd(a), a23 = _mm_loadu_pd(a + 2);
+        const __m128d b01 = _mm_loadu_pd(b), b23 = _mm_loadu_pd(b + 2);
+        return {{Batch::Raw(_mm_unpacklo_pd(a01, b01)), Batch::Raw(_mm_unpackhi_pd(a01, b01)),
+                 Batch::Raw(_mm_unpacklo_pd(a23, b23)), Batch::Raw(_mm_unpackhi_pd(a23, b23))}};
+    }
+    static void store_rows4(double* packed, const std::int32_t* rows, const Batch4& values) {
+        double* a = packed + 4 * static_cast<std::ptrdiff_t>(rows[0]);
+        double* b = packed + 4 * static_cast<std::ptrdiff_t>(rows[1]);
+        _mm_storeu_pd(a, _mm_unpacklo_pd(values[0].raw, values[1].raw));
+        _mm_storeu_pd(a + 2, _mm_unpacklo_pd(values[2].raw, values[3].raw));
+        _mm_storeu_pd(b, _mm_unpackhi_pd(values[0].raw, values[1].raw));
+        _mm_storeu_pd(b + 2, _mm_unpackhi_pd(values[2].raw, values[3].raw));
+    }
+
+    static Batch load_converted(const float* from) {
+        return Batch::Raw(
+            _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from)))));
+    }
+    static Batch load_converted(const double* from) { return load_unaligned(from); }
+    /// Toward minus infinity; |value| < 2^31.
+    static Rows floor_to_rows(Batch value) { return _mm_cvttpd_epi32(floor(value).raw); }
+    static Batch floor(Batch value) {
+        const __m128d toward_zero = _mm_cvtepi32_pd(_mm_cvttpd_epi32(value.raw));
+        const __m128d too_large = _mm_cmpgt_pd(toward_zero, value.raw);
+        return Batch::Raw(_mm_sub_pd(toward_zero, _mm_and_pd(too_large, _mm_set1_pd(1.0))));
+    }
+};
+
+}  // namespace
+}  // namespace carom::simd

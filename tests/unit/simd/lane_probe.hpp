@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+/// Every lane operation over arrays, compiled once an instruction set by lanes_on_<isa>.cpp.
+/// Arrays are 64-byte aligned and hold a multiple of 16 numbers; `count` is one.
+template <class Real>
+struct LaneProbe {
+    std::size_t lanes;
+    void (*arithmetic)(const Real* a, const Real* b, std::size_t count,
+                       Real* out);  // out[kArithmetic][count]
+    void (*comparisons)(const Real* a, const Real* b, std::size_t count,
+                        unsigned* out);  // [kComparisons][lanes groups]
+    void (*unaligned_copy)(const Real* from, std::size_t count, Real* to);
+    void (*gather)(const Real* column, const std::int32_t* rows, std::size_t count, Real* out);
+    std::size_t (*compress)(const std::int32_t* values, unsigned bits, std::int32_t* out);  // one batch
+    void (*rows4)(const Real* packed, const std::int32_t* rows, std::size_t count, Real* out,
+                  Real* packed_out);  // out[4][count], and scattered back to packed_out
+    void (*floor)(const float* values, std::size_t count, double* floors, std::int32_t* rows);
+};
+
+inline constexpr std::size_t kArithmetic = 13;
+inline constexpr std::size_t kComparisons = 10;
+
+struct LaneProbes {
+    std::string_view isa;
+    LaneProbe<float> single_precision;
+    LaneProbe<double> double_precision;
+};

@@ -1,0 +1,108 @@
+#pragma once
+
+#include "lane_probe.hpp"
+#include "simd/lanes.hpp"
+
+namespace {
+
+namespace simd = carom::simd;
+
+template <class Real, class Isa>
+void probe_arithmetic(const Real* a, const Real* b, std::size_t count, Real* out) {
+    using L = simd::Lanes<Real, Isa>;
+    using Batch = typename L::Batch;
+    for (std::size_t i = 0; i < count; i += L::size) {
+        const Batch x = L::load(a + i), y = L::load(b + i);
+        Batch sum = x, difference = x, product = x;
+        sum += y;
+        difference -= y;
+        product *= y;
+        const Batch results[kArithmetic] = {x + y,
+                                            x - y,
+                                            x * y,
+                                            x / y,
+                                            -x,
+                                            simd::sqrt(simd::abs(x)),
+                                            simd::abs(x),
+                                            simd::min(x, y),
+                                            simd::max(x, y),
+                                            simd::select(x < y, x, L::broadcast(Real{7})),
+                                            sum,
+                                            difference,
+                                            product};
+        for (std::size_t k = 0; k < kArithmetic; ++k) L::store(out + k * count + i, results[k]);
+    }
+}
+
+template <class Real, class Isa>
+void probe_comparisons(const Real* a, const Real* b, std::size_t count, unsigned* out) {
+    using L = simd::Lanes<Real, Isa>;
+    using Batch = typename L::Batch;
+    const auto bit = [](bool value) { return value ? 1u : 0u; };
+    for (std::size_t i = 0; i < count; i += L::size) {
+        const Batch x = L::load(a + i), y = L::load(b + i);
+        const typename L::Mask less = x < y, equal = x == y;
+        const unsigned results[kComparisons] = {simd::bitmask(less),         simd::bitmask(x <= y),
+                                                simd::bitmask(x > y),        simd::bitmask(x >= y),
+                                                simd::bitmask(equal),        simd::bitmask(!less),
+                                                simd::bitmask(less | equal), simd::bitmask(less & equal),
+                                                bit(simd::any(less)),        bit(simd::all(less))};
+        for (std::size_t k = 0; k < kComparisons; ++k) *out++ = results[k];
+    }
+}
+
+template <class Real, class Isa>
+void probe_unaligned_copy(const Real* from, std::size_t count, Real* to) {
+    using L = simd::Lanes<Real, Isa>;
+    for (std::size_t i = 0; i < count; i += L::size) L::store_unaligned(to + i, L::load_unaligned(from + i));
+}
+
+template <class Real, class Isa>
+void probe_gather(const Real* column, const std::int32_t* rows, std::size_t count, Real* out) {
+    using L = simd::Lanes<Real, Isa>;
+    for (std::size_t i = 0; i < count; i += L::size)
+        L::store(out + i, L::gather(column, L::load_rows(rows + i)));
+}
+
+template <class Real, class Isa>
+std::size_t probe_compress(const std::int32_t* values, unsigned bits, std::int32_t* out) {
+    using L = simd::Lanes<Real, Isa>;
+    L::store_rows(out, L::broadcast_row(-1));
+    return L::compress_store(out, L::load_rows(values), bits);
+}
+
+template <class Real, class Isa>
+void probe_rows4(const Real* packed, const std::int32_t* rows, std::size_t count, Real* out,
+                 Real* packed_out) {
+    using L = simd::Lanes<Real, Isa>;
+    for (std::size_t i = 0; i < count; i += L::size) {
+        const typename L::Batch4 four = L::load_rows4(packed, rows + i);
+        for (std::size_t k = 0; k < 4; ++k) L::store(out + k * count + i, four[k]);
+        L::store_rows4(packed_out, rows + i, four);
+    }
+}
+
+template <class Isa>
+void probe_floor(const float* values, std::size_t count, double* floors, std::int32_t* rows) {
+    using L = simd::Lanes<double, Isa>;
+    for (std::size_t i = 0; i < count; i += L::size) {
+        const typename L::Batch value = L::load_converted(values + i);
+        L::store(floors + i, L::floor(value));
+        L::store_rows(rows + i, L::floor_to_rows(value));
+    }
+}
+
+template <class Real, class Isa>
+constexpr LaneProbe<Real> make_lane_probe() {
+    return {simd::Lanes<Real, Isa>::size,  &probe_arithmetic<Real, Isa>,
+            &probe_comparisons<Real, Isa>, &probe_unaligned_copy<Real, Isa>,
+            &probe_gather<Real, Isa>,      &probe_compress<Real, Isa>,
+            &probe_rows4<Real, Isa>,       &probe_floor<Isa>};
+}
+
+template <class Isa>
+constexpr LaneProbes make_lane_probes(std::string_view isa) {
+    return {isa, make_lane_probe<float, Isa>(), make_lane_probe<double, Isa>()};
+}
+
+}  // namespace

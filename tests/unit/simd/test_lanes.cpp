@@ -1,0 +1,251 @@
+#include "isa/select_isa.hpp"
+#include "lane_probe.hpp"
+#include "state/column.hpp"
+
+#include <doctest/doctest.h>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+#include <type_traits>
+#include <vector>
+
+using carom::Column;
+
+extern const LaneProbes kLanesOnScalar, kLanesOnSse2, kLanesOnAvx2, kLanesOnAvx512;
+
+namespace {
+
+std::vector<const LaneProbes*> runnable_lane_probes() {
+    std::vector<const LaneProbes*> probes{&kLanesOnScalar};
+    for (const carom::KernelTables* tables : carom::runnable_kernel_tables()) {
+#if defined(CAROM_BUILT_SSE2)
+        if (tables->single_precision.isa == "sse2") probes.push_back(&kLanesOnSse2);
+#endif
+#if defined(CAROM_BUILT_AVX2)
+        if (tables->single_precision.isa == "avx2") probes.push_back(&kLanesOnAvx2);
+#endif
+#if defined(CAROM_BUILT_AVX512)
+        if (tables->single_precision.isa == "avx512") probes.push_back(&kLanesOnAvx512);
+#endif
+    }
+    return probes;
+}
+
+template <class Real>
+const LaneProbe<Real>& probe_of(const LaneProbes& probes) {
+    if constexpr (std::is_same_v<Real, float>)
+        return probes.single_precision;
+    else
+        return probes.double_precision;
+}
+
+/// All pairs of numbers that are awkward somewhere, then random ones.
+template <class Real>
+void fill_operands(Column<Real>& a, Column<Real>& b) {
+    using Limits = std::numeric_limits<Real>;
+    const std::vector<Real> awkward{0,
+                                    -Real{0},
+                                    1,
+                                    -1,
+                                    Real(0.1),
+                                    Limits::min(),
+                                    Limits::denorm_min(),
+                                    -Limits::denorm_min(),
+                                    Limits::max(),
+                                    Limits::lowest(),
+                                    Limits::infinity(),
+                                    -Limits::infinity(),
+                                    Limits::quiet_NaN(),
+                                    3};
+    std::mt19937 random(3);
+    std::uniform_real_distribution<Real> uniform(-100, 100);
+    std::size_t row = 0;
+    a.resize(1024);
+    b.resize(1024);
+    for (const Real x : awkward)
+        for (const Real y : awkward) a[row] = x, b[row++] = y;
+    for (; row < a.size(); ++row) a[row] = uniform(random), b[row] = uniform(random);
+}
+
+template <class T>
+bool same_bits(const Column<T>& a, const Column<T>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+/// Bits of x, but one NaN for all: which of two NaN operands an instruction returns is not ours to say.
+template <class Real>
+void make_nans_equal(Column<Real>& values) {
+    for (Real& value : values)
+        if (std::isnan(value)) value = std::numeric_limits<Real>::quiet_NaN();
+}
+
+template <class Real>
+Column<Real> expected_arithmetic(const Column<Real>& a, const Column<Real>& b) {
+    const std::size_t count = a.size();
+    Column<Real> out(kArithmetic * count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Real x = a[i], y = b[i];
+        const Real results[kArithmetic] = {x + y,
+                                           x - y,
+                                           x * y,
+                                           x / y,
+                                           -x,
+                                           std::sqrt(std::fabs(x)),
+                                           std::fabs(x),
+                                           x < y ? x : y,
+                                           x > y ? x : y,
+                                           x < y ? x : Real{7},
+                                           x + y,
+                                           x - y,
+                                           x * y};
+        for (std::size_t k = 0; k < kArithmetic; ++k) out[k * count + i] = results[k];
+    }
+    make_nans_equal(out);
+    return out;
+}
+
+unsigned bits_of(std::size_t lanes, const auto& is_set) {
+    unsigned bits = 0;
+    for (std::size_t lane = 0; lane < lanes; ++lane) bits |= is_set(lane) ? 1u << lane : 0u;
+    return bits;
+}
+
+template <class Real>
+std::vector<unsigned> expected_comparisons(const Column<Real>& a, const Column<Real>& b, std::size_t lanes) {
+    std::vector<unsigned> out;
+    for (std::size_t i = 0; i < a.size(); i += lanes) {
+        const auto all = bits_of(lanes, [](std::size_t) { return true; });
+        const auto less = bits_of(lanes, [&](std::size_t k) { return a[i + k] < b[i + k]; });
+        const auto equal = bits_of(lanes, [&](std::size_t k) { return a[i + k] == b[i + k]; });
+        const auto greater = bits_of(lanes, [&](std::size_t k) { return a[i + k] > b[i + k]; });
+        out.insert(out.end(), {less, less | equal, greater, greater | equal, equal, all & ~less, less | equal,
+                               0u, less != 0 ? 1u : 0u, less == all ? 1u : 0u});
+    }
+    return out;
+}
+
+}  // namespace
+
+TEST_SUITE("simd/lanes") {
+    TEST_CASE_TEMPLATE("arithmetic gives the scalar operation's bits on every instruction set", Real, float,
+                       double) {
+        Column<Real> a, b;
+        fill_operands(a, b);
+        const Column<Real> expected = expected_arithmetic(a, b);
+        for (const LaneProbes* probes : runnable_lane_probes()) {
+            CAPTURE(probes->isa);
+            Column<Real> actual(expected.size());
+            probe_of<Real>(*probes).arithmetic(a.data(), b.data(), a.size(), actual.data());
+            make_nans_equal(actual);
+            CHECK(same_bits(expected, actual));
+        }
+    }
+
+    TEST_CASE_TEMPLATE("comparisons treat NaN and signed zeros as the scalar ones do", Real, float, double) {
+        Column<Real> a, b;
+        fill_operands(a, b);
+        for (const LaneProbes* probes : runnable_lane_probes()) {
+            CAPTURE(probes->isa);
+            const LaneProbe<Real>& probe = probe_of<Real>(*probes);
+            std::vector<unsigned> actual(kComparisons * (a.size() / probe.lanes));
+            probe.comparisons(a.data(), b.data(), a.size(), actual.data());
+            CHECK(expected_comparisons(a, b, probe.lanes) == actual);
+        }
+    }
+
+    TEST_CASE_TEMPLATE("unaligned loads and stores touch their rows and no other", Real, float, double) {
+        Column<Real> from, unused;
+        fill_operands(from, unused);
+        for (const LaneProbes* probes : runnable_lane_probes())
+            for (std::size_t shift = 1; shift < 16; ++shift) {
+                CAPTURE(probes->isa);
+                CAPTURE(shift);
+                Column<Real> to(from.size()), expected(from.size());
+                std::copy_n(from.data() + shift, 64, expected.data() + 2 * shift);
+                probe_of<Real>(*probes).unaligned_copy(from.data() + shift, 64, to.data() + 2 * shift);
+                CHECK(same_bits(expected, to));
+            }
+    }
+
+    TEST_CASE_TEMPLATE("gather reads each lane's own row", Real, float, double) {
+        Column<Real> column, unused;
+        fill_operands(column, unused);
+        std::mt19937 random(5);
+        Column<std::int32_t> rows(256);
+        for (std::int32_t& row : rows) row = static_cast<std::int32_t>(random() % column.size());
+        Column<Real> expected(rows.size());
+        for (std::size_t i = 0; i < rows.size(); ++i) expected[i] = column[static_cast<std::size_t>(rows[i])];
+        for (const LaneProbes* probes : runnable_lane_probes()) {
+            CAPTURE(probes->isa);
+            Column<Real> actual(rows.size());
+            probe_of<Real>(*probes).gather(column.data(), rows.data(), rows.size(), actual.data());
+            CHECK(same_bits(expected, actual));
+        }
+    }
+
+    TEST_CASE_TEMPLATE("compress_store keeps the marked lanes in order, for every mask", Real, float,
+                       double) {
+        Column<std::int32_t> values(16);
+        for (std::int32_t i = 0; i < 16; ++i) values[static_cast<std::size_t>(i)] = 1000 + 7 * i;
+        for (const LaneProbes* probes : runnable_lane_probes()) {
+            CAPTURE(probes->isa);
+            const LaneProbe<Real>& probe = probe_of<Real>(*probes);
+            bool all_equal = true;
+            for (unsigned bits = 0; bits < (1u << probe.lanes); ++bits) {
+                std::vector<std::int32_t> expected, actual(17, -12345);
+                for (std::size_t lane = 0; lane < probe.lanes; ++lane)
+                    if ((bits >> lane) & 1u) expected.push_back(values[lane]);
+                const std::size_t count = probe.compress(values.data(), bits, actual.data());
+                all_equal = all_equal && count == expected.size() && actual[probe.lanes] == -12345 &&
+                            std::equal(expected.begin(), expected.end(), actual.begin());
+            }
+            CHECK(all_equal);
+        }
+    }
+
+    TEST_CASE_TEMPLATE("load_rows4 transposes records and store_rows4 puts them back", Real, float, double) {
+        constexpr std::size_t kRecords = 100, kRows = 64;
+        Column<Real> packed(4 * kRecords);
+        for (std::size_t i = 0; i < packed.size(); ++i) packed[i] = static_cast<Real>(i) + Real(0.5);
+        Column<std::int32_t> rows(kRows);
+        for (std::size_t i = 0; i < kRows; ++i) rows[i] = static_cast<std::int32_t>((37 * i) % kRecords);
+        Column<Real> expected(4 * kRows), expected_packed(packed.size());
+        for (std::size_t i = 0; i < kRows; ++i)
+            for (std::size_t k = 0; k < 4; ++k) {
+                const std::size_t at = 4 * static_cast<std::size_t>(rows[i]) + k;
+                expected[k * kRows + i] = packed[at];
+                expected_packed[at] = packed[at];
+            }
+        for (const LaneProbes* probes : runnable_lane_probes()) {
+            CAPTURE(probes->isa);
+            Column<Real> actual(expected.size()), actual_packed(packed.size());
+            probe_of<Real>(*probes).rows4(packed.data(), rows.data(), kRows, actual.data(),
+                                          actual_packed.data());
+            CHECK(same_bits(expected, actual));
+            CHECK(same_bits(expected_packed, actual_packed));
+        }
+    }
+
+    TEST_CASE("floor goes toward minus infinity, whole numbers and negative ones included") {
+        Column<float> values(512);
+        std::mt19937 random(9);
+        std::uniform_real_distribution<float> uniform(-1e6f, 1e6f);
+        for (float& value : values) value = uniform(random);
+        const float awkward[] = {0.0f, -0.0f, -1.0f, -0.5f, -1e-30f, 0.99999994f, -0.99999994f, 1e9f, -1e9f};
+        std::copy(std::begin(awkward), std::end(awkward), values.begin());
+        for (const LaneProbes* probes : runnable_lane_probes()) {
+            CAPTURE(probes->isa);
+            Column<double> floors(values.size());
+            Column<std::int32_t> rows(values.size());
+            probes->double_precision.floor(values.data(), values.size(), floors.data(), rows.data());
+            bool all_equal = true;
+            for (std::size_t i = 0; i < values.size(); ++i) {
+                const double expected = std::floor(static_cast<double>(values[i]));
+                all_equal =
+                    all_equal && floors[i] == expected && rows[i] == static_cast<std::int32_t>(expected);
+            }
+            CHECK(all_equal);
+        }
+    }
+}
