@@ -44,8 +44,9 @@ struct PairwiseCounts {
     std::uint64_t contacts = 0;       ///< of these, overlapping and more than kPairwiseBlindDistance apart
     std::uint64_t impulses = 0;       ///< of these, approaching, so that an impulse was applied
     std::uint64_t wall_contacts = 0;  ///< times a body was put back inside a wall
-    double wall_impulse = 0;  ///< kg m/s, sum of |mass * velocity change| at walls: pressure from outside
-    double pair_virial = 0;   ///< J, sum of impulse * distance of centres: pressure from inside
+    double wall_impulse = 0;  ///< N s, sum of |impulse| on all walls; pressure = this / (perimeter * time)
+    double pair_virial =
+        0;  ///< J, what contacts added to the sum of momentum * position: pressure from inside
 };
 
 /// A plane vector of the naive engine's sums.
