@@ -3,6 +3,7 @@
 #include <carom/pairwise.hpp>
 
 #include "check_pairwise.hpp"
+#include "decay.hpp"
 
 #include <cmath>
 #include <utility>
@@ -109,8 +110,8 @@ void Pairwise::step(double dt) {
 void Pairwise::accelerate(double dt) {
     // inexact: the yardstick is compared to published digits and tolerances, never bit by bit between
     // machines
-    const double keep = scene_.keep_per_step ? *scene_.keep_per_step : std::exp(-scene_.linear_drag * dt);
-    const double keep_spin = std::exp(-scene_.angular_drag * dt);  // inexact: as above
+    const double keep = scene_.keep_per_step ? *scene_.keep_per_step : decay(scene_.linear_drag * dt);
+    const double keep_spin = decay(scene_.angular_drag * dt);  // inexact: as above
     for (PairwiseBody& body : scene_.bodies) {
         body.vx = (body.vx + scene_.gravity_x * dt) * keep;
         body.vy = (body.vy + scene_.gravity_y * dt) * keep;

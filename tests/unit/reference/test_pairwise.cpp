@@ -1,6 +1,7 @@
 #include <carom/errors.hpp>
 #include <carom/pairwise.hpp>
 
+#include "reference/decay.hpp"
 #include "support/seed_scenes.hpp"
 
 #include <doctest/doctest.h>
@@ -112,6 +113,20 @@ TEST_SUITE("reference/pairwise") {
         CHECK(body.y == -0.3125);
         CHECK(body.angle == 1.25);
         CHECK(body.omega == 3);
+    }
+
+    TEST_CASE("decay is exp(-x) to 1e-15, 1 at zero and 0 far out") {
+        CHECK(decay(0) == 1);
+        CHECK(decay(709) == 0);
+        CHECK(decay(1e300) == 0);
+        for (int i = 1; i < 70000; ++i) {
+            const double exponent = i < 60000 ? i * 1e-4 : (i - 59999) * 0.0707;
+            const double expected = std::exp(-exponent);
+            if (std::abs(decay(exponent) - expected) > 1e-15 * expected) {
+                CAPTURE(exponent);
+                CHECK(decay(exponent) == expected);
+            }
+        }
     }
 
     TEST_CASE("angular drag slows the spin alone") {
