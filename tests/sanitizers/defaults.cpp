@@ -1,5 +1,5 @@
-// Options of the sanitizers, linked into every program that is built with one: what they would otherwise report is
-// libomp's own. Names and signatures are the sanitizers' interface.
+// Options of the sanitizers, linked into every program that is built with one: what they would otherwise
+// report is libomp's own. Names and signatures are the sanitizers' interface.
 extern "C" {
 
 const char* __lsan_default_suppressions() {
@@ -7,7 +7,8 @@ const char* __lsan_default_suppressions() {
 }
 
 const char* __tsan_default_options() {
-    // libomp is not instrumented; its tool archer, loaded by itself, tells the sanitizer about OpenMP's barriers
+    // libomp is not instrumented; its tool archer, loaded by itself, tells the sanitizer about OpenMP's
+    // barriers
     return "ignore_noninstrumented_modules=1 halt_on_error=1";
 }
 
