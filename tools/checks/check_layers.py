@@ -19,11 +19,12 @@ LAYER_OF_FOLDER = {
     "kernels": 3,
     "world": 4, "isa": 4,
     "broadphase": 5, "narrowphase": 5, "solver": 5, "joints": 5, "ledger": 5, "scene": 5,
+    "stages": 5.5,  # what the step calls, one function a stage: they join the parts of layer 5
     "reference": 5,  # and see SHARES_NOTHING
 }
 LAYER_OF_FILE = {  # patterns of paths without suffix: files that differ from their folder or have none
     r"version": 0,
-    r"stage_info": 1,
+    r"stage_(info|times)": 1,
     r"kernels/(\w+_)?arguments": 2,
     r"step_plan": 6,
     r"step": 7,
