@@ -38,17 +38,15 @@ std::optional<Problem> check_range(const Item& item, const RadiusRange& range) {
     if (auto found = check(item, "/radius_range/0", range.min, kRadius)) return found;
     if (auto found = check(item, "/radius_range/1", range.max, kRadius)) return found;
     if (range.min <= range.max) return std::nullopt;
-    return problem(
-        ErrorCode::inconsistent, item, "/radius_range",
-        "radius_range " + to_text(Vec2{range.min, range.max}) + " m; expected min <= max. Swap the two.");
+    return problem(ErrorCode::inconsistent, item, "/radius_range", "radius_range ",
+                   Vec2{range.min, range.max}, " m; expected min <= max. Swap the two.");
 }
 
 /// The body that all others are copies of, with the radius that will be used.
 std::optional<Problem> check_pattern(const Item& item, Body body, std::optional<double> radius) {
     if (!body.name.empty())
-        return problem(ErrorCode::inconsistent, item, "/name",
-                       "a body with the name " + quoted(body.name) +
-                           "; expected none, as names are unique. Name the bodies after they are made.");
+        return problem(ErrorCode::inconsistent, item, "/name", "a body with the name ", quoted(body.name),
+                       "; expected none, as names are unique. Name the bodies after they are made.");
     if (radius) body.shape = Disc{*radius};
     body.position = {};
     return find_body_problem(item, body);
@@ -58,22 +56,20 @@ std::optional<Problem> check_velocity_rms(const Item& item, double rms, const Bo
                                           std::int64_t count) {
     if (auto found = check(item, "/velocity_rms", rms, kVelocityRms)) return found;
     if (rms == 0) return std::nullopt;
-    const std::string words = "velocity_rms " + to_text(rms) + " m/s but ";
+    const std::string words = join("velocity_rms ", rms, " m/s but ");
     if (body.type != BodyType::dynamic_body)
-        return problem(ErrorCode::inconsistent, item, "/velocity_rms",
-                       words + "bodies that are not dynamic; expected 0. Give them a set velocity, or none.");
+        return problem(ErrorCode::inconsistent, item, "/velocity_rms", words,
+                       "bodies that are not dynamic; expected 0. Give them a set velocity, or none.");
     if (count < 2)
-        return problem(
-            ErrorCode::inconsistent, item, "/velocity_rms",
-            words + "one body, whose momentum cannot be zero then; expected 0. Give the body a velocity.");
+        return problem(ErrorCode::inconsistent, item, "/velocity_rms", words,
+                       "one body, whose momentum cannot be zero then; expected 0. Give the body a velocity.");
     return std::nullopt;
 }
 
 std::optional<Problem> check_total(const Item& item, double count) {
     if (count <= static_cast<double>(kLargestBodyCount)) return std::nullopt;
-    return problem(ErrorCode::too_large, item, "/count",
-                   "count " + to_text(count) + "; expected at most " + std::to_string(kLargestBodyCount) +
-                       " bodies. Make fewer of them.");
+    return problem(ErrorCode::too_large, item, "/count", "count ", count, "; expected at most ",
+                   kLargestBodyCount, " bodies. Make fewer of them.");
 }
 
 /// Makes sure that they can all be had before the scene changes.
@@ -108,11 +104,10 @@ Problem gas_does_not_fit(const Gas& gas, const Box& box) {
                                 gas.radius.max * gas.radius.max) /
                                3;
     const double fraction = static_cast<double>(gas.count) * kPi * mean_square / (box.width() * box.height());
-    return problem(ErrorCode::out_of_range, kGasItem, "/count",
-                   "count " + std::to_string(gas.count) +
-                       ", which does not fit: its discs would fill about " + to_text(fraction) +
-                       " of the walls' box, " + to_text(box.width()) + " m by " + to_text(box.height()) +
-                       " m; expected at most about 0.7. Make fewer or smaller discs, or the box larger.");
+    return problem(ErrorCode::out_of_range, kGasItem, "/count", "count ", gas.count,
+                   ", which does not fit: its discs would fill about ", fraction, " of the walls' box, ",
+                   box.width(), " m by ", box.height(),
+                   " m; expected at most about 0.7. Make fewer or smaller discs, or the box larger.");
 }
 
 std::variant<GasPlan, Problem> plan_gas(const Gas& gas, const Scene& scene) {

@@ -43,9 +43,9 @@ class NameTable {
 
 Problem duplicate(const std::vector<Body>& bodies, std::size_t first, std::size_t second) {
     const Item item{"body", "/bodies", static_cast<std::ptrdiff_t>(second), ""};
-    return problem(ErrorCode::duplicate_name, item, "/name",
-                   "name " + quoted(bodies[second].name) + ", which body " + std::to_string(first) +
-                       " has already; expected unique names. Rename one of them, or leave its name out.");
+    return problem(ErrorCode::duplicate_name, item, "/name", "name ", quoted(bodies[second].name),
+                   ", which body ", first,
+                   " has already; expected unique names. Rename one of them, or leave its name out.");
 }
 
 }  // namespace

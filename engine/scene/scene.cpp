@@ -12,9 +12,8 @@ namespace {
 constexpr Item kBodiesItem{"the scene has", "/bodies", -1, ""};
 
 Problem too_many_bodies(std::size_t count) {
-    return problem(ErrorCode::too_large, kBodiesItem, "",
-                   std::to_string(count) + " bodies; expected at most " + std::to_string(kLargestBodyCount) +
-                       ". Split the scene.");
+    return problem(ErrorCode::too_large, kBodiesItem, "", count, " bodies; expected at most ",
+                   kLargestBodyCount, ". Split the scene.");
 }
 
 /// The smallest and the largest radius so far, and whose they are.
@@ -31,11 +30,10 @@ struct RadiusSpread {
 std::optional<Problem> find_spread_problem(const RadiusSpread& spread) {
     if (spread.largest <= kLargestRadiusRatio * spread.smallest || spread.largest == 0) return std::nullopt;
     const Item item{"body", "/bodies", static_cast<std::ptrdiff_t>(spread.largest_body), ""};
-    return problem(ErrorCode::out_of_range, item, "/shape/disc/radius",
-                   "radius " + to_text(spread.largest) + " m and body " +
-                       std::to_string(spread.smallest_body) + " has radius " + to_text(spread.smallest) +
-                       " m; expected the largest radius <= " + to_text(kLargestRadiusRatio) +
-                       " times the smallest. Use walls or static bodies of middle size.");
+    return problem(ErrorCode::out_of_range, item, "/shape/disc/radius", "radius ", spread.largest,
+                   " m and body ", spread.smallest_body, " has radius ", spread.smallest,
+                   " m; expected the largest radius <= ", kLargestRadiusRatio,
+                   " times the smallest. Use walls or static bodies of middle size.");
 }
 
 }  // namespace

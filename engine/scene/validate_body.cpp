@@ -32,18 +32,16 @@ std::optional<Problem> find_mass_problem(const Item& item, const Body& body) {
 
 std::optional<Problem> find_motion_problem(const Item& item, const Body& body) {
     if (body.type == BodyType::static_body && body.velocity != Vec2{})
-        return problem(
-            ErrorCode::inconsistent, item, "/velocity",
-            "velocity " + to_text(body.velocity) +
-                " m/s but is static; expected [0, 0]. Make it kinematic to move at a set velocity.");
+        return problem(ErrorCode::inconsistent, item, "/velocity", "velocity ", body.velocity,
+                       " m/s but is static; expected [0, 0]. Make it kinematic to move at a set velocity.");
     if (body.angular_velocity == 0) return std::nullopt;
-    const std::string spin = "angular velocity " + to_text(body.angular_velocity) + " rad/s but ";
+    const std::string spin = join("angular velocity ", body.angular_velocity, " rad/s but ");
     if (body.type == BodyType::static_body)
-        return problem(ErrorCode::inconsistent, item, "/angular_velocity",
-                       spin + "is static; expected 0. Make it kinematic to turn at a set velocity.");
+        return problem(ErrorCode::inconsistent, item, "/angular_velocity", spin,
+                       "is static; expected 0. Make it kinematic to turn at a set velocity.");
     if (body.fixed_rotation)
-        return problem(ErrorCode::inconsistent, item, "/angular_velocity",
-                       spin + "fixed rotation; expected 0. Drop one of the two.");
+        return problem(ErrorCode::inconsistent, item, "/angular_velocity", spin,
+                       "fixed rotation; expected 0. Drop one of the two.");
     return std::nullopt;
 }
 
@@ -55,8 +53,8 @@ std::optional<Problem> find_color_problem(const Item& item, const std::string& c
     if (color.empty()) return std::nullopt;
     if (color.size() == 7 && color[0] == '#' && std::all_of(color.begin() + 1, color.end(), is_hex_digit))
         return std::nullopt;
-    return problem(ErrorCode::out_of_range, item, "/color",
-                   "color " + quoted(color) + "; expected \"#rrggbb\" with six hexadecimal digits.");
+    return problem(ErrorCode::out_of_range, item, "/color", "color ", quoted(color),
+                   "; expected \"#rrggbb\" with six hexadecimal digits.");
 }
 
 struct Axis {
@@ -70,25 +68,16 @@ struct Axis {
 std::optional<Problem> find_axis_problem(const Item& item, const Axis& axis, double radius) {
     const bool below = axis.low_side && axis.position < axis.min;
     const bool above = axis.high_side && axis.position > axis.max;
-    if (below || above) {
-        std::string words =
-            "position " + std::string(axis.name) + " " + to_text(axis.position) + " m, outside the ";
-        words.append(below ? axis.low_name : axis.high_name).append(" wall; expected ");
-        words.append(to_text(axis.min))
-            .append(" <= ")
-            .append(axis.name)
-            .append(" <= ")
-            .append(to_text(axis.max));
-        words.append(" m. Move the body inside, or leave that side open.");
-        return problem(ErrorCode::out_of_range, item, axis.tail, words);
-    }
-    if (axis.low_side && axis.high_side && 2 * radius > axis.max - axis.min) {
-        std::string words =
-            "diameter " + to_text(2 * radius) + " m but the " + std::string(axis.low_name) + " and ";
-        words.append(axis.high_name).append(" walls are ").append(to_text(axis.max - axis.min));
-        words.append(" m apart; expected a body that fits between them. Make it smaller, or the box larger.");
-        return problem(ErrorCode::inconsistent, item, "/shape/disc/radius", words);
-    }
+    if (below || above)
+        return problem(ErrorCode::out_of_range, item, axis.tail, "position ", axis.name, " ", axis.position,
+                       " m, outside the ", below ? axis.low_name : axis.high_name, " wall; expected ",
+                       axis.min, " <= ", axis.name, " <= ", axis.max,
+                       " m. Move the body inside, or leave that side open.");
+    if (axis.low_side && axis.high_side && 2 * radius > axis.max - axis.min)
+        return problem(
+            ErrorCode::inconsistent, item, "/shape/disc/radius", "diameter ", 2 * radius, " m but the ",
+            axis.low_name, " and ", axis.high_name, " walls are ", axis.max - axis.min,
+            " m apart; expected a body that fits between them. Make it smaller, or the box larger.");
     return std::nullopt;
 }
 
@@ -98,7 +87,7 @@ constexpr Item kSingleBody{"the body has", "", -1, ""};
 
 std::optional<Problem> find_material_problem(const Item& item, std::string_view tail,
                                              const Material& material) {
-    const auto in = [tail](std::string_view key) { return std::string(tail).append(key); };
+    const auto in = [tail](std::string_view key) { return join(tail, key); };
     if (!(material.density >= kDensity.low && material.density <= kDensity.high))
         return check(item, in("/density"), material.density, kDensity);
     if (!(material.restitution >= kRestitution.low && material.restitution <= kRestitution.high))
@@ -108,12 +97,11 @@ std::optional<Problem> find_material_problem(const Item& item, std::string_view 
     if (auto found = check(item, in("/rolling_resistance"), material.rolling_resistance, kRollingResistance))
         return found;
     if (material.friction > 0)
-        return problem(ErrorCode::not_built_yet, item, in("/friction"),
-                       "friction " + to_text(material.friction) + "; " + std::string(kFrictionComes));
-    return problem(
-        ErrorCode::not_built_yet, item, in("/rolling_resistance"),
-        "rolling resistance " + to_text(material.rolling_resistance) +
-            "; rolling resistance is not built yet: it comes with the solver \"soft\". Set it to 0.");
+        return problem(ErrorCode::not_built_yet, item, in("/friction"), "friction ", material.friction, "; ",
+                       kFrictionComes);
+    return problem(ErrorCode::not_built_yet, item, in("/rolling_resistance"), "rolling resistance ",
+                   material.rolling_resistance,
+                   "; rolling resistance is not built yet: it comes with the solver \"soft\". Set it to 0.");
 }
 
 std::optional<Problem> find_body_problem(const Item& item, const Body& body) {

@@ -8,10 +8,11 @@ namespace {
 constexpr Item kEffectsItem{"the scene has", "/effects", -1, ""};
 
 /// An effect that is forced off although the scene needs it.
-Problem forced_off(std::string_view effect, std::string_view because) {
-    std::string words = "the effect " + std::string(effect) + " forced off although it has ";
-    words.append(because).append(". Leave \"").append(effect).append("\" out, or take away what needs it.");
-    return problem(ErrorCode::inconsistent, kEffectsItem, "/" + std::string(effect), words);
+template <class... Words>
+Problem forced_off(std::string_view effect, const Words&... because) {
+    return problem(ErrorCode::inconsistent, kEffectsItem, join("/", effect), "the effect ", effect,
+                   " forced off although it has ", because..., ". Leave \"", effect,
+                   "\" out, or take away what needs it.");
 }
 
 bool bounces(const Body& body) {
@@ -26,20 +27,17 @@ bool turns(const Body& body) {
 std::optional<Problem> find_rotation_problem(const std::vector<Body>& bodies) {
     const auto body = std::find_if(bodies.begin(), bodies.end(), turns);
     if (body == bodies.end()) return std::nullopt;
-    const std::string number = "body " + std::to_string(body - bodies.begin());
-    return forced_off("rotation", number + " with angle " + to_text(body->angle) +
-                                      " rad and angular velocity " + to_text(body->angular_velocity) +
-                                      " rad/s");
+    return forced_off("rotation", "body ", body - bodies.begin(), " with angle ", body->angle,
+                      " rad and angular velocity ", body->angular_velocity, " rad/s");
 }
 
 std::optional<Problem> find_restitution_problem(const Scene& scene) {
     if (scene.walls && scene.walls->material.restitution > 0)
-        return forced_off("restitution",
-                          "walls with restitution " + to_text(scene.walls->material.restitution));
+        return forced_off("restitution", "walls with restitution ", scene.walls->material.restitution);
     const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(), bounces);
     if (body == scene.bodies.end()) return std::nullopt;
-    const std::string number = "body " + std::to_string(body - scene.bodies.begin());
-    return forced_off("restitution", number + " with restitution " + to_text(body->material.restitution));
+    return forced_off("restitution", "body ", body - scene.bodies.begin(), " with restitution ",
+                      body->material.restitution);
 }
 
 }  // namespace
@@ -55,10 +53,10 @@ std::optional<Problem> find_effects_problem(const Scene& scene, const EffectOver
                        "the effect continuous forced off, but the solver \"impulse\" always is continuous. "
                        "Leave \"continuous\" out.");
     if (effects.gravity == false && scene.gravity != Vec2{})
-        return forced_off("gravity", "gravity " + to_text(scene.gravity) + " m/s²");
+        return forced_off("gravity", "gravity ", scene.gravity, " m/s²");
     if (effects.drag == false && (scene.drag.linear != 0 || scene.drag.angular != 0))
-        return forced_off("drag", "drag " + to_text(scene.drag.linear) + " 1/s (linear) and " +
-                                      to_text(scene.drag.angular) + " 1/s (angular)");
+        return forced_off("drag", "drag ", scene.drag.linear, " 1/s (linear) and ", scene.drag.angular,
+                          " 1/s (angular)");
     if (effects.rotation == false)
         if (auto found = find_rotation_problem(scene.bodies)) return found;
     if (effects.restitution == false) return find_restitution_problem(scene);

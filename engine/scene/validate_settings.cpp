@@ -19,9 +19,8 @@ constexpr bool is_built(Solver solver) {
 std::optional<Problem> find_accuracy_problem(const Accuracy& accuracy) {
     if (!is_built(accuracy.solver))
         return problem(
-            ErrorCode::not_built_yet, kAccuracyItem, "/solver",
-            "solver " + quoted(name_of(accuracy.solver)) +
-                ", which is not built yet. Use \"auto\", \"impulse\", or \"pairwise\" for small scenes.");
+            ErrorCode::not_built_yet, kAccuracyItem, "/solver", "solver ", quoted(name_of(accuracy.solver)),
+            ", which is not built yet. Use \"auto\", \"impulse\", or \"pairwise\" for small scenes.");
     if (accuracy.substeps)
         if (auto found = check(kAccuracyItem, "/substeps", *accuracy.substeps, kSubsteps)) return found;
     if (accuracy.iterations) return check(kAccuracyItem, "/iterations", *accuracy.iterations, kIterations);
@@ -41,9 +40,8 @@ std::optional<Problem> find_walls_problem(const Walls& walls) {
     if (auto found = check(kWallsItem, "/max/0", walls.max.x, kMaxX)) return found;
     if (auto found = check(kWallsItem, "/max/1", walls.max.y, kMaxY)) return found;
     if (!(walls.max.x > walls.min.x && walls.max.y > walls.min.y))
-        return problem(ErrorCode::inconsistent, kWallsItem, "/max",
-                       "max " + to_text(walls.max) + " m and min " + to_text(walls.min) +
-                           " m; expected max > min in x and in y. Swap the two corners.");
+        return problem(ErrorCode::inconsistent, kWallsItem, "/max", "max ", walls.max, " m and min ",
+                       walls.min, " m; expected max > min in x and in y. Swap the two corners.");
     return find_material_problem(kWallsItem, "/material", walls.material);
 }
 

@@ -10,12 +10,6 @@ namespace {
 
 constexpr std::size_t kLongestQuote = 64;  // bytes; names are for people, files may be hostile
 
-std::string with_unit(double value, std::string_view unit) {
-    std::string text = to_text(value);
-    if (!unit.empty()) text.append(" ").append(unit);
-    return text;
-}
-
 }  // namespace
 
 std::string to_text(double value) {
@@ -24,8 +18,16 @@ std::string to_text(double value) {
     return {digits.data(), end};
 }
 
-std::string to_text(Vec2 value) {
-    return "[" + to_text(value.x) + ", " + to_text(value.y) + "]";
+void append(std::string& text, std::string_view part) {
+    text.append(part);
+}
+
+void append(std::string& text, double part) {
+    text.append(to_text(part));
+}
+
+void append(std::string& text, Vec2 part) {
+    text.append("[").append(to_text(part.x)).append(", ").append(to_text(part.y)).append("]");
 }
 
 std::string quoted(std::string_view text) {
@@ -61,18 +63,15 @@ std::string Item::path() const {
     return text;
 }
 
-Problem problem(ErrorCode code, const Item& item, std::string_view tail, std::string_view words) {
-    return {code, item.path().append(tail), item.subject().append(" ").append(words)};
+namespace {
+
+Problem outside(const Item& item, std::string_view tail, double value, const Quantity& quantity) {
+    const std::string_view space = quantity.unit.empty() ? "" : " ";
+    return problem(std::isfinite(value) ? ErrorCode::out_of_range : ErrorCode::not_finite, item, tail,
+                   quantity.name, " ", value, space, quantity.unit, "; expected ", quantity.low,
+                   " <= ", quantity.name, " <= ", quantity.high, space, quantity.unit, ". ", quantity.remedy);
 }
 
-namespace {
-Problem outside(const Item& item, std::string_view tail, double value, const Quantity& quantity) {
-    std::string words(quantity.name);
-    words.append(" ").append(with_unit(value, quantity.unit)).append("; expected ");
-    words.append(to_text(quantity.low)).append(" <= ").append(quantity.name).append(" <= ");
-    words.append(with_unit(quantity.high, quantity.unit)).append(". ").append(quantity.remedy);
-    return problem(std::isfinite(value) ? ErrorCode::out_of_range : ErrorCode::not_finite, item, tail, words);
-}
 }  // namespace
 
 std::optional<Problem> check(const Item& item, std::string_view tail, double value,
@@ -82,7 +81,7 @@ std::optional<Problem> check(const Item& item, std::string_view tail, double val
 }
 
 void raise(std::string_view where, const Problem& found) {
-    throw Error(found.code, std::string(where).append(": ").append(found.statement));
+    throw Error(found.code, join(where, ": ", found.statement));
 }
 
 }  // namespace carom

@@ -3,6 +3,7 @@
 #include <carom/errors.hpp>
 #include <carom/vec2.hpp>
 
+#include <concepts>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -33,15 +34,32 @@ struct Quantity {
 
 /// The shortest text that reads back as the same number.
 std::string to_text(double value);
-std::string to_text(Vec2 value);
 /// In quotes, with control characters made visible; cut when long.
 std::string quoted(std::string_view text);
 
 /// A problem if the value is not finite or outside the limits of its quantity. `tail`: its place in the item.
 std::optional<Problem> check(const Item& item, std::string_view tail, double value, const Quantity& quantity);
 
+void append(std::string& text, std::string_view part);
+void append(std::string& text, double part);
+void append(std::string& text, Vec2 part);
+template <std::integral Integer>
+void append(std::string& text, Integer part) {
+    text.append(std::to_string(part));
+}
+
+template <class... Parts>
+std::string join(const Parts&... parts) {
+    std::string text;
+    (append(text, parts), ...);
+    return text;
+}
+
 /// A problem of an item, in words that follow its subject.
-Problem problem(ErrorCode code, const Item& item, std::string_view tail, std::string_view words);
+template <class... Words>
+Problem problem(ErrorCode code, const Item& item, std::string_view tail, const Words&... words) {
+    return {code, item.path().append(tail), join(item.subject(), " ", words...)};
+}
 
 /// @throws Error of that problem.
 [[noreturn]] void raise(std::string_view where, const Problem& found);

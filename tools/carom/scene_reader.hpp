@@ -27,7 +27,7 @@ class SceneFileError : public Error {
 /// What a scene file may ask of the machine that reads it.
 struct SceneFileLimits {
     std::size_t file_bytes = std::size_t{256} << 20;
-    std::size_t depth = 64;                          ///< of nested arrays and objects
+    std::size_t depth = 64;                         ///< of nested arrays and objects
     std::size_t body_bytes = std::size_t{4} << 30;  ///< all bodies together, sizeof(Body) each
 };
 
