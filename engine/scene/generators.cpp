@@ -7,6 +7,7 @@
 #include "scene/validation.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <utility>
 #include <variant>
@@ -105,8 +106,8 @@ Problem gas_does_not_fit(const Gas& gas, const Box& box) {
                                3;
     const double fraction = static_cast<double>(gas.count) * kPi * mean_square / (box.width() * box.height());
     return problem(ErrorCode::out_of_range, kGasItem, "/count", "count ", gas.count,
-                   ", which does not fit: its discs would fill about ", fraction, " of the walls' box, ",
-                   box.width(), " m by ", box.height(),
+                   ", which does not fit: its discs would fill about ", std::round(100 * fraction) / 100,
+                   " of the walls' box, ", box.width(), " m by ", box.height(),
                    " m; expected at most about 0.7. Make fewer or smaller discs, or the box larger.");
 }
 

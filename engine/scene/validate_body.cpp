@@ -104,6 +104,10 @@ std::optional<Problem> find_material_problem(const Item& item, std::string_view 
                    "; rolling resistance is not built yet: it comes with the solver \"soft\". Set it to 0.");
 }
 
+std::optional<Problem> find_problem(const Material& material) {
+    return find_material_problem({"the material has", "", -1, ""}, "", material);
+}
+
 std::optional<Problem> find_body_problem(const Item& item, const Body& body) {
     if (auto found = check(item, "/shape/disc/radius", radius_of(body.shape), kRadius)) return found;
     if (auto found = find_position_problem(item, body.position)) return found;

@@ -35,11 +35,14 @@ std::string quoted(std::string_view text) {
     std::size_t length = std::min(text.size(), kLongestQuote);
     while (length < text.size() && length > 0 && (text[length] & 0xc0) == 0x80) --length;  // whole characters
     std::string out = "\"";
+    char before = 0;
     for (const char c : text.substr(0, length)) {
         const auto byte = static_cast<unsigned char>(c);
+        const bool control = byte < 0x20 || byte == 0x7f || (before == '\xc2' && byte >= 0x80 && byte < 0xa0);
+        before = c;
         if (c == '"' || c == '\\') {
             out.append({'\\', c});
-        } else if (byte < 0x20 || byte == 0x7f) {
+        } else if (control) {
             out.append({'\\', 'x', kHex[byte >> 4], kHex[byte & 15]});
         } else {
             out.push_back(c);

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace carom {
+namespace carom::tool {
 
 /// A scene file that cannot be read or says something wrong. `what()` names the file, the JSON pointer
 /// (`/bodies/3/shape/disc/radius`), the value, what was expected and, for names, the nearest known one.
@@ -28,7 +28,8 @@ class SceneFileError : public Error {
 struct SceneFileLimits {
     std::size_t file_bytes = std::size_t{256} << 20;
     std::size_t depth = 64;                         ///< of nested arrays and objects
-    std::size_t body_bytes = std::size_t{4} << 30;  ///< all bodies together, sizeof(Body) each
+    std::size_t values = std::size_t{1} << 25;      ///< numbers, strings, arrays, objects ... of the file
+    std::size_t body_bytes = std::size_t{4} << 30;  ///< of all bodies together, sizeof(Body) each
 };
 
 /// Reads and validates a scene file, format version 1 (docs/scene-format.md). Bodies of generators are made.
@@ -39,4 +40,4 @@ Scene read_scene(const std::filesystem::path& path, const SceneFileLimits& limit
 /// @throws SceneFileError
 Scene parse_scene(std::string_view text, std::string_view source_name, const SceneFileLimits& limits = {});
 
-}  // namespace carom
+}  // namespace carom::tool

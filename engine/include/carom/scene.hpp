@@ -86,6 +86,10 @@ inline constexpr double kLargestStep = 10;                  // s
 inline constexpr double kLargestAcceleration = 1e7;         // m/s²
 inline constexpr std::size_t kLargestBodyCount = 1u << 26;  // rows are 32-bit; 64 Mi bodies need about 12 GiB
 
+/// What is wrong with a material, with pointers as in the scene file ("/restitution"); nothing if all is
+/// well.
+std::optional<Problem> find_problem(const Material& material);
+
 /// What a person describes: bodies, walls, laws, accuracy. Plain data; `World` makes columns of it.
 struct Scene {
     std::string name;

@@ -1,0 +1,74 @@
+#include "scene_file/parts.hpp"
+
+#include <array>
+
+namespace carom::tool {
+namespace {
+
+constexpr std::array<std::string_view, 11> kBodyKeys{
+    "name", "type",     "shape",          "position", "angle", "velocity", "angular_velocity",
+    "mass", "material", "fixed_rotation", "color"};
+
+Body read_body(const Node& node, const Materials& materials) {
+    node.expect_keys(kBodyKeys);
+    Body body;
+    node.read("name", body.name);
+    if (const auto type = node.find("type")) body.type = read_body_type(*type);
+    body.shape = read_shape(node.at("shape"));
+    node.read("position", body.position);
+    node.read("angle", body.angle);
+    node.read("velocity", body.velocity);
+    node.read("angular_velocity", body.angular_velocity);
+    if (const auto mass = node.find("mass")) body.mass = mass->number();
+    const auto material = node.find("material");
+    body.material = material ? read_material(*material, materials) : materials.standard;
+    node.read("fixed_rotation", body.fixed_rotation);
+    node.read("color", body.color);
+    return body;
+}
+
+}  // namespace
+
+BodyType read_body_type(const Node& node) {
+    static constexpr std::array<std::string_view, 3> kTypes{"dynamic", "static", "kinematic"};
+    static constexpr std::array kValues{BodyType::dynamic_body, BodyType::static_body,
+                                        BodyType::kinematic_body};
+    return kValues[node.one_of(kTypes, "type of body")];
+}
+
+Shape read_shape(const Node& node) {
+    static constexpr std::array<std::string_view, 6> kShapes{"disc",    "box",     "capsule",
+                                                             "polygon", "segment", "chain"};
+    static constexpr std::array<std::string_view, 1> kDiscKeys{"radius"};
+    const Node shape = node.only_member(kShapes, "shape");
+    if (shape.key() != "disc")
+        shape.fail(ErrorCode::not_built_yet,
+                   "the shape \"" + std::string(shape.key()) +
+                       "\" is not built yet; this version has discs. Use \"disc\".");
+    shape.expect_keys(kDiscKeys);
+    return Disc{shape.at("radius").number()};
+}
+
+void read_bodies(const Node& root, const Materials& materials, Scene& scene) {
+    const auto bodies = root.find("bodies");
+    if (!bodies) return;
+    bodies->expect_array("bodies");
+    scene.bodies.reserve(bodies->size());
+    for (std::size_t i = 0; i < bodies->size(); ++i) scene.add(read_body((*bodies)[i], materials));
+}
+
+void refuse_joints(const Node& root) {
+    static constexpr std::array<std::string_view, 6> kJoints{"distance", "revolute", "prismatic",
+                                                             "weld",     "wheel",    "target"};
+    const auto joints = root.find("joints");
+    if (!joints) return;
+    joints->expect_array("joints");
+    if (joints->size() == 0) return;
+    const Node first = (*joints)[0];
+    const Node joint = first.only_member(kJoints, "kind of joint");
+    joint.fail(ErrorCode::not_built_yet,
+               "the joint \"" + std::string(joint.key()) +
+                   "\" is not built yet; this version has no joints. Take \"joints\" out.");
+}
+
+}  // namespace carom::tool

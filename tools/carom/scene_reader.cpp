@@ -1,0 +1,137 @@
+#include "scene_reader.hpp"
+
+#include "scene_file/json_text.hpp"
+#include "scene_file/parts.hpp"
+#include "scene_file/printable.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <memory>
+#include <new>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace carom::tool {
+namespace {
+
+constexpr std::size_t kReadBytes = std::size_t{1} << 20;  // at a time
+
+std::string joined(std::string_view file, std::string_view pointer, std::string_view statement) {
+    std::string text(file);
+    if (!pointer.empty()) text.append(": ").append(pointer);
+    return printable(text.append(": ").append(statement));
+}
+
+/// Where the bodies of the file's generators begin.
+struct Origins {
+    std::size_t listed = 0;         // bodies of "bodies"
+    std::vector<std::size_t> ends;  // one after the last body of each generator
+};
+
+/// The problem of a scene as one of its file: bodies made by a generator are the generator's.
+[[noreturn]] void fail_scene(const Node& root, const Origins& origins, const Problem& found) {
+    constexpr std::string_view kBodies = "/bodies/";
+    std::size_t body = 0;
+    if (found.pointer.starts_with(kBodies))
+        std::from_chars(found.pointer.data() + kBodies.size(), found.pointer.data() + found.pointer.size(),
+                        body);
+    if (!found.pointer.starts_with(kBodies) || body < origins.listed)
+        root.fail_at(found.pointer, found.code, found.statement);
+    const auto generator =
+        std::upper_bound(origins.ends.begin(), origins.ends.end(), body) - origins.ends.begin();
+    root.fail_at("/generate/" + std::to_string(generator), found.code,
+                 "of the bodies made here, " + found.statement);
+}
+
+void check(const Node& root, const Origins& origins, const Scene& scene) {
+    if (const auto found = scene.find_problem()) fail_scene(root, origins, *found);
+}
+
+Scene read_document(const Node& root, const SceneFileLimits& limits) {
+    if (!root.json().is_object()) root.fail_type("a scene, {\"carom\": 1, ...}");
+    Scene scene;
+    const Materials materials = read_settings(root, scene);
+    read_bodies(root, materials, scene);
+    refuse_joints(root);
+    Origins origins{scene.bodies.size(), {}};
+    check(root, origins, scene);
+    const auto generators = root.find("generate");
+    if (!generators) return scene;
+    generators->expect_array("generators");
+    for (std::size_t i = 0; i < generators->size(); ++i) {
+        read_generator((*generators)[i], materials, limits, scene);
+        origins.ends.push_back(scene.bodies.size());
+    }
+    check(root, origins, scene);
+    return scene;
+}
+
+[[noreturn]] void fail_file(ErrorCode code, const std::string& name, const std::string& statement) {
+    throw SceneFileError(code, name, "", statement);
+}
+
+std::string size_words(const SceneFileLimits& limits) {
+    return "the file is larger than the limit of " + std::to_string(limits.file_bytes) +
+           " bytes; let \"generate\" make the bodies.";
+}
+
+struct CloseFile {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+/// Reads up to one byte more than the limit, so that also what has no size of its own (a pipe) ends
+/// somewhere.
+std::string read_text(const std::filesystem::path& path, const SceneFileLimits& limits) {
+    const std::string name = path.string();
+    std::error_code no_status;
+    if (std::filesystem::is_directory(path, no_status))
+        fail_file(ErrorCode::unreadable, name, "this is a folder; expected a scene file.");
+    const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(name.c_str(), "rb"));
+    if (!file)
+        fail_file(ErrorCode::unreadable, name,
+                  "the file cannot be opened: " + std::generic_category().message(errno) + ".");
+    std::string text;
+    std::size_t got = kReadBytes;
+    while (got == kReadBytes) {
+        const std::size_t before = text.size();
+        text.resize(before + kReadBytes);
+        got = std::fread(text.data() + before, 1, kReadBytes, file.get());
+        text.resize(before + got);
+        if (text.size() > limits.file_bytes) fail_file(ErrorCode::too_large, name, size_words(limits));
+    }
+    if (std::ferror(file.get()) != 0)
+        fail_file(ErrorCode::unreadable, name,
+                  "the file cannot be read: " + std::generic_category().message(errno) + ".");
+    return text;
+}
+
+}  // namespace
+
+SceneFileError::SceneFileError(ErrorCode code, std::string file, std::string pointer,
+                               const std::string& statement)
+    : Error(code, joined(file, pointer, statement)), file_(std::move(file)), pointer_(std::move(pointer)) {}
+
+Scene parse_scene(std::string_view text, std::string_view source_name, const SceneFileLimits& limits) {
+    const std::string name(source_name);
+    if (text.size() > limits.file_bytes) fail_file(ErrorCode::too_large, name, size_words(limits));
+    if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
+        fail_file(ErrorCode::malformed, name, "the file is empty; expected a scene, {\"carom\": 1, ...}.");
+    try {
+        const nlohmann::json document = parse_json(text, name, limits);
+        return read_document(Node(document, name), limits);
+    } catch (const std::bad_alloc&) {
+        fail_file(ErrorCode::too_large, name,
+                  "there is not enough memory for this scene. Make fewer bodies.");
+    }
+}
+
+Scene read_scene(const std::filesystem::path& path, const SceneFileLimits& limits) {
+    return parse_scene(read_text(path, limits), path.string(), limits);
+}
+
+}  // namespace carom::tool
