@@ -11,6 +11,10 @@ namespace carom {
 template <class Real>
 struct KernelTable {
     std::string_view isa;  // "scalar", "sse2", "avx2", "avx512": the value CAROM_ISA takes
+    void (*find_bounds)(FindBounds<Real>&);
+    void (*find_cells)(const FindCells<Real>&);
+    std::size_t (*find_candidates)(FindCandidates<Real>&);
+    std::size_t (*find_near)(const GridLevel<Real>&, const FindNear<Real>&);
 };
 
 struct KernelTables {

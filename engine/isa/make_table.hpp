@@ -1,6 +1,10 @@
 #pragma once
 
 #include "isa/kernel_table.hpp"
+#include "kernels/find_bounds.hpp"
+#include "kernels/find_candidates.hpp"
+#include "kernels/find_cells.hpp"
+#include "kernels/find_near.hpp"
 #include "simd/lanes.hpp"
 
 namespace carom {
@@ -11,6 +15,10 @@ template <class Real, class Isa>
 constexpr KernelTable<Real> make_table(std::string_view isa) {
     return {
         .isa = isa,
+        .find_bounds = &find_bounds<Real, Isa>,
+        .find_cells = &find_cells<Real, Isa>,
+        .find_candidates = &find_candidates<Real, Isa>,
+        .find_near = &find_near<Real, Isa>,
     };
 }
 

@@ -1,1 +1,93 @@
 #pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace carom {
+
+/// Smallest and largest of each column over rows [0, rows); NaN is passed over. Any row count.
+template <class Real>
+struct FindBounds {
+    const Real* x;      // m, [padded(rows)], 64-byte aligned
+    const Real* y;      // m
+    const Real* reach;  // m
+    std::size_t rows;
+    Real min_x, max_x, min_y, max_y, min_reach, max_reach;  // out; min > max if there is no number
+};
+
+/// Cell coordinates end there; far positions share the last cell, which costs time and misses nothing. It
+/// keeps a coordinate exact to 2^-22 of a cell: cells are larger than twice the largest reach by more than
+/// that.
+inline constexpr double kFarthestCell = 1 << 30;
+
+/// How a level of the grid numbers its cells. Cell (u, v), counted from the origin cell, has the number
+/// (u + width * v) mod cells: a helix around a torus, so that the plane has no edge. While the occupied box
+/// has at most `cells` cells, nothing wraps and the numbers are those of a plain row-major grid. Cells (u-1
+/// .. u+1, v) are consecutive; the three rows of a 3 x 3 block never share a number, because width >= 3 and
+/// cells >= 2 * width + 3.
+struct CellNumbering {
+    double inverse_size;  // 1/m
+    double low_u,
+        low_v;  // the occupied box, whole, within +-kFarthestCell; (low_u, low_v) is the origin cell
+    double high_u, high_v;  // positions outside are taken to its border, which keeps neighbours neighbours
+    double width;           // cells from one row to the next
+    double cells;           // numbers in use, whole and < 2^26, so that products stay exact
+    double inverse_cells;
+    bool wraps;  // the occupied box is larger than `cells`
+};
+
+/// cell_out[i] = number of the cell that (x[i], y[i]) lies in; of the box's first one for NaN. Writes whole
+/// batches: columns and cell_out are padded.
+template <class Real>
+struct FindCells {
+    const Real* x;  // m, [rows]
+    const Real* y;
+    std::size_t rows;
+    CellNumbering numbering;
+    std::int32_t* cell_out;  // [rows]
+};
+
+/// Bodies sorted by cell. All arrays may be read kRowPadding places beyond the last.
+template <class Real>
+struct SortedBodies {
+    const Real* x;             // m, [places]
+    const Real* y;             // m
+    const Real* reach;         // m
+    const std::int32_t* row;   // where the body is in the columns
+    const std::int32_t* cell;  // its cell's number
+    const std::int32_t*
+        cell_begin;  // first place of each cell, [cells + 3]; cells + 0, + 1 repeat cells 0, 1
+};
+
+/// One size class of the grid. Its cells are larger than twice its largest reach.
+template <class Real>
+struct GridLevel {
+    SortedBodies<Real> bodies;
+    std::size_t places;  // bodies of the level; repeated ones beyond are not counted
+    CellNumbering numbering;
+    std::int32_t width, cells;  // of the numbering
+    Real largest_reach;         // m
+};
+
+/// Candidate pairs of the bodies at places [first, last) with later bodies of their own level.
+template <class Real>
+struct FindCandidates {
+    const GridLevel<Real>* level;
+    std::size_t first, last;
+    std::int32_t* a;  // out, rows
+    std::int32_t* b;
+    std::size_t capacity;
+    std::size_t count;  // in and out: pairs in a and b
+};
+
+/// All bodies of a level with distance to (x, y) < reach + theirs.
+template <class Real>
+struct FindNear {
+    Real x, y, reach;   // m
+    std::int32_t* out;  // rows
+    std::size_t capacity;
+};
+
+inline constexpr std::size_t kNoRoom = static_cast<std::size_t>(-1);
+
+}  // namespace carom

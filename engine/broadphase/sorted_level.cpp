@@ -1,0 +1,101 @@
+#include "broadphase/sorted_level.hpp"
+
+#include "broadphase/cell_numbering.hpp"
+
+#include <algorithm>
+
+namespace carom {
+namespace {
+
+constexpr double kCellMargin = 1 + 1e-5;  // cells are that much larger than twice the largest reach: rounding
+constexpr double kSmallestCell = 1e-30;   // m, where no body has any reach
+constexpr std::size_t kReadBeyond = kRowPadding;  // places a batch may read after the last body
+
+}  // namespace
+
+template <class Real>
+void SortedLevel<Real>::sort(const LevelInput<Real>& input, const KernelTable<Real>& kernels,
+                             const Executor& executor) {
+    const double size = std::max(2 * static_cast<double>(input.largest_reach) * kCellMargin, kSmallestCell);
+    view_.numbering = number_cells(input.bounds, size, input.count);
+    view_.width = static_cast<std::int32_t>(view_.numbering.width);
+    view_.cells = static_cast<std::int32_t>(view_.numbering.cells);
+    view_.largest_reach = input.largest_reach;
+    view_.places = input.count;
+    find_cells(input, kernels, executor);
+    count_cells(input.count);
+    place_bodies(input);
+    repeat_first_cells();
+    view_.bodies = {x_.data(), y_.data(), reach_.data(), row_.data(), cell_.data(), cell_begin_.data()};
+}
+
+template <class Real>
+void SortedLevel<Real>::find_cells(const LevelInput<Real>& input, const KernelTable<Real>& kernels,
+                                   const Executor& executor) {
+    unsorted_cell_.resize_for_overwrite(input.count);
+    executor.for_each_chunk(input.count, kRowsPerChunk,
+                            [&](std::size_t, std::size_t first, std::size_t last) {
+                                kernels.find_cells({input.x + first, input.y + first, last - first,
+                                                    view_.numbering, unsorted_cell_.data() + first});
+                            });
+}
+
+/// cell_begin_[c + 1] becomes the number of bodies in cells before c: place_bodies counts it up to the begin
+/// of cell c + 1, so that no second array is needed.
+template <class Real>
+void SortedLevel<Real>::count_cells(std::size_t count) {
+    const auto cells = static_cast<std::size_t>(view_.cells);
+    cell_begin_.resize_for_overwrite(cells + 3);
+    std::int32_t* begin = cell_begin_.data();
+    std::fill(begin, begin + cells + 3, 0);
+    for (std::size_t i = 0; i < count; ++i) ++begin[unsorted_cell_[i] + 2];
+    std::int32_t sum = 0;
+    for (std::size_t c = 0; c < cells + 3; ++c) begin[c] = sum += begin[c];
+}
+
+template <class Real>
+void SortedLevel<Real>::place_bodies(const LevelInput<Real>& input) {
+    const std::size_t count = input.count;
+    for (Column<Real>* column : {&x_, &y_, &reach_}) column->resize_for_overwrite(count + kReadBeyond);
+    for (Column<std::int32_t>* column : {&row_, &cell_}) column->resize_for_overwrite(count + kReadBeyond);
+    std::int32_t* next = cell_begin_.data() + 1;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::int32_t cell = unsorted_cell_[i];
+        const auto place = static_cast<std::size_t>(next[cell]++);
+        x_[place] = input.x[i];
+        y_[place] = input.y[i];
+        reach_[place] = input.reach[i];
+        row_[place] = input.row ? input.row[i] : static_cast<std::int32_t>(i);
+        cell_[place] = cell;
+    }
+}
+
+/// The bodies of cells 0 and 1 follow once more as cells `cells` and `cells` + 1, so that three cells in a row are
+/// consecutive places wherever numbers wrap around.
+template <class Real>
+void SortedLevel<Real>::repeat_first_cells() {
+    const auto cells = static_cast<std::size_t>(view_.cells);
+    const auto count = static_cast<std::int32_t>(view_.places);
+    std::int32_t* begin = cell_begin_.data();
+    begin[cells] = count;
+    begin[cells + 1] = count + begin[1];
+    begin[cells + 2] = count + begin[2];
+
+    const auto repeated = static_cast<std::size_t>(begin[2]);
+    const auto repeat = [&](auto& column) {
+        column.resize(view_.places + repeated + kReadBeyond);
+        std::copy_n(column.data(), repeated, column.data() + view_.places);
+    };
+    repeat(x_), repeat(y_), repeat(reach_), repeat(row_), repeat(cell_);
+}
+
+template <class Real>
+std::size_t SortedLevel<Real>::bytes() const noexcept {
+    return unsorted_cell_.bytes() + cell_begin_.bytes() + x_.bytes() + y_.bytes() + reach_.bytes() +
+           row_.bytes() + cell_.bytes();
+}
+
+template class SortedLevel<float>;
+template class SortedLevel<double>;
+
+}  // namespace carom

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "isa/kernel_table.hpp"
+#include "parallel/executor.hpp"
+#include "state/column.hpp"
+
+#include <span>
+
+namespace carom {
+
+/// Bodies of one size class, before they are sorted. Columns are padded and 64-byte aligned.
+template <class Real>
+struct LevelInput {
+    const Real* x;            // m, [count]
+    const Real* y;            // m
+    const Real* reach;        // m
+    const std::int32_t* row;  // in the columns of the world; null: i
+    std::size_t count;        // > 0
+    FindBounds<Real> bounds;  // of x and y at least
+    Real largest_reach;       // m
+};
+
+/// One level of the uniform grid: its bodies counted into cells and sorted by cell, in the order of the input
+/// within a cell.
+template <class Real>
+class SortedLevel {
+  public:
+    void sort(const LevelInput<Real>& input, const KernelTable<Real>& kernels, const Executor& executor);
+
+    /// Valid until the next sort.
+    const GridLevel<Real>& view() const noexcept { return view_; }
+    std::span<const std::int32_t> rows() const noexcept { return {row_.data(), view_.places}; }
+    std::size_t bytes() const noexcept;
+
+  private:
+    void find_cells(const LevelInput<Real>& input, const KernelTable<Real>& kernels,
+                    const Executor& executor);
+    void count_cells(std::size_t count);
+    void place_bodies(const LevelInput<Real>& input);
+    void repeat_first_cells();
+
+    GridLevel<Real> view_{};
+    Column<std::int32_t> unsorted_cell_;
+    Column<std::int32_t> cell_begin_;
+    Column<Real> x_, y_, reach_;
+    Column<std::int32_t> row_, cell_;
+};
+
+}  // namespace carom

@@ -1,0 +1,101 @@
+#pragma once
+
+#include "broadphase/body_flags.hpp"
+#include "broadphase/size_classes.hpp"
+#include "broadphase/sorted_level.hpp"
+#include "isa/kernel_table.hpp"
+#include "parallel/executor.hpp"
+#include "state/column.hpp"
+
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// What the grid is built from. Columns are padded and 64-byte aligned.
+template <class Real>
+struct GridInput {
+    std::size_t count = 0;
+    const Real* x = nullptr;      // m
+    const Real* y = nullptr;      // m
+    const Real* reach = nullptr;  // m, >= 0: radius plus the body's own slack
+    const std::uint8_t* flags =
+        nullptr;  // null: none; else kImmovable, kDisabled. Read until find_candidates
+};
+
+/// Pairs of rows; padded with pairs (count of bodies, count of bodies) to a multiple of kRowPadding.
+struct CandidatePairs {
+    Column<std::int32_t> a, b;  // no shorter than padded(count)
+    std::size_t count = 0;
+};
+
+/// The broadphase: bodies sorted into square cells, one level of cells for each class of size.
+///
+/// Two bodies are candidates if dx² + dy² < (reach_a + reach_b)², computed in Real. Each such pair is found
+/// once, in an order that depends on the input alone: not on threads, not on the instruction set. The world
+/// has no edge: memory is O(bodies + pairs) wherever bodies are. Nothing is allocated once sizes have been
+/// reached.
+template <class Real>
+class UniformGrid {
+  public:
+    /// Sorts the bodies. Cost: O(bodies), about 5 ns each (docs/decisions/0001-broadphase.md).
+    void build(const GridInput<Real>& input, const KernelTable<Real>& kernels, const Executor& executor);
+
+    /// Finds all candidate pairs of the bodies as they were built. Cost: O(bodies + pairs).
+    const CandidatePairs& find_candidates(const Executor& executor);
+    const CandidatePairs& candidates() const noexcept { return pairs_; }
+
+    /// Finds all bodies of the last build with distance to (x, y) < reach + theirs; not the disabled ones. A
+    /// body's own row is among them if it is near. Fixed order.
+    /// @param rows  holds what is found in [0, result); it grows as needed and is never made smaller.
+    std::size_t find_near(Real x, Real y, Real reach, Column<std::int32_t>& rows) const;
+
+    /// Rows in sorted order, [count]: by level, then by cell; disabled bodies last.
+    std::span<const std::int32_t> order() const noexcept { return order_.span(); }
+
+    /// Where the bodies were when the grid was built, by row, [padded(count)].
+    const Column<Real>& built_x() const noexcept { return built_x_; }
+    const Column<Real>& built_y() const noexcept { return built_y_; }
+
+    std::size_t level_count() const noexcept { return level_count_; }
+    std::size_t bytes() const noexcept;
+
+  private:
+    void keep_positions(const GridInput<Real>& input, const Executor& executor);
+    void build_one_level(const GridInput<Real>& input, const FindBounds<Real>& bounds,
+                         const Executor& executor);
+    void build_levels(const GridInput<Real>& input, const Executor& executor);
+    void split_by_level(const GridInput<Real>& input);
+    void list_order(const GridInput<Real>& input);
+
+    void find_in_level(const GridLevel<Real>& level, const Executor& executor);
+    void find_across(const GridLevel<Real>& coarse, const GridLevel<Real>& fine);
+    void drop_immovable_pairs();
+    void pad_pairs();
+
+    const KernelTable<Real>* kernels_ = nullptr;
+    std::size_t count_ = 0;
+    const std::uint8_t* flags_ = nullptr;
+    bool has_immovable_ = false;
+
+    SizeClasses<Real> classes_;
+    std::vector<SortedLevel<Real>> levels_;  // coarse to fine; more than level_count_ after a richer scene
+    std::size_t level_count_ = 0;
+    Column<Real> built_x_, built_y_;
+
+    /// Bodies by level, in the order of rows. Each level starts at a multiple of kRowPadding.
+    struct {
+        Column<Real> x, y, reach;
+        Column<std::int32_t> row;
+        std::vector<std::size_t> first;  // of each level
+    } split_;
+
+    Column<std::int32_t> order_;
+    std::size_t ordered_ = 0;
+
+    CandidatePairs pairs_;
+    std::vector<CandidatePairs> chunk_pairs_;
+    mutable Column<std::int32_t> near_;
+};
+
+}  // namespace carom
