@@ -70,8 +70,8 @@ void SortedLevel<Real>::place_bodies(const LevelInput<Real>& input) {
     }
 }
 
-/// The bodies of cells 0 and 1 follow once more as cells `cells` and `cells` + 1, so that three cells in a row are
-/// consecutive places wherever numbers wrap around.
+/// The bodies of cells 0 and 1 follow once more as cells `cells` and `cells` + 1, so that three cells in a
+/// row are consecutive places wherever numbers wrap around.
 template <class Real>
 void SortedLevel<Real>::repeat_first_cells() {
     const auto cells = static_cast<std::size_t>(view_.cells);
