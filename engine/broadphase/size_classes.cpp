@@ -1,6 +1,6 @@
 #include "broadphase/size_classes.hpp"
 
-#include "broadphase/body_flags.hpp"
+#include "state/body_flags.hpp"
 
 #include <algorithm>
 #include <limits>

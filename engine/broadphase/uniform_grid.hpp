@@ -1,10 +1,10 @@
 #pragma once
 
-#include "broadphase/body_flags.hpp"
 #include "broadphase/size_classes.hpp"
 #include "broadphase/sorted_level.hpp"
 #include "isa/kernel_table.hpp"
 #include "parallel/executor.hpp"
+#include "state/body_flags.hpp"
 #include "state/column.hpp"
 
 #include <span>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "kernels/broadphase_arguments.hpp"
+#include "kernels/flight_arguments.hpp"
 
 #include <string_view>
 
@@ -15,6 +16,14 @@ struct KernelTable {
     void (*find_cells)(const FindCells<Real>&);
     std::size_t (*find_candidates)(FindCandidates<Real>&);
     std::size_t (*find_near)(const GridLevel<Real>&, const FindNear<Real>&);
+
+    FlightCounts (*begin_flight)(const BeginFlight<Real>&, std::size_t first, std::size_t last);
+    FlightCounts (*begin_flight_uniform_radius)(const BeginFlight<Real>&, std::size_t first,
+                                                std::size_t last);
+    std::size_t (*find_impacts)(const FindImpacts<Real>&, std::size_t first, std::size_t last);
+    std::size_t (*find_impacts_uniform_radius)(const FindImpacts<Real>&, std::size_t first, std::size_t last);
+    void (*end_flight)(const EndFlight<Real>&, std::size_t first, std::size_t last);
+    void (*advance_rotation)(const AdvanceRotation<Real>&, std::size_t first, std::size_t last);
 };
 
 struct KernelTables {

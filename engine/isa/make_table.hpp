@@ -1,9 +1,12 @@
 #pragma once
 
 #include "isa/kernel_table.hpp"
+#include "kernels/begin_flight.hpp"
+#include "kernels/end_flight.hpp"
 #include "kernels/find_bounds.hpp"
 #include "kernels/find_candidates.hpp"
 #include "kernels/find_cells.hpp"
+#include "kernels/find_impacts.hpp"
 #include "kernels/find_near.hpp"
 #include "simd/lanes.hpp"
 
@@ -19,6 +22,12 @@ constexpr KernelTable<Real> make_table(std::string_view isa) {
         .find_cells = &find_cells<Real, Isa>,
         .find_candidates = &find_candidates<Real, Isa>,
         .find_near = &find_near<Real, Isa>,
+        .begin_flight = &begin_flight<false, Real, Isa>,
+        .begin_flight_uniform_radius = &begin_flight<true, Real, Isa>,
+        .find_impacts = &find_impacts<false, Real, Isa>,
+        .find_impacts_uniform_radius = &find_impacts<true, Real, Isa>,
+        .end_flight = &end_flight<Real, Isa>,
+        .advance_rotation = &advance_rotation<Real, Isa>,
     };
 }
 

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "kernels/flight_arguments.hpp"
+#include "simd/lanes.hpp"
+
+namespace carom {
+namespace {
+
+/// Lane numbers as rows of a record block: store_rows4 writes consecutive records.
+constexpr std::int32_t kConsecutive[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+
+/// Whether a path from x to end, bulging by `bend`, comes nearer than radius to [min, max]'s ends.
+template <class F>
+auto reaches_wall(F x, F end, F radius, F bend, F min, F max) {
+    return (simd::min(x, end) - radius - bend < min) | (simd::max(x, end) + radius + bend > max);
+}
+
+template <bool kUniformRadius, class Real, class Isa>
+FlightCounts begin_flight(const BeginFlight<Real>& k, std::size_t first, std::size_t last) {
+    using Lanes = simd::Lanes<Real, Isa>;
+    using F = typename Lanes::Batch;
+    const F s(k.s), fall_x(k.fall_x), fall_y(k.fall_y), gain_x(k.gain_x), gain_y(k.gain_y);
+    const F bend_x(k.bend_x), bend_y(k.bend_y), min_x(k.min_x), min_y(k.min_y), max_x(k.max_x),
+        max_y(k.max_y);
+    const F largest_position(k.largest_position), largest_speed(k.largest_speed);
+    FlightCounts counts{0, 0, 0};
+    for (std::size_t i = first; i < last; i += Lanes::size) {
+        const F x = Lanes::load(k.position_x + i), y = Lanes::load(k.position_y + i);
+        const F vx = Lanes::load(k.velocity_x + i), vy = Lanes::load(k.velocity_y + i);
+        Lanes::store_rows4(k.motion + 4 * i, kConsecutive, {{x, y, vx, vy}});
+
+        const F end_x = x + vx * s + fall_x, end_y = y + vy * s + fall_y;
+        F radius(k.uniform_radius);
+        if constexpr (!kUniformRadius) radius = Lanes::load(k.radius + i);
+        const auto at_wall = reaches_wall(x, end_x, radius, bend_x, min_x, max_x) |
+                             reaches_wall(y, end_y, radius, bend_y, min_y, max_y);
+
+        const F moved_x = end_x - Lanes::load(k.built_x + i), moved_y = end_y - Lanes::load(k.built_y + i);
+        const F margin = Lanes::load(k.reach + i) - radius;
+        const auto displaced = moved_x * moved_x + moved_y * moved_y > margin * margin;
+
+        // Written so that NaN fails too.
+        const auto kept = (simd::abs(end_x) <= largest_position) & (simd::abs(end_y) <= largest_position) &
+                          (simd::abs(vx + gain_x) <= largest_speed) &
+                          (simd::abs(vy + gain_y) <= largest_speed);
+
+        const unsigned wall_bits = simd::bitmask(at_wall), displaced_bits = simd::bitmask(displaced);
+        const unsigned lost_bits = simd::bitmask(kept) ^ ((1u << Lanes::size) - 1);
+        if ((wall_bits | displaced_bits | lost_bits) == 0) continue;
+        const auto rows = Lanes::load_rows(kConsecutive);
+        const auto list = [&](std::int32_t* out, std::size_t& count, unsigned bits) {
+            const std::size_t before = count;
+            count += Lanes::compress_store(out + before, rows, bits);
+            for (std::size_t n = before; n < count; ++n) out[n] += static_cast<std::int32_t>(i);
+        };
+        list(k.wall_rows, counts.wall, wall_bits);
+        list(k.displaced_rows, counts.displaced, displaced_bits);
+        list(k.lost_rows, counts.lost, lost_bits);
+    }
+    return counts;
+}
+
+}  // namespace
+}  // namespace carom

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "kernels/flight_arguments.hpp"
+#include "simd/lanes.hpp"
+
+namespace carom {
+namespace {
+
+/// Whether two points at relative position d, moving by v relative to each other for s, come nearer than
+/// reach while approaching. Needs neither a root nor a division: the distance squared, c + 2 b t + a t² +
+/// reach², falls below reach² either at the end or at the closest point on the way, t = -b/a.
+template <class F>
+auto approaches_within(F dx, F dy, F vx, F vy, F reach, F s) {
+    const F zero(0);
+    const F a = vx * vx + vy * vy;
+    const F b = dx * vx + dy * vy;
+    const F c = dx * dx + dy * dy - reach * reach;
+    const F a_s = a * s;
+    const auto inside_at_end = c + (b + b + a_s) * s < zero;
+    const auto inside_on_the_way = (zero - b < a_s) & (a * c < b * b);
+    return (b < zero) & (inside_at_end | inside_on_the_way);
+}
+
+template <bool kUniformRadius, class Real, class Isa>
+std::size_t find_impacts(const FindImpacts<Real>& k, std::size_t first, std::size_t last) {
+    using Lanes = simd::Lanes<Real, Isa>;
+    using F = typename Lanes::Batch;
+    const F s(k.s), slack(k.slack), near(k.near);
+    const F uniform_reach(k.uniform_radius + k.uniform_radius);
+    std::int32_t lanes[16];
+    for (std::size_t n = 0; n < 16; ++n) lanes[n] = static_cast<std::int32_t>(n);
+    std::size_t count = 0;
+    for (std::size_t p = first; p < last; p += Lanes::size) {
+        const auto a = Lanes::load_rows4(k.motion, k.a + p);
+        const auto b = Lanes::load_rows4(k.motion, k.b + p);
+        const F dx = b[0] - a[0], dy = b[1] - a[1];
+        F reach = uniform_reach;
+        if constexpr (!kUniformRadius)
+            reach = Lanes::gather(k.radius, Lanes::load_rows(k.a + p)) +
+                    Lanes::gather(k.radius, Lanes::load_rows(k.b + p));
+        const F near_reach = reach + near;
+        const auto found = approaches_within(dx, dy, b[2] - a[2], b[3] - a[3], reach + slack, s) |
+                           (dx * dx + dy * dy < near_reach * near_reach);
+        const unsigned bits = simd::bitmask(found);
+        if (bits == 0) continue;
+        const std::size_t before = count;
+        count += Lanes::compress_store(k.found + before, Lanes::load_rows(lanes), bits);
+        for (std::size_t n = before; n < count; ++n) k.found[n] += static_cast<std::int32_t>(p);
+    }
+    return count;
+}
+
+}  // namespace
+}  // namespace carom

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace carom {
+
+/// The stages of a step, in its order.
+enum class StageName : std::uint8_t {
+    sort_rows,
+    begin_flight,
+    update_candidates,
+    find_impacts,
+    settle_contacts,
+    resolve_impacts,
+    keep_books,
+    advance_rotation,
+    end_flight,
+};
+
+/// What a stage touches; `carom explain` and docs/how-a-step-works.md print it.
+struct StageInfo {
+    std::string_view name;
+    std::string_view reads;
+    std::string_view writes;
+};
+
+inline constexpr std::array kStages{
+    StageInfo{"sort_rows", "position", "rows of all columns"},
+    StageInfo{"begin_flight", "position, velocity", "motion, rows near walls, rows out of margin"},
+    StageInfo{"update_candidates", "position, velocity, radius", "candidate pairs"},
+    StageInfo{"find_impacts", "motion, candidate pairs", "meetings"},
+    StageInfo{"settle_contacts", "meetings, motion", "motion, accelerations, impact queue"},
+    StageInfo{"resolve_impacts", "impact queue, motion, candidate pairs", "motion"},
+    StageInfo{"keep_books", "motion, angular velocity", "books"},
+    StageInfo{"advance_rotation", "angular velocity", "angle, angular velocity"},
+    StageInfo{"end_flight", "motion, accelerations", "position, velocity"},
+};
+
+constexpr const StageInfo& info_of(StageName stage) {
+    return kStages[static_cast<std::size_t>(stage)];
+}
+
+}  // namespace carom

@@ -1,0 +1,119 @@
+#include <cmath>
+#include <limits>
+
+#include "stages/stages.hpp"
+
+namespace carom {
+namespace {
+
+// With drag * h below kLargestDragTimesStep, a path bulges beyond its ends by at most max|x''| s²/8 <= .7 |a|
+// q.
+constexpr double kBendOfFall = 0.7;
+
+/// Accelerations a row, where they can differ: gravity and static bodies, or kinematic bodies and drag.
+template <class Real>
+void set_accelerations(Simulation<Real>& sim) {
+    WorldState<Real>& world = sim.world;
+    Flights<Real>& flights = sim.solver.flights;
+    flights.common_acceleration = world.gravity;
+    const bool can_differ = world.effects.gravity || (world.effects.drag && !world.immovable_rows.empty());
+    if (!can_differ || flights.accelerations.size() == world.bodies.count) return;
+    flights.accelerations.resize(world.bodies.count);
+    for (Vec2& a : flights.accelerations) a = world.gravity;
+    for (const std::int32_t row : world.immovable_rows) {
+        const auto i = static_cast<std::size_t>(row);
+        const Vec2 v{world.bodies.velocity_x[i], world.bodies.velocity_y[i]};
+        // x = V t = V s + k V q: steady motion is an acceleration by k V on the clock of things that drag
+        // slows.
+        flights.accelerations[i] = world.drag.linear * v;
+    }
+}
+
+template <class Real>
+BeginFlight<Real> arguments_of(const Simulation<Real>& sim) {
+    const WorldState<Real>& world = sim.world;
+    const Bodies<Real>& bodies = world.bodies;
+    const FlightClock& end = sim.solver.flights.end;
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    constexpr Real kOpen = std::numeric_limits<Real>::infinity();
+    BeginFlight<Real> k{};
+    k.position_x = bodies.position_x.data(), k.position_y = bodies.position_y.data();
+    k.velocity_x = bodies.velocity_x.data(), k.velocity_y = bodies.velocity_y.data();
+    const bool built = sim.candidates.is_valid();
+    k.built_x = built ? sim.candidates.built_x().data() : k.position_x;
+    k.built_y = built ? sim.candidates.built_y().data() : k.position_y;
+    k.reach = sim.candidates.reach().data();
+    k.radius = bodies.radius.data(), k.uniform_radius = bodies.radius.uniform_value();
+    k.s = real(end.s);
+    k.fall_x = real(world.gravity.x * end.q), k.fall_y = real(world.gravity.y * end.q);
+    k.gain_x = real(world.gravity.x * end.s), k.gain_y = real(world.gravity.y * end.s);
+    k.bend_x = real(std::fabs(world.gravity.x) * end.q * kBendOfFall);
+    k.bend_y = real(std::fabs(world.gravity.y) * end.q * kBendOfFall);
+    k.min_x = k.min_y = -kOpen, k.max_x = k.max_y = kOpen;
+    if (world.walls) {
+        if (world.walls->left) k.min_x = real(world.walls->min.x);
+        if (world.walls->bottom) k.min_y = real(world.walls->min.y);
+        if (world.walls->right) k.max_x = real(world.walls->max.x);
+        if (world.walls->top) k.max_y = real(world.walls->max.y);
+    }
+    k.largest_position = real(kLargestPosition), k.largest_speed = real(kLargestSpeed);
+    k.motion = const_cast<Real*>(sim.solver.flights.motion.data());
+    return k;
+}
+
+/// Takes bodies out whose next state would be no number or beyond the limits, where they are.
+template <class Real>
+void quarantine_lost(Simulation<Real>& sim) {
+    bool any = false;
+    sim.lost_rows.for_each_below(sim.world.bodies.count, [&](std::int32_t row) {
+        if (sim.world.bodies.is_immovable(static_cast<std::size_t>(row)) &&
+            (sim.world.bodies.flags_of(static_cast<std::size_t>(row)) & kKinematic) == 0)
+            return;  // static bodies do not fall, though the kernel thinks so
+        sim.world.quarantine(static_cast<std::size_t>(row));
+        Real* motion = &sim.solver.flights.motion[static_cast<std::size_t>(row) * 4];
+        motion[2] = 0, motion[3] = 0;
+        any = true;
+    });
+    if (any) {
+        sim.forget_derived_state();
+        set_accelerations(sim);
+    }
+}
+
+}  // namespace
+
+template <class Real>
+void begin_flight(Simulation<Real>& sim) {
+    WorldState<Real>& world = sim.world;
+    Flights<Real>& flights = sim.solver.flights;
+    const std::size_t count = world.bodies.count;
+    flights.end = flight_clock_at(sim.h, world.drag.linear);
+    flights.bodies = &world.bodies;
+    flights.books = &world.books;
+    flights.walls = world.walls ? &*world.walls : nullptr;
+    flights.motion.resize(4 * padded(count));
+    set_accelerations(sim);
+    sim.candidates.prepare(count);
+
+    BeginFlight<Real> all = arguments_of(sim);
+    const auto kernel = all.radius ? sim.kernels->begin_flight : sim.kernels->begin_flight_uniform_radius;
+    for (ChunkedList* list : {&sim.wall_rows, &sim.displaced_rows, &sim.lost_rows})
+        list->prepare(count, kRowsPerChunk);
+    sim.executor.for_each_chunk(count, kRowsPerChunk,
+                                [&](std::size_t chunk, std::size_t first, std::size_t last) {
+                                    BeginFlight<Real> k = all;
+                                    k.wall_rows = sim.wall_rows.part(chunk);
+                                    k.displaced_rows = sim.displaced_rows.part(chunk);
+                                    k.lost_rows = sim.lost_rows.part(chunk);
+                                    const FlightCounts counts = kernel(k, first, padded(last));
+                                    sim.wall_rows.set_count(chunk, counts.wall);
+                                    sim.displaced_rows.set_count(chunk, counts.displaced);
+                                    sim.lost_rows.set_count(chunk, counts.lost);
+                                });
+    quarantine_lost(sim);
+}
+
+template void begin_flight(Simulation<float>&);
+template void begin_flight(Simulation<double>&);
+
+}  // namespace carom

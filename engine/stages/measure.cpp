@@ -1,0 +1,77 @@
+#include "stages/measure.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/vec2_math.hpp"
+
+namespace carom {
+namespace {
+
+struct Overlaps {
+    OverlapReport report;
+    double sum = 0;
+
+    void add(double separation, double radius) {
+        if (!(separation < 0)) return;
+        ++report.touching;
+        sum -= separation / radius;
+        report.max = std::fmax(report.max, -separation / radius);
+    }
+};
+
+template <class Real>
+void add_walls(const WorldState<Real>& world, Overlaps& overlaps) {
+    const Walls& walls = *world.walls;
+    for (std::size_t row = 0; row < world.bodies.count; ++row) {
+        if (world.bodies.is_immovable(row)) continue;
+        const double x = world.bodies.position_x[row], y = world.bodies.position_y[row];
+        const double radius = world.bodies.radius[row];
+        if (walls.left) overlaps.add(x - radius - walls.min.x, radius);
+        if (walls.right) overlaps.add(walls.max.x - x - radius, radius);
+        if (walls.bottom) overlaps.add(y - radius - walls.min.y, radius);
+        if (walls.top) overlaps.add(walls.max.y - y - radius, radius);
+    }
+}
+
+}  // namespace
+
+template <class Real>
+OverlapReport measure_overlaps(Simulation<Real>& sim) {
+    const Bodies<Real>& bodies = sim.world.bodies;
+    sim.candidates.prepare(bodies.count);
+    // A clock that stands still: if there are no pairs yet, those of the present positions.
+    sim.candidates.update(bodies, FlightClock{}, {}, false, *sim.kernels, sim.executor);
+    Overlaps overlaps;
+    overlaps.report.candidates = static_cast<std::int64_t>(sim.candidates.pair_count());
+    for (std::size_t p = 0; p < sim.candidates.pair_count(); ++p) {
+        const auto a = static_cast<std::size_t>(sim.candidates.pair_a()[p]);
+        const auto b = static_cast<std::size_t>(sim.candidates.pair_b()[p]);
+        const Vec2 d{static_cast<double>(bodies.position_x[b]) - static_cast<double>(bodies.position_x[a]),
+                     static_cast<double>(bodies.position_y[b]) - static_cast<double>(bodies.position_y[a])};
+        const double radius_a = bodies.radius[a], radius_b = bodies.radius[b];
+        overlaps.add(std::sqrt(length_squared(d)) - radius_a - radius_b, std::fmin(radius_a, radius_b));
+    }
+    if (sim.world.walls) add_walls(sim.world, overlaps);
+    if (overlaps.report.touching > 0)
+        overlaps.report.mean = overlaps.sum / static_cast<double>(overlaps.report.touching);
+    return overlaps.report;
+}
+
+template <class Real>
+std::size_t bytes_of(Simulation<Real>& sim) {
+    std::size_t bytes = sizeof(sim) + sim.world.handles.bytes() + sim.candidates.bytes() +
+                        sim.solver.bytes() + sim.wall_rows.bytes() + sim.displaced_rows.bytes() +
+                        sim.lost_rows.bytes() + sim.found_pairs.bytes() +
+                        sim.meetings.capacity() * sizeof(Meeting) +
+                        sim.world.immovable_rows.capacity() * sizeof(std::int32_t);
+    sim.world.bodies.for_each_column([&](auto, auto, auto& column) { bytes += column.bytes(); });
+    return bytes;
+}
+
+template OverlapReport measure_overlaps(Simulation<float>&);
+template OverlapReport measure_overlaps(Simulation<double>&);
+template std::size_t bytes_of(Simulation<float>&);
+template std::size_t bytes_of(Simulation<double>&);
+
+}  // namespace carom

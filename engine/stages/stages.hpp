@@ -1,0 +1,48 @@
+#pragma once
+
+#include "stages/simulation.hpp"
+
+// The stages of a step, each a sentence in step.cpp and a file here: they hand columns to kernels and take
+// lists back.
+
+namespace carom {
+
+/// Sorts the rows by place in the plane, now and then.   reads pose; writes rows of everything
+template <class Real>
+void sort_rows(Simulation<Real>& sim);
+
+/// Packs every body's motion and lists bodies near walls, out of their margin, or out of the limits.
+/// reads pose, velocity; writes motion
+template <class Real>
+void begin_flight(Simulation<Real>& sim);
+
+/// Builds the candidate pairs anew if bodies have left the margins of the old ones.   reads pose; writes
+/// pairs
+template <class Real>
+void update_candidates(Simulation<Real>& sim);
+
+/// Lists the few meetings that can happen in this substep.   reads motion, pairs; writes meetings
+template <class Real>
+void find_impacts(Simulation<Real>& sim);
+
+/// Pushes overlaps apart and holds contacts at rest.   reads meetings; writes motion
+template <class Real>
+void settle_contacts(Simulation<Real>& sim);
+
+/// Carries out every impact at its time.   reads meetings, pairs; writes motion
+template <class Real>
+void resolve_impacts(Simulation<Real>& sim);
+
+/// Writes positions and velocities back.   reads motion; writes pose, velocity
+template <class Real>
+void end_flight(Simulation<Real>& sim);
+
+/// Turns bodies.   reads and writes angle, spin
+template <class Real>
+void advance_rotation(Simulation<Real>& sim);
+
+/// Writes what gravity and drag did into the books.   reads motion; writes books
+template <class Real>
+void keep_books(Simulation<Real>& sim);
+
+}  // namespace carom

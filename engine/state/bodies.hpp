@@ -1,0 +1,96 @@
+#pragma once
+
+#include <carom/scene.hpp>
+
+#include <cstdint>
+
+#include "state/body_flags.hpp"
+#include "state/column.hpp"
+
+namespace carom {
+
+/// A property that all bodies share, or that each has its own: the column exists only in the second case.
+template <class Real>
+class Property {
+  public:
+    bool is_uniform() const { return !spread_; }
+    Real uniform_value() const { return value_; }
+    Real operator[](std::size_t row) const { return spread_ ? column_[row] : value_; }
+    /// The column, or null if one value serves all.
+    const Real* data() const { return spread_ ? column_.data() : nullptr; }
+    Column<Real>& column() { return column_; }
+
+    /// Sets row `row` of `count`; spreads into a column when a value differs from the others'.
+    void set(std::size_t row, std::size_t count, Real value) {
+        if (!spread_ && (count <= 1 || value == value_)) {
+            value_ = value;
+            return;
+        }
+        if (!spread_) {
+            column_.resize(count);
+            for (Real& each : column_) each = value_;
+            spread_ = true;
+        }
+        column_[row] = value;
+    }
+
+  private:
+    Real value_ = 0;
+    bool spread_ = false;
+    Column<Real> column_;
+};
+
+/// Every body of a world; row i of all columns is body i. Padding rows are zero and harmless. Columns that no
+/// effect needs do not exist.
+template <class Real>
+struct Bodies {
+    std::size_t count = 0;
+    Column<Real> position_x, position_y;   // m
+    Column<Real> velocity_x, velocity_y;   // m/s
+    Column<Real> angle, angular_velocity;  // rad, rad/s; only with rotation
+    Column<std::uint8_t> flags;            // BodyFlag bits; only if some row has one
+    Column<BodyId> id;                     // handle of each row
+    Property<Real> mass;                   // kg
+    Property<Real> radius;                 // m
+    Property<Real> restitution;            // no unit
+    bool has_rotation = false;
+    bool has_flags = false;
+
+    std::uint8_t flags_of(std::size_t row) const { return has_flags ? flags[row] : std::uint8_t{0}; }
+    bool is_immovable(std::size_t row) const { return (flags_of(row) & (kImmovable | kDisabled)) != 0; }
+
+    /// 1/kg; zero for what nothing moves.
+    double inverse_mass(std::size_t row) const {
+        return is_immovable(row) ? 0 : 1 / static_cast<double>(mass[row]);
+    }
+
+    /// Calls fn(name, unit, column) for every column that exists. The one list of columns.
+    template <class Fn>
+    void for_each_column(Fn&& fn) {
+        fn("position_x", "m", position_x), fn("position_y", "m", position_y);
+        fn("velocity_x", "m/s", velocity_x), fn("velocity_y", "m/s", velocity_y);
+        fn("id", "handle", id);
+        if (has_rotation) fn("angle", "rad", angle), fn("angular_velocity", "rad/s", angular_velocity);
+        if (!mass.is_uniform()) fn("mass", "kg", mass.column());
+        if (!radius.is_uniform()) fn("radius", "m", radius.column());
+        if (!restitution.is_uniform()) fn("restitution", "1", restitution.column());
+        if (has_flags) fn("flags", "bits", flags);
+    }
+
+    /// Changes the number of rows; new rows and padding are zero.
+    void resize(std::size_t rows) {
+        for_each_column([rows](auto, auto, auto& column) { column.resize(rows); });
+        count = rows;
+    }
+
+    void set_flags(std::size_t row, std::uint8_t value) {
+        if (!has_flags) {
+            if (value == 0) return;
+            flags.resize(count);
+            has_flags = true;
+        }
+        flags[row] = value;
+    }
+};
+
+}  // namespace carom

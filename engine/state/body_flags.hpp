@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstdint>
+
+namespace carom {
+
+/// What a row is to the pipeline: bits of the flags column, which exists only if some row has one set.
+enum BodyFlag : std::uint8_t {
+    kImmovable =
+        1,  ///< static or kinematic: nothing changes its velocity; pairs of two such are no candidates
+    kDisabled = 2,   ///< quarantined: takes no part any more, no candidates at all
+    kKinematic = 4,  ///< immovable, but moves at its velocity
+};
+
+}  // namespace carom

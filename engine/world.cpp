@@ -1,0 +1,310 @@
+#include <carom/world.hpp>
+
+#include <bit>
+#include <cmath>
+#include <string>
+
+#include "isa/select_isa.hpp"
+#include "scene/validation.hpp"
+#include "stages/measure.hpp"
+#include "step.hpp"
+
+namespace carom {
+namespace {
+
+/// FNV-1a over 64-bit words (Fowler, Noll & Vo), with the two zeros made one.
+class StateHash {
+  public:
+    template <class Real>
+    void add(Real value) {
+        const Real zero_is_positive = value + Real(0);
+        if constexpr (sizeof(Real) == sizeof(std::uint32_t))
+            add_bits(std::bit_cast<std::uint32_t>(zero_is_positive));
+        else
+            add_bits(std::bit_cast<std::uint64_t>(zero_is_positive));
+    }
+    std::uint64_t value() const { return hash_; }
+
+  private:
+    void add_bits(std::uint64_t bits) {
+        for (int byte = 0; byte < 8; ++byte) {
+            hash_ ^= bits & 0xFF;
+            hash_ *= 0x100000001B3u;
+            bits >>= 8;
+        }
+    }
+    std::uint64_t hash_ = 0xCBF29CE484222325u;
+};
+
+Accuracy accuracy_of(const Scene& scene, const WorldOptions& options) {
+    Accuracy accuracy = scene.accuracy;
+    if (options.solver) accuracy.solver = *options.solver;
+    if (options.substeps) accuracy.substeps = options.substeps;
+    if (options.iterations) accuracy.iterations = options.iterations;
+    return accuracy;
+}
+
+void check_options(const Scene& scene, const WorldOptions& options) {
+    const Accuracy accuracy = accuracy_of(scene, options);
+    validate_accuracy(accuracy, "World");
+    if (accuracy.solver == Solver::pairwise)
+        throw Error(ErrorCode::inconsistent,
+                    "World: solver \"pairwise\" is the naive reference engine, class carom::Pairwise "
+                    "(<carom/pairwise.hpp>), not a solver of World. Use \"auto\" or \"impulse\" here.");
+    validate_effects(scene, scene.effects, "World");
+    validate_effects(scene, options.effects, "World: option effects");
+    constexpr int kMostThreads = 1024;
+    if (options.threads < 0 || options.threads > kMostThreads)
+        throw Error(ErrorCode::out_of_range, "World: option threads is " + std::to_string(options.threads) +
+                                                 "; expected 0 (as many as there are) to " +
+                                                 std::to_string(kMostThreads) + ".");
+}
+
+}  // namespace
+
+template <class Real>
+struct BasicWorld<Real>::Implementation {
+    Simulation<Real> sim;
+    StageTimes times;
+    CalledEffects called;
+
+    WorldState<Real>& world() { return sim.world; }
+    Bodies<Real>& bodies() { return sim.world.bodies; }
+    std::size_t row_of(BodyId body, std::string_view where) const {
+        return sim.world.handles.row_of(body, where);
+    }
+
+    void turn_rotation_on() {
+        Bodies<Real>& b = bodies();
+        if (b.has_rotation) return;
+        b.has_rotation = true;
+        b.angle.resize(b.count), b.angular_velocity.resize(b.count);
+        world().effects.rotation = true;
+    }
+
+    /// Calls change(row), which alters one body from outside, and keeps the books right.
+    template <class Change>
+    void change_row(std::size_t row, const Change& change) {
+        const Sums before = world().sums_of(row);
+        change();
+        world().initial = world().initial + (world().sums_of(row) - before);
+        sim.forget_derived_state();
+    }
+
+    std::vector<BodyId> quarantined() const {
+        std::vector<BodyId> ids;
+        const WorldState<Real>& state = sim.world;
+        for (std::size_t slot = 0; slot < state.handles.slot_count(); ++slot) {
+            const std::uint32_t row = state.handles.row_of_slot(slot);
+            if (row != Handles::kNoRow && (state.bodies.flags_of(row) & kDisabled))
+                ids.push_back(state.bodies.id[row]);
+        }
+        return ids;
+    }
+};
+
+template <class Real>
+BasicWorld<Real>::BasicWorld(const Scene& scene, const WorldOptions& options) {
+    scene.validate();
+    check_options(scene, options);
+    const Accuracy accuracy = accuracy_of(scene, options);
+    implementation_ = std::make_unique<Implementation>();
+    Simulation<Real>& sim = implementation_->sim;
+    sim.kernels = &select_kernels(options.isa).template of<Real>();
+    sim.executor = Executor(options.threads, options.parallel_for);
+    sim.substeps = accuracy.substeps.value_or(1);
+    implementation_->called = call_effects(scene, options.effects);
+
+    WorldState<Real>& world = sim.world;
+    world.effects = implementation_->called.effects;
+    world.gravity = scene.gravity;
+    world.drag = {world.effects.drag ? scene.drag.linear : 0,
+                  world.effects.rotation ? scene.drag.angular : 0};
+    world.walls = scene.walls;
+    world.books.is_open = world.effects.ledger;
+    world.bodies.has_rotation = world.effects.rotation;
+    for (const Body& body : scene.bodies) world.append(body);
+}
+
+template <class Real>
+BasicWorld<Real>::~BasicWorld() = default;
+template <class Real>
+BasicWorld<Real>::BasicWorld(BasicWorld&&) noexcept = default;
+template <class Real>
+BasicWorld<Real>& BasicWorld<Real>::operator=(BasicWorld&&) noexcept = default;
+
+template <class Real>
+void BasicWorld<Real>::step(double dt) {
+    validate_dt(dt, "World::step");
+    if (dt == 0) return;
+    carom::step(implementation_->sim, dt, implementation_->times);
+}
+
+template <class Real>
+std::size_t BasicWorld<Real>::body_count() const noexcept {
+    return implementation_->bodies().count;
+}
+
+template <class Real>
+BodyView<Real> BasicWorld<Real>::bodies() const noexcept {
+    const Bodies<Real>& b = implementation_->sim.world.bodies;
+    BodyView<Real> view{
+        b.count, b.position_x.span(), b.position_y.span(), b.velocity_x.span(), b.velocity_y.span(), {},
+        {},      b.id.span()};
+    if (b.has_rotation) view.angle = b.angle.span(), view.angular_velocity = b.angular_velocity.span();
+    return view;
+}
+
+template <class Real>
+std::uint32_t BasicWorld<Real>::row(BodyId body) const {
+    return implementation_->sim.world.handles.row_of(body, "World::row");
+}
+
+template <class Real>
+BodyState BasicWorld<Real>::state(BodyId body) const {
+    const std::size_t row = implementation_->row_of(body, "World::state");
+    const Bodies<Real>& b = implementation_->sim.world.bodies;
+    BodyState state{{b.position_x[row], b.position_y[row]}, 0, {b.velocity_x[row], b.velocity_y[row]}, 0};
+    if (b.has_rotation) state.angle = b.angle[row], state.angular_velocity = b.angular_velocity[row];
+    return state;
+}
+
+template <class Real>
+BodyId BasicWorld<Real>::add(const Body& body) {
+    validate_body(body, "World::add");
+    if (implementation_->world().walls) validate_inside(body, *implementation_->world().walls, "World::add");
+    if (body_count() >= kLargestBodyCount)
+        throw Error(ErrorCode::too_large, "World::add: the world has " + std::to_string(body_count()) +
+                                              " bodies, which is the limit. Remove some first.");
+    if (body.angular_velocity != 0 || body.angle != 0) implementation_->turn_rotation_on();
+    const BodyId id = implementation_->world().append(body);
+    implementation_->sim.forget_derived_state();
+    return id;
+}
+
+template <class Real>
+void BasicWorld<Real>::remove(BodyId body) {
+    implementation_->world().remove(implementation_->row_of(body, "World::remove"));
+    implementation_->sim.forget_derived_state();
+}
+
+template <class Real>
+void BasicWorld<Real>::set_position(BodyId body, Vec2 position) {
+    const std::size_t row = implementation_->row_of(body, "World::set_position");
+    validate_position(position, "World::set_position");
+    Bodies<Real>& b = implementation_->bodies();
+    implementation_->change_row(row, [&] {
+        b.position_x[row] = static_cast<Real>(position.x), b.position_y[row] = static_cast<Real>(position.y);
+    });
+}
+
+template <class Real>
+void BasicWorld<Real>::set_velocity(BodyId body, Vec2 velocity) {
+    const std::size_t row = implementation_->row_of(body, "World::set_velocity");
+    validate_velocity(velocity, "World::set_velocity");
+    Bodies<Real>& b = implementation_->bodies();
+    implementation_->change_row(row, [&] {
+        b.velocity_x[row] = static_cast<Real>(velocity.x), b.velocity_y[row] = static_cast<Real>(velocity.y);
+    });
+}
+
+template <class Real>
+void BasicWorld<Real>::set_angular_velocity(BodyId body, double angular_velocity) {
+    const std::size_t row = implementation_->row_of(body, "World::set_angular_velocity");
+    validate_angular_velocity(angular_velocity, "World::set_angular_velocity");
+    if (angular_velocity != 0) implementation_->turn_rotation_on();
+    Bodies<Real>& b = implementation_->bodies();
+    if (!b.has_rotation) return;
+    implementation_->change_row(row, [&] { b.angular_velocity[row] = static_cast<Real>(angular_velocity); });
+}
+
+template <class Real>
+double BasicWorld<Real>::time() const noexcept {
+    return implementation_->sim.world.time;
+}
+
+template <class Real>
+Ledger BasicWorld<Real>::ledger() const {
+    const WorldState<Real>& world = implementation_->sim.world;
+    const Books& books = world.books;
+    const Sums now = world.sums(), &start = world.initial;
+    Ledger ledger;
+    ledger.time = world.time;
+    ledger.initial = start.energy, ledger.energy = now.energy;
+    ledger.initial_momentum = start.momentum, ledger.momentum = now.momentum;
+    ledger.initial_angular_momentum = start.angular_momentum, ledger.angular_momentum = now.angular_momentum;
+    ledger.wall_impulse = books.wall_impulse;
+    if (!books.is_open) return ledger;
+
+    EnergyByCause& energy = ledger.energy_by_cause;
+    energy.gravity = start.energy.potential - now.energy.potential;
+    energy.drag = books.drag, energy.restitution = books.restitution;
+    energy.correction = books.correction, energy.drive = books.drive;
+    energy.unexplained = (now.energy.kinetic + now.energy.rotational) -
+                         (start.energy.kinetic + start.energy.rotational) - energy.sum();
+    MomentumByCause& momentum = ledger.momentum_by_cause;
+    momentum.gravity = books.gravity_momentum, momentum.drag = books.drag_momentum;
+    momentum.walls = books.wall_momentum, momentum.immovable = books.immovable_momentum;
+    momentum.unexplained = now.momentum - start.momentum - momentum.gravity - momentum.drag - momentum.walls -
+                           momentum.immovable;
+    return ledger;
+}
+
+template <class Real>
+Profile BasicWorld<Real>::profile() const {
+    const Simulation<Real>& sim = implementation_->sim;
+    const ImpulseCounters& counters = sim.solver.counters;
+    Profile profile;
+    for (std::size_t i = 0; i < kStages.size(); ++i) {
+        const StageTimes::Entry& entry = implementation_->times[static_cast<StageName>(i)];
+        if (entry.calls > 0) profile.stages.push_back({kStages[i].name, entry.calls, entry.seconds});
+    }
+    profile.steps = sim.step_count;
+    profile.rebuilds = sim.candidates.rebuild_count();
+    profile.candidate_pairs = static_cast<std::int64_t>(sim.candidates.pair_count());
+    profile.impacts = counters.impacts;
+    profile.wall_impacts = counters.wall_impacts;
+    profile.simultaneous_impacts = counters.simultaneous_impacts;
+    profile.resting_contacts = counters.resting_contacts;
+    profile.overlaps_corrected = counters.overlaps_corrected;
+    profile.unresolved_impacts = counters.unresolved_impacts;
+    profile.quarantined = sim.world.quarantined_count;
+    profile.bytes = bytes_of(implementation_->sim);
+    return profile;
+}
+
+template <class Real>
+Plan BasicWorld<Real>::plan() const {
+    return describe_plan(implementation_->sim, implementation_->called);
+}
+
+template <class Real>
+OverlapReport BasicWorld<Real>::overlaps() const {
+    return measure_overlaps(implementation_->sim);
+}
+
+template <class Real>
+std::vector<BodyId> BasicWorld<Real>::quarantined() const {
+    return implementation_->quarantined();
+}
+
+template <class Real>
+std::uint64_t BasicWorld<Real>::state_hash() const {
+    const WorldState<Real>& world = implementation_->sim.world;
+    const Bodies<Real>& b = world.bodies;
+    StateHash hash;
+    for (std::size_t slot = 0; slot < world.handles.slot_count(); ++slot) {
+        const std::uint32_t row = world.handles.row_of_slot(slot);
+        if (row == Handles::kNoRow) continue;
+        hash.add(b.position_x[row]), hash.add(b.position_y[row]);
+        hash.add(b.velocity_x[row]), hash.add(b.velocity_y[row]);
+        hash.add(b.has_rotation ? b.angle[row] : Real(0));
+        hash.add(b.has_rotation ? b.angular_velocity[row] : Real(0));
+    }
+    return hash.value();
+}
+
+template class BasicWorld<float>;
+template class BasicWorld<double>;
+
+}  // namespace carom

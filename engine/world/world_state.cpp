@@ -1,0 +1,128 @@
+#include "world/world_state.hpp"
+
+#include <cstring>
+#include <type_traits>
+
+#include "math/vec2_math.hpp"
+#include "scene/mass.hpp"
+
+namespace carom {
+
+Sums operator+(const Sums& a, const Sums& b) {
+    return {{a.energy.kinetic + b.energy.kinetic, a.energy.rotational + b.energy.rotational,
+             a.energy.potential + b.energy.potential},
+            a.momentum + b.momentum,
+            a.angular_momentum + b.angular_momentum};
+}
+
+Sums operator-(const Sums& a, const Sums& b) {
+    return {{a.energy.kinetic - b.energy.kinetic, a.energy.rotational - b.energy.rotational,
+             a.energy.potential - b.energy.potential},
+            a.momentum - b.momentum,
+            a.angular_momentum - b.angular_momentum};
+}
+
+template <class Real>
+Sums WorldState<Real>::sums_of(std::size_t row) const {
+    if (bodies.is_immovable(row)) return {};
+    const double mass = bodies.mass[row], radius = bodies.radius[row];
+    const Vec2 x{bodies.position_x[row], bodies.position_y[row]},
+        v{bodies.velocity_x[row], bodies.velocity_y[row]};
+    Sums sums{{0.5 * mass * length_squared(v), 0, -mass * dot(gravity, x)}, mass * v, mass * cross(x, v)};
+    if (bodies.has_rotation) {
+        const double inertia = 0.5 * mass * radius * radius, spin = bodies.angular_velocity[row];
+        sums.energy.rotational = 0.5 * inertia * spin * spin;
+        sums.angular_momentum += inertia * spin;
+    }
+    return sums;
+}
+
+template <class Real>
+Sums WorldState<Real>::sums() const {
+    Sums sums;
+    for (std::size_t row = 0; row < bodies.count; ++row) sums = sums + sums_of(row);
+    return sums;
+}
+
+template <class Real>
+BodyId WorldState<Real>::append(const Body& body) {
+    const std::size_t row = bodies.count;
+    bodies.resize(row + 1);
+    const BodyId id = handles.add(static_cast<std::uint32_t>(row));
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    const double radius = radius_of(body.shape), mass = mass_of(body);
+    bodies.position_x[row] = real(body.position.x), bodies.position_y[row] = real(body.position.y);
+    bodies.velocity_x[row] = real(body.velocity.x), bodies.velocity_y[row] = real(body.velocity.y);
+    bodies.id[row] = id;
+    if (bodies.has_rotation)
+        bodies.angle[row] = real(body.angle), bodies.angular_velocity[row] = real(body.angular_velocity);
+    bodies.radius.set(row, bodies.count, real(radius));
+    bodies.restitution.set(row, bodies.count, real(body.material.restitution));
+    if (body.type == BodyType::dynamic_body) {
+        bodies.mass.set(row, bodies.count, real(mass));
+        bodies.set_flags(row, 0);
+        dynamic_mass += static_cast<double>(bodies.mass[row]);
+    } else {
+        bodies.mass.set(row, bodies.count,
+                        row == 0 ? real(mass) : bodies.mass[0]);  // any: it counts as infinite
+        bodies.set_flags(row, body.type == BodyType::kinematic_body ? kImmovable | kKinematic : kImmovable);
+        immovable_rows.push_back(static_cast<std::int32_t>(row));
+    }
+    initial = initial + sums_of(row);
+    return id;
+}
+
+template <class Real>
+void WorldState<Real>::remove(std::size_t row) {
+    initial = initial - sums_of(row);
+    if (!bodies.is_immovable(row)) dynamic_mass -= static_cast<double>(bodies.mass[row]);
+    handles.remove(bodies.id[row]);
+    const std::size_t last = bodies.count - 1;
+    if (row != last) {
+        bodies.for_each_column([&](auto, auto, auto& column) { column[row] = column[last]; });
+        handles.set_row(bodies.id[row], static_cast<std::uint32_t>(row));
+    }
+    bodies.resize(last);
+    list_immovable_rows();
+}
+
+template <class Real>
+void WorldState<Real>::quarantine(std::size_t row) {
+    if (!bodies.is_immovable(row)) dynamic_mass -= static_cast<double>(bodies.mass[row]);
+    initial = initial - sums_of(row);
+    bodies.set_flags(
+        row, static_cast<std::uint8_t>((bodies.flags_of(row) & ~kKinematic) | kImmovable | kDisabled));
+    bodies.velocity_x[row] = 0, bodies.velocity_y[row] = 0;
+    if (bodies.has_rotation) bodies.angular_velocity[row] = 0;
+    ++quarantined_count;
+    list_immovable_rows();
+}
+
+template <class Real>
+void WorldState<Real>::list_immovable_rows() {
+    immovable_rows.clear();
+    if (!bodies.has_flags) return;
+    for (std::size_t row = 0; row < bodies.count; ++row)
+        if (bodies.is_immovable(row)) immovable_rows.push_back(static_cast<std::int32_t>(row));
+}
+
+template <class Real>
+void WorldState<Real>::reorder(const std::int32_t* order) {
+    const std::size_t count = bodies.count;
+    bodies.for_each_column([&](auto, auto, auto& column) {
+        using T = std::remove_reference_t<decltype(column[0])>;
+        spare_.resize_for_overwrite(count * sizeof(T));
+        std::byte* sorted = spare_.data();
+        for (std::size_t row = 0; row < count; ++row)
+            std::memcpy(sorted + row * sizeof(T), &column[static_cast<std::size_t>(order[row])], sizeof(T));
+        std::memcpy(column.data(), sorted, count * sizeof(T));
+    });
+    for (std::size_t row = 0; row < count; ++row)
+        handles.set_row(bodies.id[row], static_cast<std::uint32_t>(row));
+    list_immovable_rows();
+}
+
+template struct WorldState<float>;
+template struct WorldState<double>;
+
+}  // namespace carom

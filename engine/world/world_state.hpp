@@ -1,0 +1,75 @@
+#pragma once
+
+#include <carom/ledger.hpp>
+#include <carom/scene.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "state/bodies.hpp"
+#include "state/books.hpp"
+#include "world/handles.hpp"
+
+namespace carom {
+
+/// Which optional laws a world runs: what its scene calls for, and what was forced on.
+struct Effects {
+    bool gravity = false;
+    bool drag = false;
+    bool angular_drag = false;
+    bool walls = false;
+    bool restitution = false;
+    bool rotation = false;
+    bool ledger = false;
+};
+
+/// Sums over the dynamic bodies, in double precision.
+struct Sums {
+    Energy energy;
+    Vec2 momentum;                ///< kg m/s
+    double angular_momentum = 0;  ///< kg m²/s
+};
+
+Sums operator+(const Sums& a, const Sums& b);
+Sums operator-(const Sums& a, const Sums& b);
+
+/// The columns and the laws: everything that a snapshot would have to hold.
+template <class Real>
+struct WorldState {
+    Bodies<Real> bodies;
+    Handles handles;
+    Vec2 gravity;  ///< m/s²
+    Drag drag;
+    std::optional<Walls> walls;
+    Effects effects;
+    double time = 0;  ///< s
+    Books books;
+    Sums initial;                              ///< of the bodies there are, at the moment each joined
+    double dynamic_mass = 0;                   ///< kg
+    std::vector<std::int32_t> immovable_rows;  ///< static, kinematic and disabled ones
+    std::int64_t quarantined_count = 0;
+
+    /// What one row adds to the sums; nothing if it is not dynamic.
+    Sums sums_of(std::size_t row) const;
+    Sums sums() const;
+
+    /// Appends a row for a body that has been validated.
+    BodyId append(const Body& body);
+    /// Takes a row out; the last row takes its place.
+    void remove(std::size_t row);
+    /// Rolls a row whose next state would leave the limits out of the simulation, where it is.
+    void quarantine(std::size_t row);
+    /// Sorts rows: new row i is the old row order[i].
+    void reorder(const std::int32_t* order);
+
+  private:
+    void list_immovable_rows();
+
+    Column<std::byte> spare_;  // one column's worth, kept so that reordering allocates nothing
+};
+
+extern template struct WorldState<float>;
+extern template struct WorldState<double>;
+
+}  // namespace carom
