@@ -22,7 +22,7 @@ constexpr Item kGasItem{"the gas has", "", -1, ""};
 constexpr Quantity kCount{"count", "", 1, static_cast<double>(kLargestBodyCount),
                           "Each generator makes at least one body."};
 constexpr Quantity kSpacing{
-    "spacing", "m", kSmallestRadius, kLargestPosition,
+    "spacing", "m", 0, kLargestPosition,
     "It goes from centre to centre; a gap of 0 between discs is a spacing of 2 radii."};
 constexpr Quantity kJitter{"jitter", "m", 0, kLargestPosition,
                            "Give the largest move of a centre, 0 for none."};

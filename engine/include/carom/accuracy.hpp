@@ -22,8 +22,8 @@ enum class Precision : std::uint8_t { single_, double_ };
 /// What a scene asks for in accuracy. What is left out takes the solver's own default.
 struct Accuracy {
     Solver solver = Solver::automatic;
-    std::optional<int> substeps;    ///< parts a step is cut into, 1 ... 1024; `impulse` takes 1 by default
-    std::optional<int> iterations;  ///< 1 ... 1024; `impulse` iterates to convergence and has no use for it
+    std::optional<int> substeps{};    ///< parts a step is cut into, 1 ... 1024; `impulse` takes 1 by default
+    std::optional<int> iterations{};  ///< 1 ... 1024; `impulse` iterates to convergence and has no use for it
     Precision precision = Precision::single_;
 };
 

@@ -6,14 +6,14 @@ namespace carom {
 
 /// Effects a scene forces on or off; what is left out is on when the scene calls for it.
 struct EffectOverrides {
-    std::optional<bool> sleep;       ///< not built yet: `true` is an error
-    std::optional<bool> continuous;  ///< `impulse` is always continuous: `false` is an error there
-    std::optional<bool> ledger;      ///< energy and momentum by cause; off unless asked for
+    std::optional<bool> sleep{};       ///< not built yet: `true` is an error
+    std::optional<bool> continuous{};  ///< `impulse` is always continuous: `false` is an error there
+    std::optional<bool> ledger{};      ///< energy and momentum by cause; off unless asked for
     std::optional<bool>
-        gravity;  ///< `true` keeps the stages even for zero gravity; `false` is an error if it is not zero
-    std::optional<bool> drag;         ///< likewise
-    std::optional<bool> rotation;     ///< likewise; `true` gives every body an angle and a spin
-    std::optional<bool> restitution;  ///< likewise
+        gravity{};  ///< `true` keeps the stages even for zero gravity; `false` is an error if it is not zero
+    std::optional<bool> drag{};         ///< likewise
+    std::optional<bool> rotation{};     ///< likewise; `true` gives every body an angle and a spin
+    std::optional<bool> restitution{};  ///< likewise
 };
 
 }  // namespace carom

@@ -17,22 +17,22 @@ struct RadiusRange {
 struct Lattice {
     std::int64_t count_x = 1;  ///< bodies a row, >= 1
     std::int64_t count_y = 1;  ///< rows, >= 1
-    Vec2 origin;               ///< m, centre of the first body
-    Vec2 spacing{1, 1};        ///< m, from centre to centre, each > 0
+    Vec2 origin{};             ///< m, centre of the first body
+    Vec2 spacing{1, 1};        ///< m, from centre to centre, each >= 0
     double jitter = 0;         ///< m, >= 0: every centre moves by up to this much in x and in y
     bool stagger = false;      ///< odd rows move right by half of spacing.x: hexagonal rows
-    std::optional<RadiusRange> radius_range;  ///< in place of the radius of `body`
-    double velocity_rms = 0;                  ///< m/s, root mean square speed, >= 0; needs two dynamic bodies
+    std::optional<RadiusRange> radius_range{};  ///< in place of the radius of `body`
+    double velocity_rms = 0;  ///< m/s, root mean square speed, >= 0; needs two dynamic bodies
     std::uint64_t seed = 0;
-    Body body;  ///< what every body is like; it has no name, its position is not used
+    Body body{};  ///< what every body is like; it has no name, its position is not used
 };
 
 /// Bodies on top of each other, from the lowest up.
 struct Stack {
     std::int64_t count = 1;  ///< >= 1
-    Vec2 origin;             ///< m, centre of the lowest body
+    Vec2 origin{};           ///< m, centre of the lowest body
     double gap = 0;          ///< m, clear distance between neighbours, >= 0
-    Body body;               ///< what every body is like; it has no name, its position is not used
+    Body body{};             ///< what every body is like; it has no name, its position is not used
 };
 
 /// Discs spread over the box of the scene's walls, without overlap, in rows from the bottom. Packing
@@ -40,10 +40,10 @@ struct Stack {
 /// are not looked at.
 struct Gas {
     std::int64_t count = 1;   ///< >= 1
-    RadiusRange radius;       ///< m
+    RadiusRange radius{};     ///< m
     double velocity_rms = 0;  ///< m/s, root mean square speed, >= 0; needs two dynamic bodies
     std::uint64_t seed = 0;
-    Body body;  ///< what every disc is like; it has no name, its position and radius are not used
+    Body body{};  ///< what every disc is like; it has no name, its position and radius are not used
 };
 
 /// Appends the bodies of a generator to a scene. The same description gives the same bits on every machine:

@@ -30,28 +30,28 @@ enum class BodyType : std::uint8_t {
 
 /// One body as a person describes it. Everything has a default; SI units.
 struct Body {
-    std::string name;  ///< empty, or unique in the scene
+    std::string name{};  ///< empty, or unique in the scene
     BodyType type = BodyType::dynamic_body;
     Shape shape = Disc{};
-    Vec2 position;                ///< m, the centre of mass; each component within ±kLargestPosition
-    double angle = 0;             ///< rad, counter-clockwise; within ±kLargestAngle
-    Vec2 velocity;                ///< m/s, speed at most kLargestSpeed; zero for static bodies
-    double angular_velocity = 0;  ///< rad/s, within ±kLargestAngularVelocity; zero for static bodies
-    std::optional<double> mass;   ///< kg, > 0; else density times area. Without meaning unless dynamic
-    Material material;
+    Vec2 position{};               ///< m, the centre of mass; each component within ±kLargestPosition
+    double angle = 0;              ///< rad, counter-clockwise; within ±kLargestAngle
+    Vec2 velocity{};               ///< m/s, speed at most kLargestSpeed; zero for static bodies
+    double angular_velocity = 0;   ///< rad/s, within ±kLargestAngularVelocity; zero for static bodies
+    std::optional<double> mass{};  ///< kg, > 0; else density times area. Without meaning unless dynamic
+    Material material{};
     bool fixed_rotation = false;
-    std::string color;  ///< empty, or "#rrggbb"; for pictures only
+    std::string color{};  ///< empty, or "#rrggbb"; for pictures only
 };
 
 /// A closed axis-aligned box around the bodies; each side can be left open.
 struct Walls {
-    Vec2 min;  ///< m, lower left corner
-    Vec2 max;  ///< m, upper right corner; > min
+    Vec2 min{};  ///< m, lower left corner
+    Vec2 max{};  ///< m, upper right corner; > min
     bool left = true;
     bool right = true;
     bool bottom = true;
     bool top = true;
-    Material material;
+    Material material{};
 };
 
 /// velocity ← velocity · exp(-linear · dt), angular velocity likewise.
@@ -92,15 +92,15 @@ std::optional<Problem> find_problem(const Material& material);
 
 /// What a person describes: bodies, walls, laws, accuracy. Plain data; `World` makes columns of it.
 struct Scene {
-    std::string name;
-    Vec2 gravity;  ///< m/s²
-    Drag drag;
-    std::optional<Walls> walls;
-    std::vector<Body> bodies;
-    StepSettings step;
-    Accuracy accuracy;
-    EffectOverrides effects;
-    Record record;
+    std::string name{};
+    Vec2 gravity{};  ///< m/s²
+    Drag drag{};
+    std::optional<Walls> walls{};
+    std::vector<Body> bodies{};
+    StepSettings step{};
+    Accuracy accuracy{};
+    EffectOverrides effects{};
+    Record record{};
 
     /// Appends a body; it is checked when a `World` is made of the scene, or by `validate`.
     /// @return the handle that body has in every world made of this scene.

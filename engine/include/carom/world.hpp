@@ -19,14 +19,14 @@ using ParallelFor = std::function<void(std::size_t count, const std::function<vo
 
 /// How a world runs; what is left out comes from the scene, then from the defaults.
 struct WorldOptions {
-    std::optional<Solver> solver;
-    std::optional<int> substeps;
-    std::optional<int> iterations;
+    std::optional<Solver> solver{};
+    std::optional<int> substeps{};
+    std::optional<int> iterations{};
     std::string isa =
         "auto";       ///< "auto" (or CAROM_ISA from the environment), "scalar", "sse2", "avx2", "avx512"
     int threads = 0;  ///< 0: as many as OpenMP gives; results do not depend on it
-    ParallelFor parallel_for;   ///< an embedding program's own threads in place of OpenMP
-    EffectOverrides effects{};  ///< over the scene's own
+    ParallelFor parallel_for{};  ///< an embedding program's own threads in place of OpenMP
+    EffectOverrides effects{};   ///< over the scene's own
 };
 
 /// Spans over the columns, without a copy; valid until the next call that changes the world. Rows may be

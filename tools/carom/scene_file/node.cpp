@@ -108,11 +108,12 @@ std::int64_t Node::integer() const {
 }
 
 std::uint64_t Node::seed() const {
+    constexpr double kTwoTo64 = 18446744073709551616.0;
     if (value_.is_number_unsigned()) return value_.get<std::uint64_t>();
-    const std::int64_t number = integer();
-    if (number < 0)
+    if (!value_.is_number() || std::trunc(number()) != number()) fail_type("a whole number");
+    if (number() < 0 || number() >= kTwoTo64)
         fail(ErrorCode::out_of_range, short_text(value_) + "; expected a whole number from 0 to 2^64 - 1.");
-    return static_cast<std::uint64_t>(number);
+    return static_cast<std::uint64_t>(number());
 }
 
 bool Node::boolean() const {
