@@ -1,0 +1,20 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+
+namespace carom::tool {
+
+/// What the chosen subcommand does; returns the exit code.
+using Action = std::function<int()>;
+
+/// Each adds its subcommand; when that is the one on the command line, `action` becomes what it does.
+void add_run_command(CLI::App& program, Action& action);
+void add_explain_command(CLI::App& program, Action& action);
+void add_check_command(CLI::App& program, Action& action);
+
+/// Version, instruction sets, threads, xsimd: the answer to --version.
+std::string version_text();
+
+}  // namespace carom::tool

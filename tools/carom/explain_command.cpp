@@ -1,0 +1,94 @@
+#include <carom/version.hpp>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "commands.hpp"
+#include "exit_codes.hpp"
+#include "format.hpp"
+#include "run_settings.hpp"
+#include "scene_reader.hpp"
+
+namespace carom::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kIndent = 2;  // spaces
+
+struct Explain {
+    std::string scene;
+    RunSettings settings;
+    bool json = false;
+};
+
+Json to_json(const Plan& plan, const std::string& scene, std::size_t bodies) {
+    Json json{{"scene", scene},
+              {"version", kVersion},
+              {"bodies", bodies},
+              {"solver", {{"name", plan.solver}, {"reason", plan.solver_reason}}},
+              {"substeps", plan.substeps},
+              {"precision", plan.precision},
+              {"isa", plan.isa},
+              {"threads", plan.threads},
+              {"effects", Json::array()},
+              {"stages", Json::array()},
+              {"columns", Json::array()},
+              {"bytes_per_body", plan.bytes_per_body}};
+    for (const EffectReport& effect : plan.effects)
+        json["effects"].push_back({{"name", effect.name}, {"on", effect.on}, {"reason", effect.reason}});
+    for (const StageReport& stage : plan.stages)
+        json["stages"].push_back({{"name", stage.name},
+                                  {"kernel", stage.kernel},
+                                  {"reads", stage.reads},
+                                  {"writes", stage.writes}});
+    for (const ColumnReport& column : plan.columns)
+        json["columns"].push_back(
+            {{"name", column.name}, {"unit", column.unit}, {"bytes_per_body", column.bytes_per_body}});
+    return json;
+}
+
+std::string to_text(const Plan& plan, const std::string& scene, std::size_t bodies) {
+    std::string text = format("%s: %zu bodies\n\nsolver     %s (%s), %d substep%s\nprecision  %s\nisa        %s\n"
+                              "threads    %d\n\neffects\n",
+                              scene.c_str(), bodies, plan.solver.c_str(), plan.solver_reason.c_str(), plan.substeps,
+                              plan.substeps == 1 ? "" : "s", plan.precision.c_str(), plan.isa.c_str(), plan.threads);
+    for (const EffectReport& effect : plan.effects)
+        text += format("  %-3s  %-12s  %s\n", effect.on ? "on" : "off", effect.name.c_str(), effect.reason.c_str());
+    text += "\nstages\n";
+    for (const StageReport& stage : plan.stages)
+        text += format("  %-24s  %s\n%28s%s -> %s\n", stage.name.c_str(), stage.kernel.c_str(), "",
+                       stage.reads.c_str(), stage.writes.c_str());
+    text += format("\ncolumns: %zu bytes a body\n", plan.bytes_per_body);
+    for (const ColumnReport& column : plan.columns)
+        text += format("  %-24s  %4zu  %s\n", column.name.c_str(), column.bytes_per_body, column.unit.c_str());
+    return text;
+}
+
+int explain(const Explain& asked) {
+    Scene scene = read_scene(asked.scene);
+    apply_settings(asked.settings, scene);
+    const auto simulation = make_simulation(scene, asked.settings.machine);
+    const std::string name = scene.name.empty() ? asked.scene : scene.name;
+    const Plan plan = simulation->plan();
+    const std::string text =
+        asked.json ? to_json(plan, name, scene.bodies.size()).dump(kIndent, ' ', false, Json::error_handler_t::replace) + "\n"
+                   : to_text(plan, name, scene.bodies.size());
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    return kDone;
+}
+
+}  // namespace
+
+void add_explain_command(CLI::App& program, Action& action) {
+    CLI::App* const command = program.add_subcommand(
+        "explain", "Says what a scene calls for and why: effects, stages, kernels, columns, bytes a body");
+    auto asked = std::make_shared<Explain>();
+    command->add_option("scene", asked->scene, "Scene file")->required()->type_name("SCENE.json");
+    command->add_flag("--json", asked->json, "As JSON");
+    add_settings_options(*command, asked->settings);
+    command->callback([asked, &action] { action = [asked] { return explain(*asked); }; });
+}
+
+}  // namespace carom::tool

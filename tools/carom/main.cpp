@@ -1,0 +1,65 @@
+#include <carom/errors.hpp>
+
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "commands.hpp"
+#include "exit_codes.hpp"
+
+namespace carom::tool {
+namespace {
+
+int complain(const char* message, ExitCode code) {
+    std::fprintf(stderr, "carom: %s\n", message);
+    return code;
+}
+
+/// Help and version texts are answers; everything else CLI11 throws is a wrong command line.
+int answer(const CLI::App& program, const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? kDone : kWrongInput;
+}
+
+int run_program(int argc, char** argv) {
+    CLI::App program("Carom, a 2D rigid-body physics engine: runs scenes and writes what happened.", "carom");
+    Action action;
+    program.require_subcommand(1);
+    program.set_version_flag("--version", [] { return version_text(); },
+                             "Version, instruction sets, threads, and exit");
+    add_run_command(program, action);
+    add_explain_command(program, action);
+    add_check_command(program, action);
+    try {
+        program.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return answer(program, error);
+    }
+    return action();
+}
+
+/// Results printed to a full disk or a closed pipe are lost; whoever reads them must know.
+int checked(int code) {
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+    return complain("standard output could not be written", kInternalError);
+}
+
+}  // namespace
+}  // namespace carom::tool
+
+int main(int argc, char** argv) {
+    using namespace carom::tool;
+    try {
+        return checked(run_program(argc, argv));
+    } catch (const carom::Error& error) {
+        return complain(error.what(), kWrongInput);
+    } catch (const UsageError& error) {
+        return complain(error.what(), kWrongInput);
+    } catch (const WriteError& error) {
+        return complain((std::string(error.what()) + ". The results are incomplete and were removed.").c_str(),
+                        kInternalError);
+    } catch (const std::bad_alloc&) {
+        return complain("out of memory", kInternalError);
+    } catch (const std::exception& error) {
+        return complain((std::string("internal error: ") + error.what()).c_str(), kInternalError);
+    }
+}

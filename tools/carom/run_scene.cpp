@@ -1,0 +1,167 @@
+#include "run_scene.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "format.hpp"
+#include "interrupt.hpp"
+#include "progress_bar.hpp"
+#include "results/final_csv.hpp"
+#include "results/ledger_csv.hpp"
+#include "results/summary_json.hpp"
+#include "results/trajectory_h5.hpp"
+
+namespace carom::tool {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kLongestFolderName = 100;  // characters
+
+double seconds_between(Clock::time_point start, Clock::time_point end) {
+    return std::chrono::duration<double>(end - start).count();
+}
+
+/// What the run does with the scene, for whoever opens the trajectory alone.
+std::string settings_text(const Scene& scene, const Plan& plan) {
+    nlohmann::ordered_json json{{"version", kVersion},
+                                {"dt", scene.step.dt},
+                                {"steps", scene.step.count},
+                                {"record_every", scene.record.every},
+                                {"trail", scene.record.trail},
+                                {"solver", plan.solver},
+                                {"substeps", plan.substeps},
+                                {"precision", plan.precision},
+                                {"isa", plan.isa},
+                                {"threads", plan.threads}};
+    for (const EffectReport& effect : plan.effects)
+        if (effect.on) json["effects"].push_back(effect.name);
+    return json.dump();
+}
+
+/// The files that grow during a run.
+class Recorder {
+  public:
+    Recorder(const Scene& scene, const Simulation& simulation, ResultFolder& folder, const RunChoices& choices)
+        : every_(scene.record.every) {
+        if (simulation.keeps_ledger()) ledger_ = std::make_unique<LedgerCsv>(folder.temporary("ledger.csv"));
+        if (choices.no_trajectory) return;
+        const std::int64_t frames = 1 + scene.step.count / every_ + (scene.step.count % every_ != 0 ? 1 : 0);
+        trajectory_ = std::make_unique<TrajectoryH5>(folder.temporary("trajectory.h5"), scene, simulation,
+                                                     TrajectoryNotes{.scene_text = choices.scene_text,
+                                                                     .settings = settings_text(scene, simulation.plan()),
+                                                                     .frame_count = frames});
+        trajectory_->append(simulation);
+    }
+
+    void record(const Simulation& simulation, std::int64_t step) {
+        if (ledger_) ledger_->append(simulation.ledger(), simulation.profile().impacts);
+        if (trajectory_ && step % every_ == 0) append_frame(simulation, step);
+    }
+
+    /// The last state is always the last frame.
+    void close(const Simulation& simulation, std::int64_t step) {
+        if (ledger_) ledger_->close();
+        if (!trajectory_) return;
+        if (last_frame_ != step) append_frame(simulation, step);
+        trajectory_->close();
+    }
+
+  private:
+    void append_frame(const Simulation& simulation, std::int64_t step) {
+        trajectory_->append(simulation);
+        last_frame_ = step;
+    }
+
+    std::int64_t every_;
+    std::int64_t last_frame_ = 0;
+    std::unique_ptr<LedgerCsv> ledger_;
+    std::unique_ptr<TrajectoryH5> trajectory_;
+};
+
+void take_steps(const Scene& scene, Simulation& simulation, Recorder& recorder, bool quiet, RunOutcome& run) {
+    ProgressBar progress(scene.step.count, !quiet);
+    const Clock::time_point start = Clock::now();
+    Clock::time_point before = start;
+    while (run.steps < scene.step.count && !is_interrupted()) {
+        simulation.step(scene.step.dt);
+        const Clock::time_point stepped = Clock::now();
+        ++run.steps;
+        recorder.record(simulation, run.steps);
+        if (run.steps == 1) run.first_step = simulation.ledger();
+        const Clock::time_point recorded = Clock::now();
+        run.stepping_seconds += seconds_between(before, stepped);
+        run.recording_seconds += seconds_between(stepped, recorded);
+        progress.update(run.steps);
+        before = Clock::now();
+    }
+    run.total_seconds = seconds_between(start, before);
+    run.interrupted = run.steps < scene.step.count;
+}
+
+void describe_end(const Scene& scene, const Simulation& simulation, RunOutcome& run) {
+    run.scene_name = scene.name;
+    run.bodies = scene.bodies.size();
+    run.steps_asked = scene.step.count;
+    run.dt = scene.step.dt;
+    run.time = simulation.time();
+    run.iterations = scene.accuracy.iterations;
+    run.profile = simulation.profile();
+    run.ledger = simulation.ledger();
+    run.keeps_ledger = simulation.keeps_ledger();
+    run.overlaps = simulation.overlaps();
+    run.quarantined = simulation.quarantined();
+    run.state_hash = simulation.state_hash();
+    if (run.interrupted)
+        run.messages.push_back(format("interrupted after %lld of %lld steps; the results are those so far",
+                                      static_cast<long long>(run.steps), static_cast<long long>(run.steps_asked)));
+    if (!run.quarantined.empty())
+        run.messages.push_back(format("%zu of %zu bodies were disabled because their state left the limits, the first is "
+                                      "body %zu; see \"quarantined\" in summary.json",
+                                      run.quarantined.size(), run.bodies, run.quarantined.front()));
+    if (run.profile.unresolved_impacts > 0)
+        run.messages.push_back(format("%lld impacts were left to the next step; a shorter step resolves them",
+                                      static_cast<long long>(run.profile.unresolved_impacts)));
+}
+
+}  // namespace
+
+RunOutcome run_scene(const Scene& scene, Simulation& simulation, ResultFolder& folder, const RunChoices& choices) {
+    RunOutcome run;
+    run.plan = simulation.plan();
+    const std::filesystem::path summary = folder.temporary("summary.json"), final = folder.temporary("final.csv");
+    Recorder recorder(scene, simulation, folder, choices);
+    take_steps(scene, simulation, recorder, choices.quiet, run);
+    recorder.close(simulation, run.steps);
+    describe_end(scene, simulation, run);
+    run.files = folder.names();
+    write_final_csv(final, scene, simulation);
+    write_summary_json(summary, run);
+    folder.commit();
+    return run;
+}
+
+std::string folder_name(const std::string& scene_name) {
+    std::string name = scene_name.substr(0, kLongestFolderName);
+    const auto is_plain = [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.' || c == ' ';
+    };
+    for (char& c : name)
+        if (!is_plain(c)) c = '_';
+    if (name.empty() || name[0] == '.') name.insert(0, "_");
+    return name;
+}
+
+std::string text_of_file(const std::string& path) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored)) return {};
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+}  // namespace carom::tool

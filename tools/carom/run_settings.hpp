@@ -1,0 +1,35 @@
+#pragma once
+
+#include <carom/scene.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "simulation/simulation.hpp"
+
+namespace carom::tool {
+
+/// What the command line says over the scene; what is left out stays as the scene has it.
+struct RunSettings {
+    std::optional<std::int64_t> steps;
+    std::optional<double> dt;  // s
+    std::optional<std::string> solver;
+    std::optional<int> substeps;
+    std::optional<int> iterations;
+    std::optional<std::string> precision;
+    std::vector<std::string> effects;  // as given: "+sleep,-continuous"
+    MachineSettings machine;
+};
+
+/// Adds --steps, --dt, --solver, --substeps, --iterations, --precision, --effects, --isa, --threads.
+void add_settings_options(CLI::App& command, RunSettings& settings);
+
+/// Puts the settings into the scene, and the ledger on unless scene or settings say otherwise.
+/// @throws UsageError for a solver, precision or effect there is none of
+void apply_settings(const RunSettings& settings, Scene& scene);
+
+}  // namespace carom::tool

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <carom/scene.hpp>
+#include <carom/world.hpp>
+
+#include <numbers>
+
+namespace carom::tool {
+
+inline double radius_of(const Body& body) { return std::get<Disc>(body.shape).radius; }
+
+/// kg: given, or density times area.
+inline double mass_of(const Body& body) {
+    const double radius = radius_of(body);
+    return body.mass.value_or(body.material.density * std::numbers::pi * radius * radius);
+}
+
+/// Translation and rotation of one solid disc [J].
+inline double kinetic_energy_of(const Body& body, const BodyState& state) {
+    if (body.type == BodyType::static_body) return 0;
+    const double mass = mass_of(body);
+    const double inertia = 0.5 * mass * radius_of(body) * radius_of(body);
+    return 0.5 * mass * (state.velocity.x * state.velocity.x + state.velocity.y * state.velocity.y) +
+           0.5 * inertia * state.angular_velocity * state.angular_velocity;
+}
+
+}  // namespace carom::tool

@@ -1,0 +1,100 @@
+#include "simulation/pairwise_scene.hpp"
+
+#include <carom/errors.hpp>
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+
+#include "simulation/body_mass.hpp"
+
+namespace carom::tool {
+namespace {
+
+constexpr const char* kRemedy = "Change the scene, or leave the choice of the solver to \"auto\".";
+
+template <class... Parts>
+[[noreturn]] void refuse(ErrorCode code, const Parts&... parts) {
+    std::ostringstream text;
+    text << "Solver pairwise: ";
+    (text << ... << parts);
+    throw Error(code, text.str());
+}
+
+std::string label(const Scene& scene, std::size_t index) {
+    const std::string& name = scene.bodies[index].name;
+    return "body " + std::to_string(index) + (name.empty() ? "" : " (\"" + name + "\")");
+}
+
+void check_bodies(const Scene& scene) {
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+        const Body& body = scene.bodies[i];
+        if (body.type != BodyType::dynamic_body)
+            refuse(ErrorCode::inconsistent, label(scene, i), " is ",
+                   body.type == BodyType::static_body ? "static" : "kinematic",
+                   "; the naive engine moves every body. ", kRemedy);
+        if (!std::holds_alternative<Disc>(body.shape))
+            refuse(ErrorCode::inconsistent, label(scene, i), " is not a disc; the naive engine knows discs only. ",
+                   kRemedy);
+        if (body.material.friction > 0)
+            refuse(ErrorCode::inconsistent, label(scene, i), " has friction ", body.material.friction,
+                   "; the naive engine has none. ", kRemedy);
+        if (body.material.restitution != scene.bodies[0].material.restitution)
+            refuse(ErrorCode::inconsistent, label(scene, i), " has restitution ", body.material.restitution,
+                   " and body 0 has ", scene.bodies[0].material.restitution,
+                   "; the naive engine takes one for all bodies. ", kRemedy);
+    }
+}
+
+void check_effect(const char* name, std::optional<bool> wish, bool needed) {
+    if (wish == false && needed)
+        refuse(ErrorCode::inconsistent, "effect ", name,
+               " is forced off, but the scene needs it. Leave it out of the effects, or set its value to zero.");
+}
+
+void check_settings(const Scene& scene) {
+    const EffectOverrides& effects = scene.effects;
+    const auto spins = [](const Body& body) { return body.angular_velocity != 0; };
+    const auto bounces = [](const Body& body) { return body.material.restitution > 0; };
+    const auto& bodies = scene.bodies;
+    if (effects.sleep == true || effects.continuous == true)
+        refuse(ErrorCode::inconsistent, "effect ", effects.sleep == true ? "sleep" : "continuous",
+               " is forced on; the naive engine does not have it. ", kRemedy);
+    check_effect("gravity", effects.gravity, scene.gravity != Vec2{});
+    check_effect("drag", effects.drag, scene.drag.linear > 0 || scene.drag.angular > 0);
+    check_effect("rotation", effects.rotation, std::any_of(bodies.begin(), bodies.end(), spins));
+    check_effect("restitution", effects.restitution,
+                 std::any_of(bodies.begin(), bodies.end(), bounces) ||
+                     (scene.walls && scene.walls->material.restitution > 0));
+    if (scene.accuracy.iterations.value_or(1) != 1)
+        refuse(ErrorCode::out_of_range, "iterations is ", *scene.accuracy.iterations,
+               "; expected 1: the naive engine looks at every pair once a step.");
+}
+
+PairwiseWalls to_pairwise(const Walls& walls, double body_restitution) {
+    return {.min_x = walls.min.x, .min_y = walls.min.y, .max_x = walls.max.x, .max_y = walls.max.y,
+            .left = walls.left, .right = walls.right, .bottom = walls.bottom, .top = walls.top,
+            .restitution = std::max(walls.material.restitution, body_restitution)};
+}
+
+}  // namespace
+
+PairwiseScene to_pairwise(const Scene& scene) {
+    check_bodies(scene);
+    check_settings(scene);
+    PairwiseScene converted;
+    converted.gravity_x = scene.gravity.x;
+    converted.gravity_y = scene.gravity.y;
+    converted.linear_drag = scene.drag.linear;
+    converted.angular_drag = scene.drag.angular;
+    converted.restitution = scene.bodies.empty() ? 0 : scene.bodies[0].material.restitution;
+    if (scene.walls) converted.walls = to_pairwise(*scene.walls, converted.restitution);
+    for (const Body& body : scene.bodies)
+        converted.bodies.push_back({.x = body.position.x, .y = body.position.y,
+                                    .vx = body.velocity.x, .vy = body.velocity.y,
+                                    .mass = mass_of(body), .radius = std::get<Disc>(body.shape).radius,
+                                    .angle = body.angle, .omega = body.angular_velocity});
+    return converted;
+}
+
+}  // namespace carom::tool

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <carom/ledger.hpp>
+#include <carom/profile.hpp>
+#include <carom/scene.hpp>
+#include <carom/world.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace carom::tool {
+
+/// Where a simulation writes one frame: arrays of its own precision in body order, aligned for it.
+struct FrameTarget {
+    std::byte* position;  // m, [bodies, 2]
+    std::byte* velocity;  // m/s, [bodies, 2]
+    std::byte* angle;     // rad, [bodies]
+};
+
+/// What `carom run` and `carom explain` need of whatever computes the scene: a World, a World64 or the
+/// naive pairwise engine. Bodies are counted as in the scene.
+class Simulation {
+  public:
+    virtual ~Simulation() = default;
+
+    virtual void step(double dt) = 0;
+
+    virtual std::size_t body_count() const = 0;
+    virtual Precision precision() const = 0;
+    virtual double time() const = 0;  ///< s
+    virtual BodyState state(std::size_t body) const = 0;
+    virtual void copy_frame(const FrameTarget& frame) const = 0;
+
+    virtual bool keeps_ledger() const = 0;  ///< whether `ledger()` knows causes
+    virtual Ledger ledger() const = 0;
+    virtual Profile profile() const = 0;
+    virtual Plan plan() const = 0;
+    virtual OverlapReport overlaps() const = 0;
+    virtual std::vector<std::size_t> quarantined() const = 0;
+    virtual std::uint64_t state_hash() const = 0;
+};
+
+/// What a scene does not say: how the machine is used.
+struct MachineSettings {
+    std::string isa = "auto";
+    int threads = 0;  // 0: as many as there are
+};
+
+/// Makes the simulation the scene asks for.
+/// @throws carom::Error if the scene, or what it asks of its solver, cannot be.
+std::unique_ptr<Simulation> make_simulation(const Scene& scene, const MachineSettings& machine);
+
+std::unique_ptr<Simulation> make_world_simulation(const Scene& scene, const MachineSettings& machine);
+std::unique_ptr<Simulation> make_pairwise_simulation(const Scene& scene, const MachineSettings& machine);
+
+}  // namespace carom::tool
