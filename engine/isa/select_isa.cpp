@@ -28,6 +28,20 @@ std::string runnable_names() {
 
 }  // namespace
 
+std::vector<std::string> built_instruction_sets() {
+    std::vector<std::string> names{"scalar"};
+#if defined(CAROM_BUILT_SSE2)
+    names.emplace_back("sse2");
+#endif
+#if defined(CAROM_BUILT_AVX2)
+    names.emplace_back("avx2");
+#endif
+#if defined(CAROM_BUILT_AVX512)
+    names.emplace_back("avx512");
+#endif
+    return names;
+}
+
 std::vector<const KernelTables*> runnable_kernel_tables() {
     std::vector<const KernelTables*> tables{&kScalarKernels};
 #if defined(CAROM_BUILT_SSE2)

@@ -2,10 +2,14 @@
 
 #include "isa/kernel_table.hpp"
 
+#include <string>
 #include <string_view>
 #include <vector>
 
 namespace carom {
+
+/// Compiled in, whether this machine can run them or not, slowest first.
+std::vector<std::string> built_instruction_sets();
 
 /// Compiled in and runnable on this machine, slowest first.
 std::vector<const KernelTables*> runnable_kernel_tables();

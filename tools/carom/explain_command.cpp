@@ -50,19 +50,22 @@ Json to_json(const Plan& plan, const std::string& scene, std::size_t bodies) {
 }
 
 std::string to_text(const Plan& plan, const std::string& scene, std::size_t bodies) {
-    std::string text = format("%s: %zu bodies\n\nsolver     %s (%s), %d substep%s\nprecision  %s\nisa        %s\n"
-                              "threads    %d\n\neffects\n",
-                              scene.c_str(), bodies, plan.solver.c_str(), plan.solver_reason.c_str(), plan.substeps,
-                              plan.substeps == 1 ? "" : "s", plan.precision.c_str(), plan.isa.c_str(), plan.threads);
+    std::string text = format(
+        "%s: %zu bodies\n\nsolver     %s (%s), %d substep%s\nprecision  %s\nisa        %s\n"
+        "threads    %d\n\neffects\n",
+        scene.c_str(), bodies, plan.solver.c_str(), plan.solver_reason.c_str(), plan.substeps,
+        plan.substeps == 1 ? "" : "s", plan.precision.c_str(), plan.isa.c_str(), plan.threads);
     for (const EffectReport& effect : plan.effects)
-        text += format("  %-3s  %-12s  %s\n", effect.on ? "on" : "off", effect.name.c_str(), effect.reason.c_str());
+        text += format("  %-3s  %-12s  %s\n", effect.on ? "on" : "off", effect.name.c_str(),
+                       effect.reason.c_str());
     text += "\nstages\n";
     for (const StageReport& stage : plan.stages)
         text += format("  %-24s  %s\n%28s%s -> %s\n", stage.name.c_str(), stage.kernel.c_str(), "",
                        stage.reads.c_str(), stage.writes.c_str());
     text += format("\ncolumns: %zu bytes a body\n", plan.bytes_per_body);
     for (const ColumnReport& column : plan.columns)
-        text += format("  %-24s  %4zu  %s\n", column.name.c_str(), column.bytes_per_body, column.unit.c_str());
+        text +=
+            format("  %-24s  %4zu  %s\n", column.name.c_str(), column.bytes_per_body, column.unit.c_str());
     return text;
 }
 
@@ -72,9 +75,10 @@ int explain(const Explain& asked) {
     const auto simulation = make_simulation(scene, asked.settings.machine);
     const std::string name = scene.name.empty() ? asked.scene : scene.name;
     const Plan plan = simulation->plan();
-    const std::string text =
-        asked.json ? to_json(plan, name, scene.bodies.size()).dump(kIndent, ' ', false, Json::error_handler_t::replace) + "\n"
-                   : to_text(plan, name, scene.bodies.size());
+    std::string text = asked.json ? to_json(plan, name, scene.bodies.size())
+                                        .dump(kIndent, ' ', false, Json::error_handler_t::replace)
+                                  : to_text(plan, name, scene.bodies.size());
+    if (asked.json) text += '\n';
     std::fwrite(text.data(), 1, text.size(), stdout);
     return kDone;
 }

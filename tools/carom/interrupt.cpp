@@ -9,7 +9,9 @@ namespace {
 std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // so that a signal handler may set it
 
-void on_interrupt(int) { interrupted.store(true, std::memory_order_relaxed); }
+void on_interrupt(int) {
+    interrupted.store(true, std::memory_order_relaxed);
+}
 
 }  // namespace
 
@@ -23,6 +25,8 @@ void catch_interrupts() {
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
-bool is_interrupted() noexcept { return interrupted.load(std::memory_order_relaxed); }
+bool is_interrupted() noexcept {
+    return interrupted.load(std::memory_order_relaxed);
+}
 
 }  // namespace carom::tool

@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "exit_codes.hpp"
+#include "format.hpp"
 
 namespace carom::tool {
 namespace {
@@ -24,8 +25,8 @@ int run_program(int argc, char** argv) {
     CLI::App program("Carom, a 2D rigid-body physics engine: runs scenes and writes what happened.", "carom");
     Action action;
     program.require_subcommand(1);
-    program.set_version_flag("--version", [] { return version_text(); },
-                             "Version, instruction sets, threads, and exit");
+    program.set_version_flag(
+        "--version", [] { return version_text(); }, "Version, instruction sets, threads, and exit");
     add_run_command(program, action);
     add_explain_command(program, action);
     add_check_command(program, action);
@@ -55,11 +56,11 @@ int main(int argc, char** argv) {
     } catch (const UsageError& error) {
         return complain(error.what(), kWrongInput);
     } catch (const WriteError& error) {
-        return complain((std::string(error.what()) + ". The results are incomplete and were removed.").c_str(),
+        return complain(joined(error.what(), ". The results are incomplete and were removed.").c_str(),
                         kInternalError);
     } catch (const std::bad_alloc&) {
         return complain("out of memory", kInternalError);
     } catch (const std::exception& error) {
-        return complain((std::string("internal error: ") + error.what()).c_str(), kInternalError);
+        return complain(joined("internal error: ", error.what()).c_str(), kInternalError);
     }
 }

@@ -5,21 +5,20 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "format.hpp"
+
 namespace carom::tool {
 namespace {
 
-constexpr std::chrono::milliseconds kRedrawInterval{100};  // quick enough to look alive, too rare to cost time
-constexpr int kBarWidth = 24;                              // characters; the whole line fits 80 columns
+constexpr std::chrono::milliseconds kRedrawInterval{
+    100};                      // quick enough to look alive, too rare to cost time
+constexpr int kBarWidth = 24;  // characters; the whole line fits 80 columns
 
 std::string clock_text(double seconds) {
     if (!(seconds < 360000)) return "over 99 h";
     const auto whole = static_cast<long>(seconds + 0.5);
-    char text[32];
-    if (whole >= 3600)
-        std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
-    else
-        std::snprintf(text, sizeof text, "%ld:%02ld", whole / 60, whole % 60);
-    return text;
+    return whole >= 3600 ? format("%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60)
+                         : format("%ld:%02ld", whole / 60, whole % 60);
 }
 
 }  // namespace
@@ -30,12 +29,10 @@ std::string progress_line(std::int64_t done, std::int64_t step_count, double sec
     const double left = rate > 0 ? static_cast<double>(step_count - done) / rate : 0.0;
     const auto filled = static_cast<std::size_t>(std::clamp(part, 0.0, 1.0) * kBarWidth);
 
-    std::string line = "[" + std::string(filled, '#') + std::string(kBarWidth - filled, '.') + "] ";
-    char text[160];
-    std::snprintf(text, sizeof text, "%3d %%  step %lld of %lld  %.*f steps/s  %s left",
-                  static_cast<int>(part * 100), static_cast<long long>(done),
-                  static_cast<long long>(step_count), rate < 10 ? 1 : 0, rate, clock_text(left).c_str());
-    return line + text;
+    return joined("[", std::string(filled, '#'), std::string(kBarWidth - filled, '.'), "] ",
+                  format("%3d %%  step %lld of %lld  %.*f steps/s  %s left", static_cast<int>(part * 100),
+                         static_cast<long long>(done), static_cast<long long>(step_count), rate < 10 ? 1 : 0,
+                         rate, clock_text(left).c_str()));
 }
 
 ProgressBar::ProgressBar(std::int64_t step_count, bool wanted)

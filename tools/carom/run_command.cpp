@@ -3,6 +3,7 @@
 
 #include "commands.hpp"
 #include "exit_codes.hpp"
+#include "format.hpp"
 #include "interrupt.hpp"
 #include "run_scene.hpp"
 #include "scene_reader.hpp"
@@ -13,15 +14,17 @@ namespace {
 
 struct Run {
     std::string scene;
-    std::string out;
+    std::optional<std::string> out;
     RunSettings settings;
     RunChoices choices;
     bool no_report = false;  // there is no report yet that could be left out
 };
 
-void print_results(const Run& asked, const Scene& scene, const Simulation& simulation, const RunOutcome& outcome) {
-    std::string text = summary_table(outcome) + body_table(scene, simulation) + "\nResults in " + asked.out + ":";
-    for (const std::string& file : outcome.files) text += " " + file;
+void print_results(const Run& asked, const Scene& scene, const Simulation& simulation,
+                   const RunOutcome& outcome) {
+    std::string text =
+        joined(summary_table(outcome), body_table(scene, simulation), "\nResults in ", *asked.out, ":");
+    for (const std::string& file : outcome.files) text.append(" ").append(file);
     text += "\n";
     std::fwrite(text.data(), 1, text.size(), stdout);
 }
@@ -30,11 +33,11 @@ int run(Run& asked) {
     Scene scene = read_scene(asked.scene);
     apply_settings(asked.settings, scene);
     if (scene.name.empty()) scene.name = std::filesystem::path(asked.scene).stem().string();
-    if (asked.out.empty()) asked.out = "out/" + folder_name(scene.name);
+    if (!asked.out) asked.out = joined("out/", folder_name(scene.name));
     asked.choices.scene_text = text_of_file(asked.scene);
 
     const auto simulation = make_simulation(scene, asked.settings.machine);
-    ResultFolder folder(asked.out);
+    ResultFolder folder(*asked.out);
     catch_interrupts();
     const RunOutcome outcome = run_scene(scene, *simulation, folder, asked.choices);
     if (!asked.choices.quiet) print_results(asked, scene, *simulation, outcome);
@@ -48,7 +51,8 @@ void add_run_command(CLI::App& program, Action& action) {
     CLI::App* const command = program.add_subcommand("run", "Runs a scene and writes what happened");
     auto asked = std::make_shared<Run>();
     command->add_option("scene", asked->scene, "Scene file")->required()->type_name("SCENE.json");
-    command->add_option("--out", asked->out, "Folder for the results (default: out/<scene name>)")->type_name("DIR");
+    command->add_option("--out", asked->out, "Folder for the results (default: out/<scene name>)")
+        ->type_name("DIR");
     add_settings_options(*command, asked->settings);
     command->add_flag("--no-report", asked->no_report, "Do not write report.html");
     command->add_flag("--no-trajectory", asked->choices.no_trajectory, "Do not write trajectory.h5");

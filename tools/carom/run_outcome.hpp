@@ -16,7 +16,7 @@ namespace carom::tool {
 struct RunOutcome {
     std::string scene_name;
     std::size_t bodies = 0;
-    std::int64_t steps = 0;        ///< taken
+    std::int64_t steps = 0;  ///< taken
     std::int64_t steps_asked = 0;
     bool interrupted = false;
     double dt = 0;    // s

@@ -1,5 +1,7 @@
 #include "run_scene.hpp"
 
+#include <carom/version.hpp>
+
 #include <algorithm>
 #include <cctype>
 #include <chrono>
@@ -39,6 +41,7 @@ std::string settings_text(const Scene& scene, const Plan& plan) {
                                 {"precision", plan.precision},
                                 {"isa", plan.isa},
                                 {"threads", plan.threads}};
+    json["effects"] = nlohmann::ordered_json::array();
     for (const EffectReport& effect : plan.effects)
         if (effect.on) json["effects"].push_back(effect.name);
     return json.dump();
@@ -47,15 +50,17 @@ std::string settings_text(const Scene& scene, const Plan& plan) {
 /// The files that grow during a run.
 class Recorder {
   public:
-    Recorder(const Scene& scene, const Simulation& simulation, ResultFolder& folder, const RunChoices& choices)
+    Recorder(const Scene& scene, const Simulation& simulation, ResultFolder& folder,
+             const RunChoices& choices)
         : every_(scene.record.every) {
         if (simulation.keeps_ledger()) ledger_ = std::make_unique<LedgerCsv>(folder.temporary("ledger.csv"));
         if (choices.no_trajectory) return;
         const std::int64_t frames = 1 + scene.step.count / every_ + (scene.step.count % every_ != 0 ? 1 : 0);
-        trajectory_ = std::make_unique<TrajectoryH5>(folder.temporary("trajectory.h5"), scene, simulation,
-                                                     TrajectoryNotes{.scene_text = choices.scene_text,
-                                                                     .settings = settings_text(scene, simulation.plan()),
-                                                                     .frame_count = frames});
+        trajectory_ = std::make_unique<TrajectoryH5>(
+            folder.temporary("trajectory.h5"), scene, simulation,
+            TrajectoryNotes{.scene_text = choices.scene_text,
+                            .settings = settings_text(scene, simulation.plan()),
+                            .frame_count = frames});
         trajectory_->append(simulation);
     }
 
@@ -119,11 +124,13 @@ void describe_end(const Scene& scene, const Simulation& simulation, RunOutcome& 
     run.state_hash = simulation.state_hash();
     if (run.interrupted)
         run.messages.push_back(format("interrupted after %lld of %lld steps; the results are those so far",
-                                      static_cast<long long>(run.steps), static_cast<long long>(run.steps_asked)));
+                                      static_cast<long long>(run.steps),
+                                      static_cast<long long>(run.steps_asked)));
     if (!run.quarantined.empty())
-        run.messages.push_back(format("%zu of %zu bodies were disabled because their state left the limits, the first is "
-                                      "body %zu; see \"quarantined\" in summary.json",
-                                      run.quarantined.size(), run.bodies, run.quarantined.front()));
+        run.messages.push_back(
+            format("%zu of %zu bodies were disabled because their state left the limits, the first is "
+                   "body %zu; see \"quarantined\" in summary.json",
+                   run.quarantined.size(), run.bodies, run.quarantined.front()));
     if (run.profile.unresolved_impacts > 0)
         run.messages.push_back(format("%lld impacts were left to the next step; a shorter step resolves them",
                                       static_cast<long long>(run.profile.unresolved_impacts)));
@@ -131,10 +138,12 @@ void describe_end(const Scene& scene, const Simulation& simulation, RunOutcome& 
 
 }  // namespace
 
-RunOutcome run_scene(const Scene& scene, Simulation& simulation, ResultFolder& folder, const RunChoices& choices) {
+RunOutcome run_scene(const Scene& scene, Simulation& simulation, ResultFolder& folder,
+                     const RunChoices& choices) {
     RunOutcome run;
     run.plan = simulation.plan();
-    const std::filesystem::path summary = folder.temporary("summary.json"), final = folder.temporary("final.csv");
+    const std::filesystem::path summary = folder.temporary("summary.json"),
+                                final = folder.temporary("final.csv");
     Recorder recorder(scene, simulation, folder, choices);
     take_steps(scene, simulation, recorder, choices.quiet, run);
     recorder.close(simulation, run.steps);
@@ -149,7 +158,8 @@ RunOutcome run_scene(const Scene& scene, Simulation& simulation, ResultFolder& f
 std::string folder_name(const std::string& scene_name) {
     std::string name = scene_name.substr(0, kLongestFolderName);
     const auto is_plain = [](char c) {
-        return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.' || c == ' ';
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.' ||
+               c == ' ';
     };
     for (char& c : name)
         if (!is_plain(c)) c = '_';

@@ -18,7 +18,8 @@ struct RunChoices {
 
 /// Steps the simulation as often as the scene says, or until it is interrupted, and writes the result files.
 /// @throws WriteError; the folder is then as it was.
-RunOutcome run_scene(const Scene& scene, Simulation& simulation, ResultFolder& folder, const RunChoices& choices);
+RunOutcome run_scene(const Scene& scene, Simulation& simulation, ResultFolder& folder,
+                     const RunChoices& choices);
 
 /// The scene's name as the name of a folder: no separators, no leading dots, of sensible length.
 std::string folder_name(const std::string& scene_name);

@@ -13,15 +13,17 @@ constexpr std::size_t kBodiesShown = 10;
 std::string heading(const RunOutcome& run) {
     std::string text = format("%s: %zu bodies, %lld steps of %g s, %g s simulated", run.scene_name.c_str(),
                               run.bodies, static_cast<long long>(run.steps), run.dt, run.time);
-    if (run.interrupted) text += format(" (interrupted; %lld steps asked)", static_cast<long long>(run.steps_asked));
-    text += format("\n  solver %s (%s), %d substep%s, %s precision, %s, %d thread%s\n", run.plan.solver.c_str(),
-                   run.plan.solver_reason.c_str(), run.plan.substeps, run.plan.substeps == 1 ? "" : "s",
-                   run.plan.precision.c_str(), run.plan.isa.c_str(), run.plan.threads,
-                   run.plan.threads == 1 ? "" : "s");
+    if (run.interrupted)
+        text += format(" (interrupted; %lld steps asked)", static_cast<long long>(run.steps_asked));
+    text += format("\n  solver %s (%s), %d substep%s, %s precision, %s, %d thread%s\n",
+                   run.plan.solver.c_str(), run.plan.solver_reason.c_str(), run.plan.substeps,
+                   run.plan.substeps == 1 ? "" : "s", run.plan.precision.c_str(), run.plan.isa.c_str(),
+                   run.plan.threads, run.plan.threads == 1 ? "" : "s");
     return text;
 }
 
-std::string course_line(const char* label, double first, const double* second, double last, const char* unit) {
+std::string course_line(const char* label, double first, const double* second, double last,
+                        const char* unit) {
     std::string text = format("  %-18s %14.4f", label, without_minus_zero(first, 4));
     text += second != nullptr ? format(" %14.4f", without_minus_zero(*second, 4)) : format(" %14s", "");
     return text + format(" %14.4f  %s\n", without_minus_zero(last, 4), unit);
@@ -48,9 +50,10 @@ std::string course_table(const RunOutcome& run) {
     if (!first) return text;
     const double before = first->energy.kinetic + first->energy.rotational;
     const double after = books.energy.kinetic + books.energy.rotational;
-    text += format("  from the first step to the last: kinetic and rotational energy x %.4f, momentum changed by %.4f\n",
-                   before > 0 ? after / before : 0.0,
-                   std::hypot(books.momentum.x - first->momentum.x, books.momentum.y - first->momentum.y));
+    text += format(
+        "  from the first step to the last: kinetic and rotational energy x %.4f, momentum changed by %.4f\n",
+        before > 0 ? after / before : 0.0,
+        std::hypot(books.momentum.x - first->momentum.x, books.momentum.y - first->momentum.y));
     return text;
 }
 
@@ -72,9 +75,11 @@ std::string ledger_line(const EnergyByCause& work) {
 }
 
 std::string contact_line(const RunOutcome& run) {
-    return format("  contacts: %lld touching of %lld candidates; overlap %.3g %% mean, %.3g %% max of the smaller radius\n",
-                  static_cast<long long>(run.overlaps.touching), static_cast<long long>(run.overlaps.candidates),
-                  100 * run.overlaps.mean, 100 * run.overlaps.max);
+    return format(
+        "  contacts: %lld touching of %lld candidates; overlap %.3g %% mean, %.3g %% max of the smaller "
+        "radius\n",
+        static_cast<long long>(run.overlaps.touching), static_cast<long long>(run.overlaps.candidates),
+        100 * run.overlaps.mean, 100 * run.overlaps.max);
 }
 
 std::string time_line(const RunOutcome& run) {
@@ -82,7 +87,8 @@ std::string time_line(const RunOutcome& run) {
     const double step = run.stepping_seconds / static_cast<double>(run.steps);
     std::string text = format("  time: %s in all, %s a step", seconds_text(run.total_seconds).c_str(),
                               seconds_text(step).c_str());
-    if (run.bodies > 0) text += format(", %s a body a step", seconds_text(step / static_cast<double>(run.bodies)).c_str());
+    if (run.bodies > 0)
+        text += format(", %s a body a step", seconds_text(step / static_cast<double>(run.bodies)).c_str());
     return text + format("; recording %s\n", seconds_text(run.recording_seconds).c_str());
 }
 
@@ -104,7 +110,8 @@ std::string body_table(const Scene& scene, const Simulation& simulation) {
         text += format("  %6zu  (%8.2f,%8.2f)  (%8.2f,%8.2f)  %10.3f  %8.3f\n", body,
                        without_minus_zero(state.position.x, 2), without_minus_zero(state.position.y, 2),
                        without_minus_zero(state.velocity.x, 2), without_minus_zero(state.velocity.y, 2),
-                       kinetic_energy_of(scene.bodies[body], state), without_minus_zero(state.angular_velocity, 3));
+                       kinetic_energy_of(scene.bodies[body], state),
+                       without_minus_zero(state.angular_velocity, 3));
     }
     if (shown < scene.bodies.size()) text += format("  ... and %zu more\n", scene.bodies.size() - shown);
     return text;

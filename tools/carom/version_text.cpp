@@ -3,13 +3,14 @@
 #include <string>
 
 #include "commands.hpp"
+#include "format.hpp"
 
 namespace carom::tool {
 namespace {
 
-std::string joined(const std::vector<std::string>& names) {
+std::string listed(const std::vector<std::string>& names) {
     std::string text;
-    for (const std::string& name : names) text += (text.empty() ? "" : " ") + name;
+    for (const std::string& name : names) text.append(text.empty() ? "" : " ").append(name);
     return text;
 }
 
@@ -17,12 +18,14 @@ std::string joined(const std::vector<std::string>& names) {
 
 std::string version_text() {
     const BuildInfo info = build_info();
-    return "carom " + info.version + "\n" +
-           "instruction sets  built: " + joined(info.built) + "; this machine runs: " + joined(info.runnable) +
-           "; chosen: " + info.chosen + "\n" +
-           "threads           " + std::to_string(info.threads) + (info.openmp ? " (OpenMP)" : " (built without OpenMP)") + "\n" +
-           "xsimd             " + info.xsimd_version + "\n" +
-           "compiler          " + info.compiler;
+    return joined("carom ", info.version, "\n",                               //
+                  "instruction sets  built: ", listed(info.built),            //
+                  "; this machine runs: ", listed(info.runnable),             //
+                  "; chosen: ", info.chosen, "\n",                            //
+                  "threads           ", std::to_string(info.threads),         //
+                  info.openmp ? " (OpenMP)\n" : " (built without OpenMP)\n",  //
+                  "xsimd             ", info.xsimd_version, "\n",             //
+                  "compiler          ", info.compiler);
 }
 
 }  // namespace carom::tool

@@ -3,6 +3,7 @@
 /// Everything a program needs to embed Carom.
 
 #include <carom/accuracy.hpp>
+#include <carom/build_info.hpp>
 #include <carom/effects.hpp>
 #include <carom/errors.hpp>
 #include <carom/generators.hpp>

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "exit_codes.hpp"
+#include "format.hpp"
 
 namespace carom::tool {
 namespace {
@@ -24,7 +25,9 @@ herr_t note_reason(unsigned, const H5E_error2_t* error, void* reason) {
 }
 
 /// HDF5 would print its errors on standard error; each thread has its own setting.
-void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+void silence_hdf5() {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 }  // namespace
 
@@ -38,7 +41,7 @@ hid_t H5File::check(hid_t result) {
     if (result >= 0) return result;
     std::string reason = "HDF5 error";
     H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, &note_reason, &reason);
-    throw WriteError(name_ + ": " + reason);
+    throw WriteError(joined(name_, ": ", reason));
 }
 
 void H5File::set_attribute(hid_t object, const char* name, const std::string& text) {
@@ -73,7 +76,8 @@ hid_t H5File::make_growing(const char* name, hid_t type, std::vector<hsize_t> sh
                            std::vector<hsize_t> chunk) {
     std::vector<hsize_t> limit = shape;
     for (std::size_t i = 0; i < shape.size(); ++i)
-        if (i == 0 || shape[i] == 0) limit[i] = H5S_UNLIMITED;  // a chunk is never wider than a fixed dimension
+        if (i == 0 || shape[i] == 0)
+            limit[i] = H5S_UNLIMITED;  // a chunk is never wider than a fixed dimension
     shape[0] = 0;
     const hid_t space = check(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), limit.data()));
     const hid_t properties = filters(chunk);
@@ -91,8 +95,7 @@ hid_t H5File::make_column(const char* name, const std::vector<double>& values) {
         size > 0 ? filters({std::min(size, kLargestChunk)}) : check(H5Pcreate(H5P_DATASET_CREATE));
     const hid_t dataset =
         check(H5Dcreate2(file_, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, H5P_DEFAULT));
-    if (size > 0)
-        check(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+    if (size > 0) check(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
     H5Pclose(properties);
     H5Sclose(space);
     return dataset;
@@ -103,22 +106,27 @@ void H5File::set_extent(hid_t dataset, const std::vector<hsize_t>& shape) {
     check(H5Dset_extent(dataset, shape.data()));
 }
 
-void H5File::write_chunk(hid_t dataset, const std::vector<hsize_t>& offset, std::span<const std::byte> bytes) {
+void H5File::write_chunk(hid_t dataset, const std::vector<hsize_t>& offset,
+                         std::span<const std::byte> bytes) {
     constexpr std::uint32_t kAllFiltersApplied = 0;
-    check(H5Dwrite_chunk(dataset, H5P_DEFAULT, kAllFiltersApplied, offset.data(), bytes.size(), bytes.data()));
+    check(
+        H5Dwrite_chunk(dataset, H5P_DEFAULT, kAllFiltersApplied, offset.data(), bytes.size(), bytes.data()));
 }
 
 void H5File::append(hid_t dataset, hsize_t first, std::span<const double> values) {
     const hsize_t count = values.size();
     set_extent(dataset, {first + count});
-    const hid_t file_space = check(H5Dget_space(dataset)), memory_space = check(H5Screate_simple(1, &count, nullptr));
+    const hid_t file_space = check(H5Dget_space(dataset)),
+                memory_space = check(H5Screate_simple(1, &count, nullptr));
     check(H5Sselect_hyperslab(file_space, H5S_SELECT_SET, &first, nullptr, &count, nullptr));
     check(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, memory_space, file_space, H5P_DEFAULT, values.data()));
     H5Sclose(memory_space);
     H5Sclose(file_space);
 }
 
-void H5File::close_dataset(hid_t dataset) { check(H5Dclose(dataset)); }
+void H5File::close_dataset(hid_t dataset) {
+    check(H5Dclose(dataset));
+}
 
 void H5File::close() {
     check(H5Fflush(file_, H5F_SCOPE_LOCAL));

@@ -16,10 +16,12 @@ void LedgerCsv::append(const Ledger& ledger, std::int64_t impacts) {
     const MomentumByCause& given = ledger.momentum_by_cause;
     line_.clear();
     for (const double value :
-         {ledger.time, energy.kinetic, energy.rotational, energy.potential, energy.total(), ledger.momentum.x,
-          ledger.momentum.y, ledger.angular_momentum, work.gravity, work.drag, work.restitution, work.friction,
-          work.correction, work.joints, work.drive, work.unexplained, given.gravity.x, given.gravity.y,
-          given.drag.x, given.drag.y, given.walls.x, given.walls.y, given.immovable.x, given.immovable.y,
+         {ledger.time,         energy.kinetic,      energy.rotational,  energy.potential,
+          energy.total(),      ledger.momentum.x,   ledger.momentum.y,  ledger.angular_momentum,
+          work.gravity,        work.drag,           work.restitution,   work.friction,
+          work.correction,     work.joints,         work.drive,         work.unexplained,
+          given.gravity.x,     given.gravity.y,     given.drag.x,       given.drag.y,
+          given.walls.x,       given.walls.y,       given.immovable.x,  given.immovable.y,
           given.unexplained.x, given.unexplained.y, ledger.wall_impulse}) {
         append_number(line_, value);
         line_ += ',';

@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <new>
 #include <stdexcept>
-#include <string>
+
+#include "format.hpp"
 
 namespace carom::tool {
 namespace {
@@ -22,7 +23,7 @@ void shuffle_elements(const std::byte* data, std::byte* planes, std::size_t coun
 
 void check(int result) {
     if (result == Z_MEM_ERROR) throw std::bad_alloc();
-    if (result != Z_OK) throw std::logic_error("zlib: deflate failed with " + std::to_string(result));
+    if (result != Z_OK) throw std::logic_error(format("zlib: deflate failed with %d", result));
 }
 
 }  // namespace
@@ -41,9 +42,13 @@ PlaneKind kind_of_plane(std::span<const std::byte> plane, std::size_t row) {
     return entropy < kNoiseEntropy ? PlaneKind::uneven : PlaneKind::noise;
 }
 
-PlaneDeflater::PlaneDeflater() { check(deflateInit(&stream_, kFastest)); }
+PlaneDeflater::PlaneDeflater() {
+    check(deflateInit(&stream_, kFastest));
+}
 
-PlaneDeflater::~PlaneDeflater() { deflateEnd(&stream_); }
+PlaneDeflater::~PlaneDeflater() {
+    deflateEnd(&stream_);
+}
 
 void PlaneDeflater::shuffle(std::span<const std::byte> data, std::size_t element_size) {
     planes_.resize(data.size());

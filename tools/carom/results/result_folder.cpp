@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "exit_codes.hpp"
+#include "format.hpp"
 
 namespace carom::tool {
 namespace {
@@ -20,11 +21,12 @@ namespace fs = std::filesystem;
 // What a run may leave in a folder; a file of these names from an earlier run does not outlive the next one.
 constexpr std::array<std::string_view, 5> kResultFiles{"summary.json", "final.csv", "ledger.csv",
                                                        "trajectory.h5", "report.html"};
+constexpr std::string_view kSummary = "summary.json";
 constexpr std::string_view kTemporarySuffix = ".part";
 
 [[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
-    throw UsageError("output folder \"" + path.string() + "\": " + reason +
-                     ". Name another one with --out. Nothing was written.");
+    throw UsageError(joined("output folder \"", path.string(), "\": ", reason,
+                            ". Name another one with --out. Nothing was written."));
 }
 
 }  // namespace
@@ -44,7 +46,7 @@ ResultFolder::ResultFolder(fs::path path) : path_(std::move(path)) {
 ResultFolder::~ResultFolder() {
     if (!committed_) {
         std::error_code ignored;
-        for (const std::string& name : names_) fs::remove(path_ / (name + std::string(kTemporarySuffix)), ignored);
+        for (const std::string& name : names_) fs::remove(path_ / joined(name, kTemporarySuffix), ignored);
         remove_made_folders();
     }
     ::close(lock_);
@@ -54,14 +56,15 @@ void ResultFolder::make_folders() {
     std::error_code error;
     if (path_.empty()) refuse(path_, "is no name");
     std::vector<fs::path> missing;
-    for (fs::path folder = path_; !folder.empty() && !fs::exists(folder, error); folder = folder.parent_path()) {
+    for (fs::path folder = path_; !folder.empty() && !fs::exists(folder, error);
+         folder = folder.parent_path()) {
         if (folder.has_filename()) missing.push_back(folder);
         if (folder == folder.parent_path()) break;
     }
     std::reverse(missing.begin(), missing.end());
     for (const fs::path& folder : missing) {
         if (fs::create_directory(folder, error)) made_.push_back(folder);
-        if (error) refuse(path_, "cannot make \"" + folder.string() + "\": " + error.message());
+        if (error) refuse(path_, joined("cannot make \"", folder.string(), "\": ", error.message()));
     }
     if (!fs::is_directory(path_, error)) refuse(path_, error ? error.message() : "is not a folder");
 }
@@ -78,11 +81,13 @@ void ResultFolder::lock() {
 void ResultFolder::check_writable() {
     for (const std::string_view name : kResultFiles) {
         std::error_code error;
-        if (fs::is_directory(path_ / name, error)) refuse(path_, "\"" + std::string(name) + "\" in it is a folder");
+        fs::remove(path_ / joined(name, kTemporarySuffix), error);  // of a run that was killed
+        if (fs::is_directory(path_ / name, error)) refuse(path_, joined("\"", name, "\" in it is a folder"));
     }
-    const fs::path probe = path_ / ("probe" + std::string(kTemporarySuffix));
-    const int file = ::open(probe.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (file < 0) refuse(path_, std::string("cannot write a file there: ") + std::strerror(errno));
+    const fs::path probe = path_ / joined("probe", kTemporarySuffix);
+    ::unlink(probe.c_str());
+    const int file = ::open(probe.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file < 0) refuse(path_, joined("cannot write a file there: ", std::strerror(errno)));
     ::close(file);
     ::unlink(probe.c_str());
 }
@@ -94,20 +99,25 @@ void ResultFolder::remove_made_folders() noexcept {
 
 fs::path ResultFolder::temporary(std::string_view name) {
     if (std::find(names_.begin(), names_.end(), name) == names_.end()) names_.emplace_back(name);
-    return path_ / (std::string(name) + std::string(kTemporarySuffix));
+    return path_ / joined(name, kTemporarySuffix);
 }
 
 void ResultFolder::commit() {
-    for (const std::string& name : names_) {
-        std::error_code error;
-        fs::rename(temporary(name), path_ / name, error);
-        if (error) throw WriteError((path_ / name).string() + ": " + error.message());
-    }
-    committed_ = true;
     for (const std::string_view name : kResultFiles) {
         std::error_code ignored;
-        if (std::find(names_.begin(), names_.end(), name) == names_.end()) fs::remove(path_ / name, ignored);
+        const bool replaced = std::find(names_.begin(), names_.end(), name) != names_.end();
+        if (!replaced || name == kSummary) fs::remove(path_ / name, ignored);
     }
+    for (const std::string& name : names_)
+        if (name != kSummary) rename(name);
+    rename(std::string(kSummary));
+    committed_ = true;
+}
+
+void ResultFolder::rename(const std::string& name) {
+    std::error_code error;
+    fs::rename(temporary(name), path_ / name, error);
+    if (error) throw WriteError(joined((path_ / name).string(), ": ", error.message()));
 }
 
 }  // namespace carom::tool

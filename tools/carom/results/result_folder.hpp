@@ -22,7 +22,8 @@ class ResultFolder {
     const std::filesystem::path& path() const { return path_; }
     /// Where the file of that name is to be written until `commit`.
     std::filesystem::path temporary(std::string_view name);
-    /// Renames all temporary files, and removes result files of an earlier run that this one does not have.
+    /// Renames all temporary files, summary.json last, and removes result files of an earlier run that this
+    /// one does not have: where there is a summary, the files beside it belong to it.
     /// @throws WriteError
     void commit();
     /// Names given to `temporary`, in that order.
@@ -32,6 +33,7 @@ class ResultFolder {
     void make_folders();
     void lock();
     void check_writable();
+    void rename(const std::string& name);
     void remove_made_folders() noexcept;
 
     std::filesystem::path path_;

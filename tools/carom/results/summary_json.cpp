@@ -14,7 +14,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kIndent = 2;  // spaces
 
-Json to_json(Vec2 v) { return Json::array({v.x, v.y}); }
+Json to_json(Vec2 v) {
+    return Json::array({v.x, v.y});
+}
 
 Json to_json(const Energy& energy) {
     return {{"kinetic", energy.kinetic},
@@ -24,10 +26,14 @@ Json to_json(const Energy& energy) {
 }
 
 Json to_json(const EnergyByCause& work) {
-    return {{"gravity", work.gravity},         {"drag", work.drag},
-            {"restitution", work.restitution}, {"friction", work.friction},
-            {"correction", work.correction},   {"joints", work.joints},
-            {"drive", work.drive},             {"unexplained", work.unexplained}};
+    return {{"gravity", work.gravity},
+            {"drag", work.drag},
+            {"restitution", work.restitution},
+            {"friction", work.friction},
+            {"correction", work.correction},
+            {"joints", work.joints},
+            {"drive", work.drive},
+            {"unexplained", work.unexplained}};
 }
 
 Json to_json(const MomentumByCause& given) {
@@ -76,10 +82,13 @@ Json counters_of(const Profile& profile) {
 
 /// Initial and final value, and the one after the first step if there was one.
 template <class Value>
-Json course(const Value& initial, const std::optional<Ledger>& first, const Value& last, Value Ledger::* member) {
+Json course(const Value& initial, const std::optional<Ledger>& first, const Value& last,
+            Value Ledger::*member) {
     const auto json = [](const Value& value) {
-        if constexpr (std::is_same_v<Value, double>) return Json(value);
-        else return to_json(value);
+        if constexpr (std::is_same_v<Value, double>)
+            return Json(value);
+        else
+            return to_json(value);
     };
     Json values{{"initial", json(initial)}, {"final", json(last)}};
     if (first) values["after_first_step"] = json((*first).*member);
@@ -96,13 +105,20 @@ std::string hash_text(std::uint64_t hash) {
 
 Json summary_of(const RunOutcome& run) {
     const Ledger& books = run.ledger;
-    Json json{{"scene", run.scene_name},      {"version", kVersion},
-              {"bodies", run.bodies},         {"joints", 0},
-              {"steps", run.steps},           {"steps_asked", run.steps_asked},
-              {"interrupted", run.interrupted}, {"dt", run.dt},
-              {"time", run.time},             {"solver", run.plan.solver},
-              {"substeps", run.plan.substeps}, {"iterations", run.iterations.value_or(1)},
-              {"precision", run.plan.precision}, {"isa", run.plan.isa},
+    Json json{{"scene", run.scene_name},
+              {"version", kVersion},
+              {"bodies", run.bodies},
+              {"joints", 0},
+              {"steps", run.steps},
+              {"steps_asked", run.steps_asked},
+              {"interrupted", run.interrupted},
+              {"dt", run.dt},
+              {"time", run.time},
+              {"solver", run.plan.solver},
+              {"substeps", run.plan.substeps},
+              {"iterations", run.iterations.value_or(1)},
+              {"precision", run.plan.precision},
+              {"isa", run.plan.isa},
               {"threads", run.plan.threads}};
     json["effects"] = effects_of(run.plan);
     json["stages"] = stages_of(run.profile);
@@ -131,7 +147,8 @@ Json summary_of(const RunOutcome& run) {
 
 void write_summary_json(const std::filesystem::path& path, const RunOutcome& outcome) {
     TextFile file(path);
-    file.write(summary_of(outcome).dump(kIndent, ' ', false, Json::error_handler_t::replace) + "\n");
+    file.write(summary_of(outcome).dump(kIndent, ' ', false, Json::error_handler_t::replace));
+    file.write("\n");
     file.close();
 }
 

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "exit_codes.hpp"
+#include "format.hpp"
 
 namespace carom::tool {
 
@@ -28,7 +29,9 @@ void TextFile::close() {
     if (std::fclose(file) != 0) fail();
 }
 
-void TextFile::fail() { throw WriteError(name_ + ": " + std::strerror(errno)); }
+void TextFile::fail() {
+    throw WriteError(joined(name_, ": ", std::strerror(errno)));
+}
 
 void append_number(std::string& line, double value) {
     std::array<char, 32> text;  // the longest is "-2.2250738585072014e-308"

@@ -8,22 +8,24 @@
 namespace carom::tool {
 namespace {
 
-constexpr std::size_t kBlockBytes = 512 * 1024;        // small enough for caches, large enough for deflate
-constexpr std::size_t kLargestBodiesAChunk = 64 * 1024;  // 1 MiB of double positions: what HDF5 caches by default
-constexpr std::size_t kNumbersABody = 5;               // position, velocity, angle
-constexpr int kBlockCount = 3;                         // one being filled, one waiting, one being written
+constexpr std::size_t kBlockBytes = 512 * 1024;  // small enough for caches, large enough for deflate
+constexpr std::size_t kLargestBodiesAChunk =
+    64 * 1024;                            // 1 MiB of double positions: what HDF5 caches by default
+constexpr std::size_t kNumbersABody = 5;  // position, velocity, angle
+constexpr int kBlockCount = 3;            // one being filled, one waiting, one being written
 constexpr hsize_t kTimesAChunk = 4096;
 
 std::size_t frames_a_block(std::size_t bodies, std::size_t element_size, std::int64_t frame_count) {
     const std::size_t frame_bytes = std::max<std::size_t>(1, bodies * kNumbersABody * element_size);
     const auto expected = static_cast<std::size_t>(std::max<std::int64_t>(1, frame_count));
-    return std::clamp<std::size_t>(kBlockBytes / frame_bytes, 1, std::min<std::size_t>(expected, kTimesAChunk));
+    return std::clamp<std::size_t>(kBlockBytes / frame_bytes, 1,
+                                   std::min<std::size_t>(expected, kTimesAChunk));
 }
 
 }  // namespace
 
-TrajectoryH5::TrajectoryH5(const std::filesystem::path& path, const Scene& scene, const Simulation& simulation,
-                           const TrajectoryNotes& notes)
+TrajectoryH5::TrajectoryH5(const std::filesystem::path& path, const Scene& scene,
+                           const Simulation& simulation, const TrajectoryNotes& notes)
     : file_(path),
       bodies_(simulation.body_count()),
       element_size_(simulation.precision() == Precision::single_ ? sizeof(float) : sizeof(double)),
@@ -77,7 +79,7 @@ void TrajectoryH5::make_datasets(const Scene& scene) {
 }
 
 void TrajectoryH5::make_dataset(const char* name, const char* unit, hsize_t components,
-                                std::vector<std::byte> Block::* column) {
+                                std::vector<std::byte> Block::*column) {
     const hid_t type = element_size_ == sizeof(float) ? H5T_IEEE_F32LE : H5T_IEEE_F64LE;
     std::vector<hsize_t> shape{0, bodies_}, chunk{frames_a_block_, bodies_a_chunk_};
     if (components > 1) shape.push_back(components), chunk.push_back(components);
@@ -149,8 +151,8 @@ void TrajectoryH5::write_block(const Block& block) {
     frames_written_ += block.time.size();
 }
 
-/// A chunk holds all frames of a block for a range of bodies. If a frame needs more than one chunk, a block is
-/// one frame; so the bodies of a chunk are always contiguous in the block.
+/// A chunk holds all frames of a block for a range of bodies. If a frame needs more than one chunk, a block
+/// is one frame; so the bodies of a chunk are always contiguous in the block.
 void TrajectoryH5::write_frames(const Dataset& dataset, const Block& block) {
     std::vector<hsize_t> shape{frames_written_ + block.time.size(), bodies_}, offset{frames_written_, 0};
     if (dataset.components > 1) shape.push_back(dataset.components), offset.push_back(0);

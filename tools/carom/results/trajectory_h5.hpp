@@ -19,8 +19,8 @@ namespace carom::tool {
 
 /// What a trajectory says of the run it was recorded in.
 struct TrajectoryNotes {
-    std::string scene_text;  ///< as it stands in the scene file
-    std::string settings;    ///< JSON: what the run did with it, options included
+    std::string scene_text;    ///< as it stands in the scene file
+    std::string settings;      ///< JSON: what the run did with it, options included
     std::int64_t frame_count;  ///< expected; fewer or more may follow
 };
 
@@ -47,12 +47,12 @@ class TrajectoryH5 {
     struct Dataset {
         hid_t id = H5I_INVALID_HID;
         hsize_t components = 1;
-        std::vector<std::byte> Block::* column = nullptr;
+        std::vector<std::byte> Block::*column = nullptr;
     };
 
     void make_datasets(const Scene& scene);
     void make_dataset(const char* name, const char* unit, hsize_t components,
-                      std::vector<std::byte> Block::* column);
+                      std::vector<std::byte> Block::*column);
     void hand_over();
     void write_blocks() noexcept;
     void write_block(const Block& block);

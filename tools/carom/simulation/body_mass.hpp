@@ -7,7 +7,9 @@
 
 namespace carom::tool {
 
-inline double radius_of(const Body& body) { return std::get<Disc>(body.shape).radius; }
+inline double radius_of(const Body& body) {
+    return std::get<Disc>(body.shape).radius;
+}
 
 /// kg: given, or density times area.
 inline double mass_of(const Body& body) {

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <string>
 
+#include "format.hpp"
 #include "simulation/body_mass.hpp"
 
 namespace carom::tool {
@@ -23,7 +24,7 @@ template <class... Parts>
 
 std::string label(const Scene& scene, std::size_t index) {
     const std::string& name = scene.bodies[index].name;
-    return "body " + std::to_string(index) + (name.empty() ? "" : " (\"" + name + "\")");
+    return name.empty() ? format("body %zu", index) : joined(format("body %zu (\"", index), name, "\")");
 }
 
 void check_bodies(const Scene& scene) {
@@ -34,8 +35,8 @@ void check_bodies(const Scene& scene) {
                    body.type == BodyType::static_body ? "static" : "kinematic",
                    "; the naive engine moves every body. ", kRemedy);
         if (!std::holds_alternative<Disc>(body.shape))
-            refuse(ErrorCode::inconsistent, label(scene, i), " is not a disc; the naive engine knows discs only. ",
-                   kRemedy);
+            refuse(ErrorCode::inconsistent, label(scene, i),
+                   " is not a disc; the naive engine knows discs only. ", kRemedy);
         if (body.material.friction > 0)
             refuse(ErrorCode::inconsistent, label(scene, i), " has friction ", body.material.friction,
                    "; the naive engine has none. ", kRemedy);
@@ -48,8 +49,9 @@ void check_bodies(const Scene& scene) {
 
 void check_effect(const char* name, std::optional<bool> wish, bool needed) {
     if (wish == false && needed)
-        refuse(ErrorCode::inconsistent, "effect ", name,
-               " is forced off, but the scene needs it. Leave it out of the effects, or set its value to zero.");
+        refuse(
+            ErrorCode::inconsistent, "effect ", name,
+            " is forced off, but the scene needs it. Leave it out of the effects, or set its value to zero.");
 }
 
 void check_settings(const Scene& scene) {
@@ -72,8 +74,14 @@ void check_settings(const Scene& scene) {
 }
 
 PairwiseWalls to_pairwise(const Walls& walls, double body_restitution) {
-    return {.min_x = walls.min.x, .min_y = walls.min.y, .max_x = walls.max.x, .max_y = walls.max.y,
-            .left = walls.left, .right = walls.right, .bottom = walls.bottom, .top = walls.top,
+    return {.min_x = walls.min.x,
+            .min_y = walls.min.y,
+            .max_x = walls.max.x,
+            .max_y = walls.max.y,
+            .left = walls.left,
+            .right = walls.right,
+            .bottom = walls.bottom,
+            .top = walls.top,
             .restitution = std::max(walls.material.restitution, body_restitution)};
 }
 
@@ -90,10 +98,14 @@ PairwiseScene to_pairwise(const Scene& scene) {
     converted.restitution = scene.bodies.empty() ? 0 : scene.bodies[0].material.restitution;
     if (scene.walls) converted.walls = to_pairwise(*scene.walls, converted.restitution);
     for (const Body& body : scene.bodies)
-        converted.bodies.push_back({.x = body.position.x, .y = body.position.y,
-                                    .vx = body.velocity.x, .vy = body.velocity.y,
-                                    .mass = mass_of(body), .radius = std::get<Disc>(body.shape).radius,
-                                    .angle = body.angle, .omega = body.angular_velocity});
+        converted.bodies.push_back({.x = body.position.x,
+                                    .y = body.position.y,
+                                    .vx = body.velocity.x,
+                                    .vy = body.velocity.y,
+                                    .mass = mass_of(body),
+                                    .radius = std::get<Disc>(body.shape).radius,
+                                    .angle = body.angle,
+                                    .omega = body.angular_velocity});
     return converted;
 }
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "format.hpp"
 #include "simulation/pairwise_scene.hpp"
 #include "simulation/simulation.hpp"
 
@@ -14,11 +15,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-Vec2 to_vec2(PairwiseVector v) { return {v.x, v.y}; }
+Vec2 to_vec2(PairwiseVector v) {
+    return {v.x, v.y};
+}
 
 bool is_finite(const PairwiseBody& body) {
-    return std::isfinite(body.x) && std::isfinite(body.y) && std::isfinite(body.vx) && std::isfinite(body.vy) &&
-           std::isfinite(body.angle) && std::isfinite(body.omega);
+    return std::isfinite(body.x) && std::isfinite(body.y) && std::isfinite(body.vx) &&
+           std::isfinite(body.vy) && std::isfinite(body.angle) && std::isfinite(body.omega);
 }
 
 /// Collects overlaps as fractions of a radius.
@@ -67,7 +70,8 @@ class PairwiseSimulation final : public Simulation {
     double time() const override { return engine_.time(); }
     BodyState state(std::size_t body) const override {
         const PairwiseBody& b = engine_.bodies()[body];
-        return {.position = {b.x, b.y}, .angle = b.angle, .velocity = {b.vx, b.vy}, .angular_velocity = b.omega};
+        return {
+            .position = {b.x, b.y}, .angle = b.angle, .velocity = {b.vx, b.vy}, .angular_velocity = b.omega};
     }
     void copy_frame(const FrameTarget& frame) const override {
         auto* position = reinterpret_cast<double*>(frame.position);
@@ -123,7 +127,8 @@ Ledger PairwiseSimulation::ledger() const {
     const double mass = engine_.total_mass(), time = engine_.time();
     now.energy_by_cause.gravity = now.initial.potential - now.energy.potential;
     now.energy_by_cause.unexplained = now.energy.total() - now.initial.total();
-    now.momentum_by_cause.gravity = {mass * description_.gravity_x * time, mass * description_.gravity_y * time};
+    now.momentum_by_cause.gravity = {mass * description_.gravity_x * time,
+                                     mass * description_.gravity_y * time};
     now.momentum_by_cause.unexplained = {
         now.momentum.x - now.initial_momentum.x - now.momentum_by_cause.gravity.x,
         now.momentum.y - now.initial_momentum.y - now.momentum_by_cause.gravity.y};
@@ -178,7 +183,8 @@ std::uint64_t PairwiseSimulation::state_hash() const {
     for (const PairwiseBody& b : engine_.bodies())
         for (const double value : {b.x, b.y, b.vx, b.vy, b.angle, b.omega}) {
             const auto bits = std::bit_cast<std::uint64_t>(value);
-            for (int shift = 0; shift < 64; shift += 8) hash = (hash ^ (bits >> shift & 0xff)) * 1099511628211u;
+            for (int shift = 0; shift < 64; shift += 8)
+                hash = (hash ^ (bits >> shift & 0xff)) * 1099511628211u;
         }
     return hash;
 }
@@ -202,8 +208,8 @@ Plan PairwiseSimulation::plan() const {
         {"walls", description_.walls.has_value(), description_.walls ? "the scene has walls" : "no walls"},
         {"restitution", bounces, bounces ? "a restitution is above zero" : "every restitution is zero"},
         {"rotation", spins, spins ? "a body spins from the start" : "nothing spins"},
-        {"ledger", keeps_ledger_, keeps_ledger_ ? "asked for; gravity is the one cause the naive engine knows"
-                                                : "not asked for"},
+        {"ledger", keeps_ledger_,
+         keeps_ledger_ ? "asked for; gravity is the one cause the naive engine knows" : "not asked for"},
     };
     plan.stages = {{"accelerate", "scalar", "velocity", "velocity"},
                    {"resolve_pairs", "scalar, every pair", "pose, velocity", "pose, velocity"},
@@ -219,8 +225,8 @@ Plan PairwiseSimulation::plan() const {
 std::unique_ptr<Simulation> make_pairwise_simulation(const Scene& scene, const MachineSettings& machine) {
     if (machine.isa != "auto" && machine.isa != "scalar")
         throw Error(ErrorCode::unsupported_isa,
-                    "Solver pairwise: the instruction set asked for is \"" + machine.isa +
-                        "\"; expected \"auto\" or \"scalar\": the naive engine is scalar.");
+                    joined("Solver pairwise: the instruction set asked for is \"", machine.isa,
+                           "\"; expected \"auto\" or \"scalar\": the naive engine is scalar."));
     return std::make_unique<PairwiseSimulation>(scene);
 }
 

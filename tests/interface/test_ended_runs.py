@@ -1,0 +1,158 @@
+"""Runs that do not reach their end: Ctrl-C, kill, full disks. No half file under a final name, ever."""
+import json
+import os
+import random
+import resource
+import signal
+import subprocess
+import time
+import unittest
+
+import numpy
+
+from program import ALL_FILES, PROGRAM, SEED, ProgramTest, Results, gas
+
+ENDLESS = 1_000_000_000
+
+
+class InterruptTest(ProgramTest):
+    def start(self, scene, *arguments):
+        return subprocess.Popen([PROGRAM, "run", self.write_scene(scene), "--out", "out", *arguments],
+                                cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def wait_until_running(self, program):
+        """The ledger has left its first buffer: steps are being taken."""
+        part = self.folder / "out/ledger.csv.part"
+        while not (part.exists() and part.stat().st_size > 0):
+            self.assertIsNone(program.poll())
+            time.sleep(0.01)
+
+    def check_ended_run(self, signal_number):
+        program = self.start(gas(6, steps=ENDLESS, every=7))
+        self.wait_until_running(program)
+        program.send_signal(signal_number)
+        output, errors = program.communicate(timeout=60)
+        self.assertEqual(program.returncode, 0, errors)
+        self.assertIn("interrupted", output)
+        self.assertIn("interrupted after", errors)
+        self.assertEqual(self.files_in("out"), ALL_FILES)
+
+        results = Results(self.folder / "out")
+        summary, ledger, frames = results.summary, results.ledger(), results.trajectory()
+        self.assertTrue(summary["interrupted"])
+        self.assertEqual(summary["steps_asked"], ENDLESS)
+        self.assertGreater(summary["steps"], 0)
+        self.assertEqual(len(ledger["time"]), summary["steps"])
+        self.assertEqual(len(frames["time"]), 1 + -(-summary["steps"] // 7))
+        for moment in (ledger["time"][-1], frames["time"][-1]):
+            self.assertEqual(moment, summary["time"])
+        numpy.testing.assert_array_equal(
+            numpy.array([float(row["x"]) for row in results.final], dtype=numpy.float32), frames["position"][-1, :, 0])
+
+    def test_ctrl_c_ends_a_run_with_what_it_has_so_far(self):
+        self.check_ended_run(signal.SIGINT)
+
+    def test_sigterm_does_the_same(self):
+        self.check_ended_run(signal.SIGTERM)
+
+    def test_a_run_that_is_interrupted_gives_the_state_of_a_shorter_one(self):
+        program = self.start(gas(6, steps=ENDLESS, every=1000), "--quiet")
+        self.wait_until_running(program)
+        program.send_signal(signal.SIGINT)
+        program.communicate(timeout=60)
+        interrupted = Results(self.folder / "out").summary
+        whole = self.run_scene(gas(6, steps=interrupted["steps"], every=1000), out="whole").summary
+        self.assertEqual(whole["state_hash"], interrupted["state_hash"])
+        self.assertFalse(whole["interrupted"])
+
+
+class KilledTest(ProgramTest):
+    def check_whole(self, steps):
+        """Whatever stands under a final name can be read; and if there is a summary, all belongs together."""
+        names = {name for name in self.files_in("out") or () if not name.endswith(".part")}
+        self.assertLessEqual(names, ALL_FILES)
+        if "summary.json" not in names:
+            return False
+        self.assertEqual(names, ALL_FILES)
+        results = Results(self.folder / "out")
+        self.assertEqual(results.summary["steps"], steps)
+        self.assertEqual(len(results.ledger()["time"]), steps)
+        self.assertEqual(len(results.trajectory()["time"]), steps + 1)
+        return True
+
+    def test_a_killed_run_leaves_no_half_file(self):
+        steps, chance, finished = 400, random.Random(4), []
+        scene = self.write_scene(gas(20, steps=steps))
+        start = time.monotonic()
+        self.carom("run", scene, "--out", "out", "--quiet")
+        whole_run = time.monotonic() - start
+        for _ in range(25):
+            if chance.random() < 0.5:
+                subprocess.run(["rm", "-rf", self.folder / "out"], check=True)
+            program = subprocess.Popen([PROGRAM, "run", scene, "--out", "out", "--quiet"], cwd=self.folder)
+            time.sleep(chance.uniform(0, 1.2) * whole_run)
+            program.kill()
+            program.wait()
+            finished.append(self.check_whole(steps))
+        self.assertIn(True, finished)
+
+    def test_the_next_run_clears_what_a_killed_one_left(self):
+        scene = self.write_scene(gas(3, steps=ENDLESS))
+        program = subprocess.Popen([PROGRAM, "run", scene, "--out", "out", "--quiet"], cwd=self.folder)
+        while not (self.folder / "out/trajectory.h5.part").exists():
+            self.assertIsNone(program.poll())
+        program.kill()
+        program.wait()
+        self.run_scene(SEED, "--no-trajectory")
+        self.assertEqual(self.files_in("out"), ALL_FILES - {"trajectory.h5"})
+
+
+class FullDiskTest(ProgramTest):
+    def test_a_file_that_may_not_grow_ends_the_run_and_leaves_nothing(self):
+        scene = self.write_scene(gas(10, steps=300))  # ledger 80 KB, trajectory 600 KB
+        for limit in (0, 100, 1000, 3000, 10_000, 40_000, 100_000, 300_000):
+            def limit_files():
+                resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+            done = self.carom("run", scene, "--out", "deep/out", expect=3, preexec_fn=limit_files)
+            self.assertIn("File too large", done.stderr)
+            self.assertEqual(done.stdout, "")
+            self.assertEqual(self.everything(), ["scene.json"], limit)
+
+    def test_results_of_an_earlier_run_survive_one_that_fails(self):
+        earlier = self.run_scene(SEED).summary
+        scene = self.write_scene(gas(10, steps=300))
+        self.carom("run", scene, "--out", "out", expect=3,
+                   preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000)))
+        self.assertEqual(self.files_in("out"), ALL_FILES)
+        self.assertEqual(Results(self.folder / "out").summary, earlier)
+
+    def run_on_mount(self, options, scene):
+        """Runs on a file system of its own; returns exit code, standard error and the files left on it."""
+        disk = self.folder / "disk"
+        disk.mkdir(exist_ok=True)
+        script = ('mount -t tmpfs -o "$1" tmpfs "$2" || exit 77; shift; cd "$1"; shift; '
+                  '"$@" 2>/proc/self/fd/2; code=$?; echo "$code"; ls -A out 2>/dev/null')
+        done = subprocess.run(["unshare", "-rm", "sh", "-c", script, "sh", options, disk, PROGRAM, "run", scene,
+                               "--out", "out", "--quiet"], capture_output=True, text=True, timeout=120)
+        if not done.stdout:
+            self.skipTest(f"no file system can be mounted here: {done.stderr}")
+        code, *files = done.stdout.split()
+        return int(code), done.stderr, set(files)
+
+    def test_a_full_disk_ends_the_run_and_leaves_nothing(self):
+        scene = self.write_scene(gas(10, steps=300))
+        for size in ("8k", "40k", "120k", "400k"):
+            with self.subTest(size=size):
+                code, errors, files = self.run_on_mount(f"size={size}", scene)
+                self.assertEqual((code, files), (3, set()))
+                self.assertIn("No space left on device", errors)
+        self.assertEqual(self.run_on_mount("size=20m", scene), (0, "", ALL_FILES))
+
+    def test_a_read_only_disk_is_refused_before_the_run(self):
+        code, errors, files = self.run_on_mount("ro", self.write_scene(gas(2)))
+        self.assertEqual((code, files), (2, set()))
+        self.assertIn("Read-only file system", errors)
+
+
+if __name__ == "__main__":
+    unittest.main()
