@@ -3,6 +3,7 @@
 
 #include "commands.hpp"
 #include "exit_codes.hpp"
+#include "scene_file/printable.hpp"
 #include "scene_reader.hpp"
 
 namespace carom::tool {

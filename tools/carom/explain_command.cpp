@@ -8,6 +8,7 @@
 #include "exit_codes.hpp"
 #include "format.hpp"
 #include "run_settings.hpp"
+#include "scene_file/printable.hpp"
 #include "scene_reader.hpp"
 
 namespace carom::tool {
@@ -53,7 +54,7 @@ std::string to_text(const Plan& plan, const std::string& scene, std::size_t bodi
     std::string text = format(
         "%s: %zu bodies\n\nsolver     %s (%s), %d substep%s\nprecision  %s\nisa        %s\n"
         "threads    %d\n\neffects\n",
-        scene.c_str(), bodies, plan.solver.c_str(), plan.solver_reason.c_str(), plan.substeps,
+        printable(scene).c_str(), bodies, plan.solver.c_str(), plan.solver_reason.c_str(), plan.substeps,
         plan.substeps == 1 ? "" : "s", plan.precision.c_str(), plan.isa.c_str(), plan.threads);
     for (const EffectReport& effect : plan.effects)
         text += format("  %-3s  %-12s  %s\n", effect.on ? "on" : "off", effect.name.c_str(),

@@ -1,10 +1,14 @@
 #include "run_settings.hpp"
 
+#include <algorithm>
 #include <array>
+#include <functional>
+#include <limits>
 #include <string_view>
 
 #include "exit_codes.hpp"
 #include "format.hpp"
+#include "option_values.hpp"
 
 namespace carom::tool {
 namespace {
@@ -13,8 +17,6 @@ struct EffectName {
     std::string_view name;
     std::optional<bool> EffectOverrides::*wish;
 };
-
-constexpr int kMostThreads = 1024;
 
 constexpr std::array<EffectName, 7> kEffects{{
     {"sleep", &EffectOverrides::sleep},
@@ -26,73 +28,83 @@ constexpr std::array<EffectName, 7> kEffects{{
     {"restitution", &EffectOverrides::restitution},
 }};
 
-void apply_effect(const std::string& wish, EffectOverrides& effects, EffectOverrides& wished) {
-    const std::string_view name = std::string_view(wish).substr(wish.empty() ? 0 : 1);
+constexpr int kMostThreads = 1024;
+constexpr std::int64_t kMostSteps = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t kMostParts = 1024;  // substeps and iterations, as <carom/accuracy.hpp> says
+
+/// One wish of a list such as "+ledger,-drag".
+void add_effect(const std::string& wish, EffectOverrides& effects) {
+    constexpr const char* kOption = "--effects";
     if (wish.empty() || (wish[0] != '+' && wish[0] != '-'))
-        throw UsageError(joined("--effects: \"", wish,
-                                "\" does not start with + or -; expected, for example, +ledger,-drag"));
-    std::string known;
-    for (const EffectName& effect : kEffects) {
-        known.append(known.empty() ? "" : ", ").append(effect.name);
-        if (effect.name != name) continue;
-        const bool on = wish[0] == '+';
-        if (wished.*effect.wish == !on)
-            throw UsageError(joined("--effects: ", name, " is asked for both on and off"));
-        effects.*effect.wish = wished.*effect.wish = on;
-        return;
-    }
-    throw UsageError(
-        joined("--effects: there is no effect \"", name, "\" to force on or off; known are ", known));
+        throw UsageError(joined(kOption, ": \"", wish,
+                                "\" does not start with + or -; expected a list such as +ledger,-drag"));
+    std::vector<std::string_view> names;
+    for (const EffectName& effect : kEffects) names.push_back(effect.name);
+    const std::string name = known_value(kOption, wish.substr(1), names);
+    const auto effect = std::find_if(kEffects.begin(), kEffects.end(),
+                                     [&name](const EffectName& known) { return known.name == name; });
+    const bool on = wish[0] == '+';
+    if (effects.*effect->wish == !on)
+        throw UsageError(joined(kOption, ": ", name, " is asked for both on and off"));
+    effects.*effect->wish = on;
+}
+
+/// Adds an option whose text `read` turns into a setting.
+void add(CLI::App& command, const char* option, const char* value, const char* help,
+         std::function<void(const std::string&)> read) {
+    command.add_option_function<std::string>(option, read, help)->type_name(value);
+}
+
+void add_accuracy_options(CLI::App& command, RunSettings& settings) {
+    add(command, "--solver", "NAME", "auto, impulse or pairwise", [&settings](const std::string& text) {
+        known_value("--solver", text, {"auto", "pairwise", "impulse", "soft", "rigid", "event", "rattle"});
+        settings.solver = solver_named(text);
+    });
+    add(command, "--substeps", "N", "Parts a step is cut into", [&settings](const std::string& text) {
+        settings.substeps = static_cast<int>(whole_number("--substeps", text, 1, kMostParts));
+    });
+    add(command, "--iterations", "N", "Passes of the solver", [&settings](const std::string& text) {
+        settings.iterations = static_cast<int>(whole_number("--iterations", text, 1, kMostParts));
+    });
+    add(command, "--precision", "NAME", "float or double", [&settings](const std::string& text) {
+        known_value("--precision", text, {"float", "double"});
+        settings.precision = text == "float" ? Precision::single_ : Precision::double_;
+    });
 }
 
 }  // namespace
 
 void add_settings_options(CLI::App& command, RunSettings& settings) {
-    command.add_option("--steps", settings.steps, "Steps to take")
-        ->type_name("N")
-        ->check(CLI::NonNegativeNumber);
-    command.add_option("--dt", settings.dt, "Step length in seconds")->type_name("S");
-    command.add_option("--solver", settings.solver, "auto, impulse or pairwise")->type_name("NAME");
-    command.add_option("--substeps", settings.substeps, "Parts a step is cut into")->type_name("N");
-    command.add_option("--iterations", settings.iterations, "Passes of the solver")->type_name("N");
-    command.add_option("--precision", settings.precision, "float or double")->type_name("NAME");
-    command
-        .add_option("--threads", settings.machine.threads, "Threads; results do not depend on it (0: all)")
-        ->type_name("N")
-        ->check(CLI::Range(0, kMostThreads));
+    add(command, "--steps", "N", "Steps to take", [&settings](const std::string& text) {
+        settings.steps = whole_number("--steps", text, 0, kMostSteps);
+    });
+    add(command, "--dt", "S", "Step length in seconds",
+        [&settings](const std::string& text) { settings.dt = real_number("--dt", text); });
+    add_accuracy_options(command, settings);
+    add(command, "--threads", "N", "Threads; results do not depend on it (0: all)",
+        [&settings](const std::string& text) {
+            settings.machine.threads = static_cast<int>(whole_number("--threads", text, 0, kMostThreads));
+        });
     command.add_option("--isa", settings.machine.isa, "Instruction set: auto, scalar, sse2, avx2, avx512")
         ->type_name("NAME");
-    command
-        .add_option("--effects", settings.effects,
-                    "Effects to force on or off, as in +ledger,-drag; the rest is what the scene calls for")
-        ->type_name("LIST")
-        ->delimiter(',')
-        ->expected(1)
-        ->take_all();
+    add(command, "--effects", "LIST",
+        "Effects to force on or off, as in +ledger,-drag; the rest is what the scene calls for",
+        [&settings](const std::string& text) {
+            for (const std::string& wish : split_at_commas(text)) add_effect(wish, settings.effects);
+        });
 }
 
 void apply_settings(const RunSettings& settings, Scene& scene) {
     if (settings.steps) scene.step.count = *settings.steps;
     if (settings.dt) scene.step.dt = *settings.dt;
-    if (settings.solver) {
-        const std::optional<Solver> solver = solver_named(*settings.solver);
-        if (!solver)
-            throw UsageError(joined("--solver: there is no solver \"", *settings.solver,
-                                    "\"; expected auto, impulse or pairwise"));
-        scene.accuracy.solver = *solver;
-    }
+    if (settings.solver) scene.accuracy.solver = *settings.solver;
     if (settings.substeps) scene.accuracy.substeps = settings.substeps;
     if (settings.iterations) scene.accuracy.iterations = settings.iterations;
-    if (settings.precision) {
-        if (*settings.precision != "float" && *settings.precision != "double")
-            throw UsageError(
-                joined("--precision: \"", *settings.precision, "\" is none; expected float or double"));
-        if (*settings.precision == "float" && scene.accuracy.solver == Solver::pairwise)
-            throw UsageError("--precision: the naive engine (solver pairwise) computes in double only");
-        scene.accuracy.precision = *settings.precision == "float" ? Precision::single_ : Precision::double_;
-    }
-    EffectOverrides wished;
-    for (const std::string& wish : settings.effects) apply_effect(wish, scene.effects, wished);
+    if (settings.precision) scene.accuracy.precision = *settings.precision;
+    if (settings.precision == Precision::single_ && scene.accuracy.solver == Solver::pairwise)
+        throw UsageError("--precision: the naive engine (solver pairwise) computes in double only");
+    for (const EffectName& effect : kEffects)
+        if (settings.effects.*effect.wish) scene.effects.*effect.wish = settings.effects.*effect.wish;
     if (!scene.effects.ledger) scene.effects.ledger = true;
 }
 

@@ -6,8 +6,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "simulation/simulation.hpp"
 
@@ -17,11 +15,11 @@ namespace carom::tool {
 struct RunSettings {
     std::optional<std::int64_t> steps;
     std::optional<double> dt;  // s
-    std::optional<std::string> solver;
+    std::optional<Solver> solver;
     std::optional<int> substeps;
     std::optional<int> iterations;
-    std::optional<std::string> precision;
-    std::vector<std::string> effects;  // as given: "+sleep,-continuous"
+    std::optional<Precision> precision;
+    EffectOverrides effects;
     MachineSettings machine;
 };
 
@@ -29,7 +27,7 @@ struct RunSettings {
 void add_settings_options(CLI::App& command, RunSettings& settings);
 
 /// Puts the settings into the scene, and the ledger on unless scene or settings say otherwise.
-/// @throws UsageError for a solver, precision or effect there is none of
+/// @throws UsageError for a precision the solver does not have
 void apply_settings(const RunSettings& settings, Scene& scene);
 
 }  // namespace carom::tool

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "format.hpp"
+#include "scene_file/printable.hpp"
 #include "simulation/body_mass.hpp"
 
 namespace carom::tool {
@@ -11,8 +12,9 @@ namespace {
 constexpr std::size_t kBodiesShown = 10;
 
 std::string heading(const RunOutcome& run) {
-    std::string text = format("%s: %zu bodies, %lld steps of %g s, %g s simulated", run.scene_name.c_str(),
-                              run.bodies, static_cast<long long>(run.steps), run.dt, run.time);
+    std::string text =
+        format("%s: %zu bodies, %lld steps of %g s, %g s simulated", printable(run.scene_name).c_str(),
+               run.bodies, static_cast<long long>(run.steps), run.dt, run.time);
     if (run.interrupted)
         text += format(" (interrupted; %lld steps asked)", static_cast<long long>(run.steps_asked));
     text += format("\n  solver %s (%s), %d substep%s, %s precision, %s, %d thread%s\n",

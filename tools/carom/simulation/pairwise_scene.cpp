@@ -47,27 +47,11 @@ void check_bodies(const Scene& scene) {
     }
 }
 
-void check_effect(const char* name, std::optional<bool> wish, bool needed) {
-    if (wish == false && needed)
-        refuse(
-            ErrorCode::inconsistent, "effect ", name,
-            " is forced off, but the scene needs it. Leave it out of the effects, or set its value to zero.");
-}
-
+/// What `Scene::validate` lets pass, because other solvers can do it.
 void check_settings(const Scene& scene) {
-    const EffectOverrides& effects = scene.effects;
-    const auto spins = [](const Body& body) { return body.angular_velocity != 0; };
-    const auto bounces = [](const Body& body) { return body.material.restitution > 0; };
-    const auto& bodies = scene.bodies;
-    if (effects.sleep == true || effects.continuous == true)
-        refuse(ErrorCode::inconsistent, "effect ", effects.sleep == true ? "sleep" : "continuous",
-               " is forced on; the naive engine does not have it. ", kRemedy);
-    check_effect("gravity", effects.gravity, scene.gravity != Vec2{});
-    check_effect("drag", effects.drag, scene.drag.linear > 0 || scene.drag.angular > 0);
-    check_effect("rotation", effects.rotation, std::any_of(bodies.begin(), bodies.end(), spins));
-    check_effect("restitution", effects.restitution,
-                 std::any_of(bodies.begin(), bodies.end(), bounces) ||
-                     (scene.walls && scene.walls->material.restitution > 0));
+    if (scene.effects.continuous == true)
+        refuse(ErrorCode::inconsistent, "effect continuous is forced on; the naive engine does not have it. ",
+               kRemedy);
     if (scene.accuracy.iterations.value_or(1) != 1)
         refuse(ErrorCode::out_of_range, "iterations is ", *scene.accuracy.iterations,
                "; expected 1: the naive engine looks at every pair once a step.");
