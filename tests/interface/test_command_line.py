@@ -42,7 +42,7 @@ class WrongInputTest(ProgramTest):
                 self.check_refused("run", SEED, option, value)
 
     def test_messages_name_what_was_wrong_and_what_there_is(self):
-        self.check_refused("run", SEED, "--effects", "+slepp", says="sleep, continuous, ledger")
+        self.check_refused("run", SEED, "--effects", "+slepp", says='nearest known one is "sleep"')
         self.check_refused("run", SEED, "--solver", "impuls", says="impulse")
         self.check_refused("run", SEED, "--isa", "avx9", says="scalar")
         self.check_refused("run", SEED, "--precision", "half", says="double")

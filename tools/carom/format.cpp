@@ -26,7 +26,7 @@ std::string format(const char* pattern, ...) {
 double without_minus_zero(double value, int decimals) {
     double smallest = 0.5;
     for (int i = 0; i < decimals; ++i) smallest /= 10;
-    return value < 0 && value > -smallest ? 0.0 : value;
+    return value <= 0 && value > -smallest ? 0.0 : value;
 }
 
 std::string bytes_text(double bytes) {
