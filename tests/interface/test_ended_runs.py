@@ -141,7 +141,7 @@ class FullDiskTest(ProgramTest):
 
     def test_a_full_disk_ends_the_run_and_leaves_nothing(self):
         scene = self.write_scene(gas(10, steps=300))
-        for size in ("8k", "40k", "120k", "400k"):
+        for size in ("8k", "40k", "120k", "250k"):
             with self.subTest(size=size):
                 code, errors, files = self.run_on_mount(f"size={size}", scene)
                 self.assertEqual((code, files), (3, set()))
