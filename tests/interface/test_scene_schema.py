@@ -3,6 +3,7 @@ the table says. Needs CAROM_PROGRAM (the program `carom`) and CAROM_SOURCE_DIR."
 import json
 import os
 import pathlib
+import re
 import subprocess
 import tempfile
 import unittest
@@ -35,6 +36,16 @@ def generate(kind, keys, **more):
 
 def without(mapping, key):
     return {k: v for k, v in mapping.items() if k != key}
+
+
+def words_of(schema):
+    """Every key and every choice that a schema knows."""
+    if isinstance(schema, list):
+        return set().union(*map(words_of, schema)) if schema else set()
+    if not isinstance(schema, dict):
+        return set()
+    words = set(schema.get("properties", {})) | {word for word in schema.get("enum", []) if isinstance(word, str)}
+    return words.union(*map(words_of, schema.values()))
 
 
 def joint(kind, **keys):
@@ -278,6 +289,13 @@ class SchemaAgainstReader(unittest.TestCase):
                 document = json.loads(path.read_text(encoding="utf-8"))
                 self.assertEqual([], [error.message for error in self.schema.iter_errors(document)])
                 self.assertEqual(self.reader_says(document), "valid")
+
+    def test_the_prose_knows_every_key_and_shows_a_valid_scene(self):
+        prose = (ROOT / "docs/scene-format.md").read_text(encoding="utf-8")
+        quoted = set(re.findall(r"[`\".]([\w$]+)[`\"]", prose))
+        self.assertEqual([], sorted(words_of(SCHEMA) - quoted))
+        for example in re.findall(r"```json\n(.*?)```", prose, re.DOTALL):
+            self.assertEqual(self.reader_says(json.loads(example)), "valid")
 
 
 if __name__ == "__main__":
