@@ -101,17 +101,18 @@ void check_refused(const Generator& generator, ErrorCode code, const std::string
 
 TEST_SUITE("scene/generators") {
     TEST_CASE("a gas overlaps neither itself nor the walls, whatever its radii, its density and its box") {
-        const std::pair<double, double> kRadii[] = {{0.5, 0.5}, {0.4, 0.6}, {0.01, 0.5}, {1e-5, 1e-5}};
+        const RadiusRange kRadii[] = {{0.5, 0.5}, {0.4, 0.6}, {0.01, 0.5}, {1e-5, 1e-5}};
         for (const std::int64_t count : {1, 2, 7, 100, 4000})
-            for (const auto& [least, most] : kRadii)
+            for (const RadiusRange& radius : kRadii)
                 for (const double packing : {0.001, 0.1, 0.4, 0.6, 0.70})
                     for (const double proportion : {1.0, 0.3, 4.0}) {
                         if (count < 100 && packing > 0.3) continue;  // may truly not fit
-                        if (packing == 0.70 && count == 100 && (proportion != 1 || most > least)) continue;
+                        if (packing == 0.70 && count == 100 && (proportion != 1 || radius.max > radius.min))
+                            continue;
                         CAPTURE(count);
                         CAPTURE(packing);
-                        CAPTURE(most);
-                        const Gas gas{.count = count, .radius = {least, most}, .seed = 3};
+                        CAPTURE(radius.max);
+                        const Gas gas{.count = count, .radius = radius, .seed = 3};
                         Scene scene = box_for(gas, packing, proportion, {-7, 100});
                         add_gas(scene, gas);
                         REQUIRE(scene.bodies.size() == static_cast<std::size_t>(count));
