@@ -1,8 +1,10 @@
 """Holds docs/scene.schema.json against the reader: for each document of the tables below both give the verdict that
 the table says. Needs CAROM_PROGRAM (the program `carom`) and CAROM_SOURCE_DIR."""
+import copy
 import json
 import os
 import pathlib
+import random
 import re
 import subprocess
 import tempfile
@@ -46,6 +48,36 @@ def words_of(schema):
         return set()
     words = set(schema.get("properties", {})) | {word for word in schema.get("enum", []) if isinstance(word, str)}
     return words.union(*map(words_of, schema.values()))
+
+
+HOSTILE = [None, True, 0, 1, -1, 0.5, 1e30, -1e30, 2**63, 2**64, "", "NaN", "left", [], {}, [0, 0], [1, 2, 3],
+           {"disc": {"radius": 1}}, 67108865, 1025]
+
+
+def places(document, path=()):
+    """The paths of all values of a document, its own aside."""
+    members = document.items() if isinstance(document, dict) else enumerate(document)
+    for key, value in members:
+        yield path + (key,)
+        if isinstance(value, (dict, list)):
+            yield from places(value, path + (key,))
+
+
+def mutated(document, choose):
+    """The document with one value replaced, taken away, or put under another key."""
+    document = copy.deepcopy(document)
+    *path, last = choose.choice(list(places(document)))
+    parent = document
+    for key in path:
+        parent = parent[key]
+    change = choose.choice(("replace", "replace", "remove", "rename"))
+    if change == "replace":
+        parent[last] = choose.choice(HOSTILE)
+    elif change == "remove" or isinstance(parent, list):
+        del parent[last]
+    else:
+        parent[choose.choice(sorted(words_of(SCHEMA)))] = parent.pop(last)
+    return document
 
 
 def joint(kind, **keys):
@@ -282,6 +314,15 @@ class SchemaAgainstReader(unittest.TestCase):
 
     def test_the_reader_refuses_what_a_schema_cannot_express(self):
         self.check_table(BEYOND_THE_SCHEMA, "valid", "invalid")
+
+    def test_the_reader_accepts_no_mutation_that_the_schema_refuses(self):
+        choose = random.Random(1)
+        for _ in range(150):
+            document = mutated(choose.choice(VALID + NOT_BUILT_YET), choose)
+            if self.schema.is_valid(document):
+                continue
+            with self.subTest(document=json.dumps(document)):
+                self.assertNotEqual(self.reader_says(document), "valid")
 
     def test_the_scenes_that_ship_are_valid(self):
         for path in sorted((ROOT / "docs/scenes").glob("*.json")):
