@@ -18,6 +18,13 @@ struct Overlaps {
         sum -= separation / radius;
         report.max = std::fmax(report.max, -separation / radius);
     }
+
+    /// Walls are no pairs; a wall that is touched counts as a candidate, so that no more touch than there
+    /// are.
+    void add_wall(double separation, double radius) {
+        if (separation < 0) ++report.candidates;
+        add(separation, radius);
+    }
 };
 
 template <class Real>
@@ -27,10 +34,10 @@ void add_walls(const WorldState<Real>& world, Overlaps& overlaps) {
         if (world.bodies.is_immovable(row)) continue;
         const double x = world.bodies.position_x[row], y = world.bodies.position_y[row];
         const double radius = world.bodies.radius[row];
-        if (walls.left) overlaps.add(x - radius - walls.min.x, radius);
-        if (walls.right) overlaps.add(walls.max.x - x - radius, radius);
-        if (walls.bottom) overlaps.add(y - radius - walls.min.y, radius);
-        if (walls.top) overlaps.add(walls.max.y - y - radius, radius);
+        if (walls.left) overlaps.add_wall(x - radius - walls.min.x, radius);
+        if (walls.right) overlaps.add_wall(walls.max.x - x - radius, radius);
+        if (walls.bottom) overlaps.add_wall(y - radius - walls.min.y, radius);
+        if (walls.top) overlaps.add_wall(walls.max.y - y - radius, radius);
     }
 }
 

@@ -1,6 +1,7 @@
 """Invocations, right and wrong: exit codes, messages, and that a wrong one writes nothing."""
 import json
 import os
+import re
 import subprocess
 import unittest
 
@@ -225,8 +226,7 @@ class TableTest(ProgramTest):
 
     def test_final_bodies_are_those_of_the_seed(self):
         text = self.carom("run", SEED, "--solver", "pairwise").stdout
-        table = [line.split()[1:] for line in text.replace("(", " ").replace(")", " ").replace(",", " ").splitlines()
-                 if line.strip()[:2] in ("0 ", "1 ", "2 ", "3 ", "4 ")]
+        table = [re.sub("[(),]", " ", row).split() for row in re.findall(r"^ +[0-4]  (\(.*)$", text, re.MULTILINE)]
         self.assertEqual([row[:5] for row in table], [
             ["2.75", "0.41", "0.00", "-0.03", "0.001"],
             ["5.82", "0.36", "0.00", "-0.03", "0.001"],

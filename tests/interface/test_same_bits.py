@@ -10,7 +10,7 @@ class SameBitsTest(ProgramTest):
         return re.search(r"this machine runs: ([\w ]+)", self.carom("--version").stdout).group(1).split()
 
     def scene(self, precision):
-        return self.write_scene(gas(100, steps=12, precision=precision, every=4, gravity=[0, -1]))
+        return self.write_scene(gas(100, steps=8, precision=precision, every=4, gravity=[0, -1]))
 
     def hash_and_files(self, scene, *arguments):
         """The summary's hash and, byte by byte, what else must not differ."""

@@ -52,30 +52,38 @@ Json to_json(const Plan& plan, const std::string& scene, std::size_t bodies) {
 
 std::string to_text(const Plan& plan, const std::string& scene, std::size_t bodies) {
     std::string text = format(
-        "%s: %zu bodies\n\nsolver     %s (%s), %d substep%s\nprecision  %s\nisa        %s\n"
-        "threads    %d\n\neffects\n",
+        "%s: %zu bodies\n\nsolver     %s (%s)\nsubsteps   %d\nprecision  %s\nisa        %s\nthreads    %d\n",
         printable(scene).c_str(), bodies, plan.solver.c_str(), plan.solver_reason.c_str(), plan.substeps,
-        plan.substeps == 1 ? "" : "s", plan.precision.c_str(), plan.isa.c_str(), plan.threads);
+        plan.precision.c_str(), plan.isa.c_str(), plan.threads);
+    text += "\neffects\n";
     for (const EffectReport& effect : plan.effects)
-        text += format("  %-3s  %-12s  %s\n", effect.on ? "on" : "off", effect.name.c_str(),
+        text += format("  %-3s  %-20s  %s\n", effect.on ? "on" : "off", effect.name.c_str(),
                        effect.reason.c_str());
-    text += "\nstages\n";
-    for (const StageReport& stage : plan.stages)
-        text += format("  %-24s  %s\n%28s%s -> %s\n", stage.name.c_str(), stage.kernel.c_str(), "",
-                       stage.reads.c_str(), stage.writes.c_str());
+    text += "\nstages: what each reads -> writes\n";
+    for (const StageReport& stage : plan.stages) {
+        text += format("  %-20s  %s -> %s\n", stage.name.c_str(), stage.reads.c_str(), stage.writes.c_str());
+        if (!stage.kernel.empty()) text += format("  %-20s  kernel: %s\n", "", stage.kernel.c_str());
+    }
     text += format("\ncolumns: %zu bytes a body\n", plan.bytes_per_body);
     for (const ColumnReport& column : plan.columns)
         text +=
-            format("  %-24s  %4zu  %s\n", column.name.c_str(), column.bytes_per_body, column.unit.c_str());
+            format("  %-20s  %4zu  %s\n", column.name.c_str(), column.bytes_per_body, column.unit.c_str());
     return text;
+}
+
+/// The ledger is the one effect that `carom run` turns on unasked: its reason is not in the scene.
+void explain_ledger(Plan& plan) {
+    for (EffectReport& effect : plan.effects)
+        if (effect.name == "ledger") effect.reason = "carom run keeps it; --effects -ledger leaves it out";
 }
 
 int explain(const Explain& asked) {
     Scene scene = read_scene(asked.scene);
+    const bool ledger_unasked = !scene.effects.ledger && !asked.settings.effects.ledger;
     apply_settings(asked.settings, scene);
-    const auto simulation = make_simulation(scene, asked.settings.machine);
+    Plan plan = make_simulation(scene, asked.settings.machine)->plan();
+    if (ledger_unasked) explain_ledger(plan);
     const std::string name = scene.name.empty() ? asked.scene : scene.name;
-    const Plan plan = simulation->plan();
     std::string text = asked.json ? to_json(plan, name, scene.bodies.size())
                                         .dump(kIndent, ' ', false, Json::error_handler_t::replace)
                                   : to_text(plan, name, scene.bodies.size());

@@ -17,8 +17,8 @@ std::string heading(const RunOutcome& run) {
                run.bodies, static_cast<long long>(run.steps), run.dt, run.time);
     if (run.interrupted)
         text += format(" (interrupted; %lld steps asked)", static_cast<long long>(run.steps_asked));
-    text += format("\n  solver %s (%s), %d substep%s, %s precision, %s, %d thread%s\n",
-                   run.plan.solver.c_str(), run.plan.solver_reason.c_str(), run.plan.substeps,
+    text += format("\n  solver %s (%s)\n", run.plan.solver.c_str(), run.plan.solver_reason.c_str());
+    text += format("  %d substep%s, %s precision, %s, %d thread%s\n", run.plan.substeps,
                    run.plan.substeps == 1 ? "" : "s", run.plan.precision.c_str(), run.plan.isa.c_str(),
                    run.plan.threads, run.plan.threads == 1 ? "" : "s");
     return text;

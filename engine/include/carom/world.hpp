@@ -52,7 +52,7 @@ struct BodyState {
 /// How deep bodies and walls overlap now, measured from positions. Overlaps are fractions of the smaller
 /// body's radius over touching pairs (separation < 0).
 struct OverlapReport {
-    std::int64_t candidates = 0;
+    std::int64_t candidates = 0;  ///< pairs close to each other, and walls that are touched
     std::int64_t touching = 0;
     double mean = 0;
     double max = 0;

@@ -15,6 +15,11 @@ constexpr std::size_t kNumbersABody = 5;  // position, velocity, angle
 constexpr int kBlockCount = 3;            // one being filled, one waiting, one being written
 constexpr hsize_t kTimesAChunk = 4096;
 
+bool is_zero(std::span<const std::byte> data) {
+    return data.empty() ||
+           (data[0] == std::byte{0} && std::memcmp(data.data(), data.data() + 1, data.size() - 1) == 0);
+}
+
 std::size_t frames_a_block(std::size_t bodies, std::size_t element_size, std::int64_t frame_count) {
     const std::size_t frame_bytes = std::max<std::size_t>(1, bodies * kNumbersABody * element_size);
     const auto expected = static_cast<std::size_t>(std::max<std::int64_t>(1, frame_count));
@@ -166,7 +171,8 @@ void TrajectoryH5::write_frames(const Dataset& dataset, const Block& block) {
         const std::size_t frames = bodies_ > bodies_a_chunk_ ? 1 : block.time.size();
         const std::size_t used = frames * std::min(bodies_a_chunk_, bodies_ - body) * body_bytes;
         std::span<const std::byte> data(column.data() + body * body_bytes, used);
-        if (used < chunk_bytes) {  // the last chunk of a frame, or of the file
+        if (is_zero(data)) continue;  // HDF5 reads what was never written as zeros
+        if (used < chunk_bytes) {     // the last chunk of a frame, or of the file
             padded_.assign(chunk_bytes, std::byte{0});
             std::memcpy(padded_.data(), data.data(), used);
             data = padded_;

@@ -34,9 +34,14 @@ class OverlapSum {
         sum_ += overlap;
         report_.max = std::max(report_.max, overlap);
     }
-    OverlapReport report(std::int64_t candidates) const {
+    /// A wall that is touched counts as a candidate; pairs all do.
+    void add_wall(double separation, double radius) {
+        if (separation < 0) ++report_.candidates;
+        add(separation, radius);
+    }
+    OverlapReport report(std::int64_t pairs) const {
         OverlapReport result = report_;
-        result.candidates = candidates;
+        result.candidates += pairs;
         result.mean = report_.touching > 0 ? sum_ / static_cast<double>(report_.touching) : 0;
         return result;
     }
@@ -161,10 +166,10 @@ OverlapReport PairwiseSimulation::overlaps() const {
         }
         if (!description_.walls) continue;
         const PairwiseWalls& walls = *description_.walls;
-        if (walls.left) sum.add(a.x - a.radius - walls.min_x, a.radius);
-        if (walls.right) sum.add(walls.max_x - a.x - a.radius, a.radius);
-        if (walls.bottom) sum.add(a.y - a.radius - walls.min_y, a.radius);
-        if (walls.top) sum.add(walls.max_y - a.y - a.radius, a.radius);
+        if (walls.left) sum.add_wall(a.x - a.radius - walls.min_x, a.radius);
+        if (walls.right) sum.add_wall(walls.max_x - a.x - a.radius, a.radius);
+        if (walls.bottom) sum.add_wall(a.y - a.radius - walls.min_y, a.radius);
+        if (walls.top) sum.add_wall(walls.max_y - a.y - a.radius, a.radius);
     }
     return sum.report(profile().candidate_pairs);
 }
