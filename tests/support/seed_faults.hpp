@@ -52,7 +52,7 @@ FallEnergy fall_energy(StartRun start);
 
 /// An elastic gas of 196 discs, rms speed 3 m/s, in a closed box at this packing fraction, 200 s after 20 s.
 struct GasReport {
-    double pressure_error;  // pressure on the walls / Henderson's equation of state - 1, no unit
+    double pressure_error;  // pressure on the walls / that of hard discs in such a box - 1, no unit
     double energy_error;    // energy at the end / at the start - 1, no unit
 };
 GasReport elastic_gas(StartRun start, double packing_fraction, double dt);

@@ -21,4 +21,7 @@ using StartRun = std::unique_ptr<SeedRun> (*)(const PairwiseScene&);
 
 std::unique_ptr<SeedRun> start_naive(const PairwiseScene& scene);
 
+/// The engine in double precision with its defaults. It has no factor a step: `keep_per_step` is ignored.
+std::unique_ptr<SeedRun> start_engine(const PairwiseScene& scene);
+
 }  // namespace carom::test
