@@ -20,12 +20,10 @@ set_tests_properties(${embed}.installed PROPERTIES FIXTURES_REQUIRED installed)
 # Also shows that the library builds without OpenMP.
 carom_add_embed_test(subdirectory -DCAROM_FOLDER=${PROJECT_SOURCE_DIR} -DCAROM_OPENMP=OFF -DCMAKE_BUILD_TYPE=Debug)
 
-if(EXISTS ${PROJECT_SOURCE_DIR}/README.md)
-    add_test(NAME ${embed}.extract_example
-        COMMAND ${CAROM_PYTHON} ${embed_folder}/extract_example.py
-                ${PROJECT_SOURCE_DIR}/README.md ${embed_work}/readme_example.cpp)
-    set_tests_properties(${embed}.extract_example PROPERTIES FIXTURES_SETUP readme_example)
-    carom_add_embed_test(readme_example -DCMAKE_PREFIX_PATH=${embed_work}/prefix -DCMAKE_BUILD_TYPE=Release
-                                        -DEMBED_SOURCE=${embed_work}/readme_example.cpp)
-    set_tests_properties(${embed}.readme_example PROPERTIES FIXTURES_REQUIRED "installed;readme_example")
-endif()
+add_test(NAME ${embed}.extract_example
+    COMMAND ${CAROM_PYTHON} ${embed_folder}/extract_example.py
+            ${PROJECT_SOURCE_DIR}/README.md ${embed_work}/readme_example.cpp)
+set_tests_properties(${embed}.extract_example PROPERTIES FIXTURES_SETUP readme_example)
+carom_add_embed_test(readme_example -DCMAKE_PREFIX_PATH=${embed_work}/prefix -DCMAKE_BUILD_TYPE=Release
+                                    -DEMBED_SOURCE=${embed_work}/readme_example.cpp)
+set_tests_properties(${embed}.readme_example PROPERTIES FIXTURES_REQUIRED "installed;readme_example")
