@@ -129,6 +129,13 @@ class Flights {
         if (books->is_open && !m.with_wall()) book_immovable(m, j * e.normal, s);
     }
 
+    /// Work that the contacts a body rests on do on it from the start of flight f to clock s [J]. Two bodies
+    /// at rest on each other get opposite amounts; what is left over is the error of the contact forces.
+    double support_work(std::int32_t row, const Flight& f, double s, double q) const {
+        return dot(f.acceleration - common_acceleration, position_at(f, s, q) - f.position) /
+               inverse_mass(row);
+    }
+
     /// Distance of a point from a wall [m]; negative behind it.
     double wall_clearance(std::int32_t side, Vec2 x) const {
         switch (side) {
@@ -193,7 +200,10 @@ class Flights {
             after.position -= s * dv0;
         }
         store(row, after);
-        if (books->is_open && drag() != 0) book_drag(row, before, s, q);
+        if (!books->is_open) return;
+        if (support != Vec2{})
+            books->restitution += support_work(row, before, s, q) - support_work(row, flight(row), s, q);
+        if (drag() != 0) book_drag(row, before, s, q);
     }
 
     /// The end of the substep books drag for the flight as it ends; here the part flown before is set right.

@@ -1,5 +1,6 @@
 #include "solver/resting_contacts.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace carom {
@@ -11,8 +12,9 @@ namespace {
 constexpr int kMostSweeps = 200;
 constexpr double kConverged = 1e-13;
 
-// Part of the rest speed, which is itself a small part of what gravity adds in a step.
+// Parts of the rest speed, which is itself a small part of what gravity adds in a step.
 constexpr double kLeaving = 1e-2;
+constexpr double kStopped = 1e-12;
 
 }  // namespace
 
@@ -23,7 +25,7 @@ void RestingContacts<Real>::stop(Flights<Real>& flights, const std::vector<Press
         const Encounter e = flights.encounter(contact.meeting, 0);
         stopped_.add(flights, contact.meeting, e, 0, 0);
     }
-    stopped_.carry_out(flights);
+    stopped_.carry_out(flights, kStopped * flights.rest_speed);
 }
 
 template <class Real>
@@ -44,7 +46,7 @@ void RestingContacts<Real>::carry(Flights<Real>& flights, std::vector<PressedMee
             if (solved_[i].inverse_mass_sum == 0) continue;
             const Vec2 of_b = m.with_wall() ? Vec2{} : flights.acceleration(m.b);
             const double apart =
-                dot(of_b - flights.acceleration(m.a), solved_[i].normal) + solved_[i].turning;
+                dot(of_b - flights.acceleration(m.a), solved_[i].normal) + solved_[i].unforced;
             const double force = std::fmax(0, contacts[i].force - apart / solved_[i].inverse_mass_sum);
             const double change = force - contacts[i].force;
             contacts[i].force = force;
@@ -68,8 +70,10 @@ void RestingContacts<Real>::book(Flights<Real>& flights, const std::vector<Press
         } else if (flights.is_immovable(m.a) != flights.is_immovable(m.b)) {
             const bool b_carries = flights.is_immovable(m.b);
             const Vec2 on_movable = b_carries ? on_a : -on_a;
+            const double work = dot(on_movable, flights.flight(b_carries ? m.b : m.a).velocity);
             books.immovable_momentum += on_movable;
-            books.drive += dot(on_movable, flights.flight(b_carries ? m.b : m.a).velocity);
+            books.drive += work;
+            books.restitution -= work;  // it is part of the work of all supports (Flights::support_work)
         }
     }
 }
@@ -88,10 +92,12 @@ void RestingContacts<Real>::hold(Flights<Real>& flights, std::vector<PressedMeet
             const double tangential = cross(e.normal, v);
             turning = tangential * tangential / flights.reach(m);
         }
-        // Moving apart, if ever so slowly: nothing to carry. Holding it would let it hover.
+        // Moving apart: nothing to carry. If it is ever so slow it is held all the same, so that the surfaces
+        // are at rest at the end of the substep: u vn + s a = 0. Else it would hover, and rise without work.
         const bool leaves = e.normal_velocity > kLeaving * flights.rest_speed;
         if (leaves) contact.force = 0;
-        solved_.push_back({e.normal, turning, leaves ? 0 : flights.inverse_mass_sum(m)});
+        const double slowing = e.normal_velocity * flights.end.u / flights.end.s;
+        solved_.push_back({e.normal, turning + slowing, leaves ? 0 : flights.inverse_mass_sum(m)});
     }
     carry(flights, contacts);
     for (const PressedMeeting& contact : contacts) {
@@ -99,6 +105,8 @@ void RestingContacts<Real>::hold(Flights<Real>& flights, std::vector<PressedMeet
         if (!flights.is_immovable(m.a)) held.push_back(m.a);
         if (!m.with_wall() && !flights.is_immovable(m.b)) held.push_back(m.b);
     }
+    std::sort(held.begin(), held.end());
+    held.erase(std::unique(held.begin(), held.end()), held.end());
     book(flights, contacts);
 }
 

@@ -31,7 +31,7 @@ template <class Real>
 class RestingContacts {
   public:
     /// Stops and holds `contacts` from the start of the substep on. Rows whose acceleration changed are
-    /// appended to `held`.
+    /// appended to `held`, each once.
     void hold(Flights<Real>& flights, std::vector<PressedMeeting>& contacts, std::vector<std::int32_t>& held);
 
     std::size_t bytes() const { return solved_.capacity() * sizeof(Solved) + stopped_.bytes(); }
@@ -39,7 +39,8 @@ class RestingContacts {
   private:
     struct Solved {
         Vec2 normal;
-        double turning;  ///< m/s², vt² / distance: what curved motion adds to the separation's acceleration
+        double unforced;  ///< m/s², what curved motion (vt² / distance) and the rest of a separation's speed
+                          ///< add to the separation's acceleration
         double inverse_mass_sum;  ///< 1/kg; 0 = moving apart, not carried
     };
 

@@ -38,7 +38,7 @@ double SimultaneousImpacts<Real>::normal_velocity(const Impact& i) const {
 }
 
 template <class Real>
-void SimultaneousImpacts<Real>::solve() {
+void SimultaneousImpacts<Real>::solve(double negligible) {
     double fastest = 0;
     for (const Impact& i : impacts_) fastest = std::fmax(fastest, -i.encounter.normal_velocity);
     for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
@@ -54,13 +54,13 @@ void SimultaneousImpacts<Real>::solve() {
             VelocityChange& b = changes_[i.place_b];
             b.change += b.inverse_mass * change;
         }
-        if (largest_change <= kConverged * fastest) break;
+        if (largest_change <= std::fmax(kConverged * fastest, negligible)) break;
     }
 }
 
 template <class Real>
-void SimultaneousImpacts<Real>::carry_out(Flights<Real>& flights) {
-    solve();
+void SimultaneousImpacts<Real>::carry_out(Flights<Real>& flights, double negligible) {
+    solve(negligible);
     for (Impact& i : impacts_) i.normal_velocity_after = normal_velocity(i);
     for (const Impact& i : impacts_) {
         if (i.impulse == 0) continue;

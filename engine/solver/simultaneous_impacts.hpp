@@ -30,8 +30,9 @@ class SimultaneousImpacts {
 
     void add(const Flights<Real>& flights, Meeting m, const Encounter& e, double s, double target);
 
-    /// Solves all that was added, deflects the bodies and books the work as restitution.
-    void carry_out(Flights<Real>& flights);
+    /// Solves all that was added, deflects the bodies and books the work as restitution. `negligible`: change
+    /// of a velocity that is round-off [m/s].
+    void carry_out(Flights<Real>& flights, double negligible = 0);
 
     const std::vector<Impact>& impacts() const { return impacts_; }
     std::size_t bytes() const;
@@ -45,7 +46,7 @@ class SimultaneousImpacts {
 
     std::size_t place_of(const Flights<Real>& flights, std::int32_t row);
     double normal_velocity(const Impact& i) const;
-    void solve();
+    void solve(double negligible);
 
     std::vector<Impact> impacts_;
     std::vector<VelocityChange> changes_;     // of every body that takes part

@@ -24,10 +24,8 @@ void end_special_flights(Simulation<Real>& sim) {
         const Vec2 v = velocity_at(f, flights.end.s, flights.drag());
         bodies.position_x[i] = real(x.x), bodies.position_y[i] = real(x.y);
         bodies.velocity_x[i] = real(v.x), bodies.velocity_y[i] = real(v.y);
+        flights.accelerations[i] = flights.common_acceleration;
     }
-    // Only then: a row can be held by several contacts, and is listed for each.
-    for (const std::int32_t row : sim.solver.held_rows())
-        flights.accelerations[static_cast<std::size_t>(row)] = flights.common_acceleration;
 }
 
 }  // namespace

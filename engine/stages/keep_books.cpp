@@ -23,6 +23,15 @@ void book_linear_drag(Simulation<Real>& sim) {
     books.drag_momentum -= momentum;
 }
 
+/// Of the contacts that bodies rest on, until the end of their flights.
+template <class Real>
+void book_supports(Simulation<Real>& sim) {
+    const Flights<Real>& flights = sim.solver.flights;
+    for (const std::int32_t row : sim.solver.held_rows())
+        sim.world.books.restitution +=
+            flights.support_work(row, flights.flight(row), flights.end.s, flights.end.q);
+}
+
 template <class Real>
 void book_angular_drag(Simulation<Real>& sim) {
     const Bodies<Real>& bodies = sim.world.bodies;
@@ -37,6 +46,7 @@ template <class Real>
 void keep_books(Simulation<Real>& sim) {
     WorldState<Real>& world = sim.world;
     world.books.gravity_momentum += (world.dynamic_mass * sim.h) * world.gravity;
+    book_supports(sim);
     if (sim.solver.flights.drag() != 0) book_linear_drag(sim);
     if (world.bodies.has_rotation && world.drag.angular != 0) book_angular_drag(sim);
 }
