@@ -5,7 +5,7 @@
 namespace carom {
 namespace {
 
-constexpr std::size_t kPlacesPerChunk = kRowsPerChunk;
+constexpr std::size_t kPlacesPerChunk = kRowsPerChunk;  // whole blocks of the kernel
 
 void make_room(CandidatePairs& pairs, std::size_t wanted) {
     if (pairs.a.size() >= wanted) return;

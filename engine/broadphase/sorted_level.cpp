@@ -3,13 +3,13 @@
 #include "broadphase/cell_numbering.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace carom {
 namespace {
 
 constexpr double kCellMargin = 1 + 1e-5;  // cells are that much larger than twice the largest reach: rounding
 constexpr double kSmallestCell = 1e-30;   // m, where no body has any reach
-constexpr std::size_t kReadBeyond = kRowPadding;  // places a batch may read after the last body
 
 }  // namespace
 
@@ -25,7 +25,6 @@ void SortedLevel<Real>::sort(const LevelInput<Real>& input, const KernelTable<Re
     find_cells(input, kernels, executor);
     count_cells(input.count);
     place_bodies(input);
-    repeat_first_cells();
     view_.bodies = {x_.data(), y_.data(), reach_.data(), row_.data(), cell_.data(), cell_begin_.data()};
 }
 
@@ -45,19 +44,21 @@ void SortedLevel<Real>::find_cells(const LevelInput<Real>& input, const KernelTa
 template <class Real>
 void SortedLevel<Real>::count_cells(std::size_t count) {
     const auto cells = static_cast<std::size_t>(view_.cells);
-    cell_begin_.resize_for_overwrite(cells + 3);
+    const std::size_t size = cell_begin_size(cells, static_cast<std::size_t>(view_.width));
+    cell_begin_.resize_for_overwrite(size);
     std::int32_t* begin = cell_begin_.data();
-    std::fill(begin, begin + cells + 3, 0);
+    std::fill(begin, begin + cells + 2, 0);
     for (std::size_t i = 0; i < count; ++i) ++begin[unsorted_cell_[i] + 2];
     std::int32_t sum = 0;
-    for (std::size_t c = 0; c < cells + 3; ++c) begin[c] = sum += begin[c];
+    for (std::size_t c = 0; c < cells + 2; ++c) begin[c] = sum += begin[c];
+    std::fill(begin + cells + 1, begin + size, static_cast<std::int32_t>(count));
 }
 
 template <class Real>
 void SortedLevel<Real>::place_bodies(const LevelInput<Real>& input) {
     const std::size_t count = input.count;
-    for (Column<Real>* column : {&x_, &y_, &reach_}) column->resize_for_overwrite(count + kReadBeyond);
-    for (Column<std::int32_t>* column : {&row_, &cell_}) column->resize_for_overwrite(count + kReadBeyond);
+    for (Column<Real>* column : {&x_, &y_, &reach_}) column->resize_for_overwrite(count + kPlacesBeyond);
+    for (Column<std::int32_t>* column : {&row_, &cell_}) column->resize_for_overwrite(count + kPlacesBeyond);
     std::int32_t* next = cell_begin_.data() + 1;
     for (std::size_t i = 0; i < count; ++i) {
         const std::int32_t cell = unsorted_cell_[i];
@@ -68,25 +69,10 @@ void SortedLevel<Real>::place_bodies(const LevelInput<Real>& input) {
         row_[place] = input.row ? input.row[i] : static_cast<std::int32_t>(i);
         cell_[place] = cell;
     }
-}
-
-/// The bodies of cells 0 and 1 follow once more as cells `cells` and `cells` + 1, so that three cells in a
-/// row are consecutive places wherever numbers wrap around.
-template <class Real>
-void SortedLevel<Real>::repeat_first_cells() {
-    const auto cells = static_cast<std::size_t>(view_.cells);
-    const auto count = static_cast<std::int32_t>(view_.places);
-    std::int32_t* begin = cell_begin_.data();
-    begin[cells] = count;
-    begin[cells + 1] = count + begin[1];
-    begin[cells + 2] = count + begin[2];
-
-    const auto repeated = static_cast<std::size_t>(begin[2]);
-    const auto repeat = [&](auto& column) {
-        column.resize(view_.places + repeated + kReadBeyond);
-        std::copy_n(column.data(), repeated, column.data() + view_.places);
-    };
-    repeat(x_), repeat(y_), repeat(reach_), repeat(row_), repeat(cell_);
+    std::fill_n(x_.data() + count, kPlacesBeyond, std::numeric_limits<Real>::infinity());
+    std::fill_n(y_.data() + count, kPlacesBeyond, Real{0});
+    std::fill_n(reach_.data() + count, kPlacesBeyond, Real{0});
+    std::fill_n(row_.data() + count, kPlacesBeyond, 0);
 }
 
 template <class Real>

@@ -37,7 +37,6 @@ class SortedLevel {
                     const Executor& executor);
     void count_cells(std::size_t count);
     void place_bodies(const LevelInput<Real>& input);
-    void repeat_first_cells();
 
     GridLevel<Real> view_{};
     Column<std::int32_t> unsorted_cell_;

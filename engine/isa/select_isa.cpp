@@ -48,10 +48,11 @@ std::vector<const KernelTables*> runnable_kernel_tables() {
     tables.push_back(&kSse2Kernels);  // every x86-64 processor
 #endif
 #if defined(CAROM_BUILT_AVX2)
-    if (__builtin_cpu_supports("avx2")) tables.push_back(&kAvx2Kernels);
+    const bool has_bmi = __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
+    if (has_bmi && __builtin_cpu_supports("avx2")) tables.push_back(&kAvx2Kernels);
 #endif
 #if defined(CAROM_BUILT_AVX512)
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+    if (has_bmi && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512cd") &&
         __builtin_cpu_supports("avx512vl"))
         tables.push_back(&kAvx512Kernels);

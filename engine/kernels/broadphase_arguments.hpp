@@ -47,23 +47,31 @@ struct FindCells {
     std::int32_t* cell_out;  // [rows]
 };
 
-/// Bodies sorted by cell. All arrays may be read kRowPadding places beyond the last.
+/// So many places after the last body are read; their x is infinite, so they are near nothing.
+inline constexpr std::size_t kPlacesBeyond = 64;
+
+/// Bodies sorted by cell.
 template <class Real>
 struct SortedBodies {
-    const Real* x;             // m, [places]
-    const Real* y;             // m
-    const Real* reach;         // m
-    const std::int32_t* row;   // where the body is in the columns
-    const std::int32_t* cell;  // its cell's number
-    const std::int32_t*
-        cell_begin;  // first place of each cell, [cells + 3]; cells + 0, + 1 repeat cells 0, 1
+    const Real* x;                   // m, [places]
+    const Real* y;                   // m
+    const Real* reach;               // m
+    const std::int32_t* row;         // where the body is in the columns
+    const std::int32_t* cell;        // its cell's number
+    const std::int32_t* cell_begin;  // first place of each cell; see cell_begin_size
 };
+
+/// Cells have a begin up to that far; those beyond the last cell begin after the last body. Kernels read
+/// three cells of the next row, sixteen cells at a time.
+constexpr std::size_t cell_begin_size(std::size_t cells, std::size_t width) {
+    return cells + width + 20;
+}
 
 /// One size class of the grid. Its cells are larger than twice its largest reach.
 template <class Real>
 struct GridLevel {
     SortedBodies<Real> bodies;
-    std::size_t places;  // bodies of the level; repeated ones beyond are not counted
+    std::size_t places;  // bodies of the level
     CellNumbering numbering;
     std::int32_t width, cells;  // of the numbering
     Real largest_reach;         // m

@@ -23,6 +23,24 @@ std::size_t append_near(const SortedBodies<Real>& bodies, Places places, const F
     return count;
 }
 
+/// The places of three consecutive cells: one stretch, or two where numbers wrap around.
+struct CellRow {
+    Places places, rest;
+};
+
+template <class Real>
+CellRow three_cells(const GridLevel<Real>& level, std::int32_t first) {
+    const std::int32_t* begin = level.bodies.cell_begin;
+    const auto places = [&](std::int32_t from, std::int32_t to) {
+        return Places{static_cast<std::size_t>(begin[from]), static_cast<std::size_t>(begin[to])};
+    };
+    if (first >= 0 && first + 3 <= level.cells) return {places(first, first + 3), {0, 0}};
+    if (first < 0) first += level.cells;
+    if (first >= level.cells) first -= level.cells;
+    if (first + 3 <= level.cells) return {places(first, first + 3), {0, 0}};
+    return {places(first, level.cells), places(0, first + 3 - level.cells)};
+}
+
 /// Those of the 3 x 3 cells around the query.
 template <class Real, class L>
 std::size_t find_near_in_block(const GridLevel<Real>& level, const FindNear<Real>& k) {
@@ -31,17 +49,16 @@ std::size_t find_near_in_block(const GridLevel<Real>& level, const FindNear<Real
     const CellNumbering& numbering = level.numbering;
     const auto cell = static_cast<std::int32_t>(numbering.wraps ? cell_number<One, true>(x, y, numbering)
                                                                 : cell_number<One, false>(x, y, numbering));
-    const auto three_cells = [&](std::int32_t first) {
-        const std::int32_t* begin = level.bodies.cell_begin + first;
-        return Places{static_cast<std::size_t>(begin[0]), static_cast<std::size_t>(begin[3])};
-    };
-    const std::int32_t below = cell - level.width - 1, own = cell - 1, above = cell + level.width - 1;
-    const Places rows[3] = {three_cells(below < 0 ? below + level.cells : below),
-                            three_cells(own < 0 ? own + level.cells : own),
-                            three_cells(above >= level.cells ? above - level.cells : above)};
-    if (rows[0].count() + rows[1].count() + rows[2].count() + L::size > k.capacity) return kNoRoom;
+    const CellRow rows[3] = {three_cells(level, cell - level.width - 1), three_cells(level, cell - 1),
+                             three_cells(level, cell + level.width - 1)};
+    std::size_t most = L::size;
+    for (const CellRow& row : rows) most += row.places.count() + row.rest.count();
+    if (most > k.capacity) return kNoRoom;
     std::size_t count = 0;
-    for (const Places& row : rows) count = append_near<L>(level.bodies, row, k, count);
+    for (const CellRow& row : rows) {
+        count = append_near<L>(level.bodies, row.places, k, count);
+        if (row.rest.count() > 0) count = append_near<L>(level.bodies, row.rest, k, count);
+    }
     return count;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "simd/batch.hpp"
+#include "simd/scalar_lanes.hpp"
 
 #include <immintrin.h>
 #include <array>
@@ -40,6 +41,13 @@ inline unsigned bitmask(xsimd::batch_bool<double, xsimd::avx2> mask) {
     return static_cast<unsigned>(_mm256_movemask_pd(mask));
 }
 
+inline void store_smallest4_of_quads(std::int32_t* to, __m128i a, __m128i b, __m128i c, __m128i d) {
+    const __m128i ab = _mm_min_epi32(_mm_unpacklo_epi32(a, b), _mm_unpackhi_epi32(a, b));
+    const __m128i cd = _mm_min_epi32(_mm_unpacklo_epi32(c, d), _mm_unpackhi_epi32(c, d));
+    const __m128i all = _mm_min_epi32(_mm_unpacklo_epi64(ab, cd), _mm_unpackhi_epi64(ab, cd));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(to), all);
+}
+
 template <>
 struct Lanes<float, xsimd::avx2> : BatchLanes<float, xsimd::avx2> {
     using Rows = __m256i;
@@ -50,6 +58,16 @@ struct Lanes<float, xsimd::avx2> : BatchLanes<float, xsimd::avx2> {
     }
     static void store_rows(std::int32_t* to, Rows rows) {
         _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), rows);
+    }
+
+    static Rows rows_difference(Rows a, Rows b) { return _mm256_sub_epi32(a, b); }
+    static Rows rows_min(Rows a, Rows b) { return _mm256_min_epi32(a, b); }
+    static constexpr auto store_marked_pairs = &store_marked_pairs_one_by_one;
+    static void store_smallest4(std::int32_t* to, Rows a, Rows b, Rows c, Rows d) {
+        const auto quad = [](Rows rows) {
+            return _mm_min_epi32(_mm256_castsi256_si128(rows), _mm256_extracti128_si256(rows, 1));
+        };
+        store_smallest4_of_quads(to, quad(a), quad(b), quad(c), quad(d));
     }
 
     // xsimd 8.1 emulates float gathers lane by lane.

@@ -22,6 +22,21 @@ struct Lanes<float, xsimd::avx512bw> : BatchLanes<float, xsimd::avx512bw> {
     static Rows load_rows(const std::int32_t* from) { return _mm512_loadu_si512(from); }
     static void store_rows(std::int32_t* to, Rows rows) { _mm512_storeu_si512(to, rows); }
 
+    static Rows rows_difference(Rows a, Rows b) { return _mm512_sub_epi32(a, b); }
+    static Rows rows_min(Rows a, Rows b) { return _mm512_min_epi32(a, b); }
+    static void store_smallest4(std::int32_t* to, Rows a, Rows b, Rows c, Rows d) {
+        const auto quad = [](Rows rows) {
+            const __m256i eight =
+                _mm256_min_epi32(_mm512_castsi512_si256(rows), _mm512_extracti64x4_epi64(rows, 1));
+            return _mm_min_epi32(_mm256_castsi256_si128(eight), _mm256_extracti128_si256(eight, 1));
+        };
+        const __m128i qa = quad(a), qb = quad(b), qc = quad(c), qd = quad(d);
+        const __m128i ab = _mm_min_epi32(_mm_unpacklo_epi32(qa, qb), _mm_unpackhi_epi32(qa, qb));
+        const __m128i cd = _mm_min_epi32(_mm_unpacklo_epi32(qc, qd), _mm_unpackhi_epi32(qc, qd));
+        const __m128i all = _mm_min_epi32(_mm_unpacklo_epi64(ab, cd), _mm_unpackhi_epi64(ab, cd));
+        _mm_storeu_si128(reinterpret_cast<__m128i*>(to), all);
+    }
+
     static Batch gather(const float* column, Rows rows) {
         return Batch::Raw(_mm512_i32gather_ps(rows, column, sizeof(float)));
     }
@@ -30,6 +45,34 @@ struct Lanes<float, xsimd::avx512bw> : BatchLanes<float, xsimd::avx512bw> {
     static std::size_t compress_store(std::int32_t* out, Rows values, unsigned bits) {
         store_rows(out, _mm512_maskz_compress_epi32(static_cast<__mmask16>(bits), values));
         return static_cast<std::size_t>(__builtin_popcount(bits));
+    }
+
+    // A store at any address is the dear part: four compressed registers are put one behind the other first.
+    static std::size_t store_marked_pairs(std::int32_t* to_a, std::int32_t* to_b, const std::int32_t* a,
+                                          const std::int32_t* b, std::uint64_t word) {
+        const auto mask = [&](int j) { return static_cast<__mmask16>(word >> (16 * j)); };
+        const auto before = [&](int j) {  // how many rows 0 ... j - 1 give
+            return static_cast<unsigned>(__builtin_popcountll(word & ((std::uint64_t{1} << (16 * j)) - 1)));
+        };
+        const auto from_lane = [](unsigned lane) { return static_cast<__mmask16>(~0u << lane); };
+        const auto rows_a = [&](int j) { return _mm512_maskz_compress_epi32(mask(j), load_rows(a)); };
+        const auto rows_b = [&](int j) { return _mm512_maskz_compress_epi32(mask(j), load_rows(b + j)); };
+        const auto total = static_cast<unsigned>(__builtin_popcountll(word));
+        if (total <= size) {
+            Rows all_a = rows_a(0), all_b = rows_b(0);
+            for (int j = 1; j < 4; ++j) {
+                all_a = _mm512_mask_expand_epi32(all_a, from_lane(before(j)), rows_a(j));
+                all_b = _mm512_mask_expand_epi32(all_b, from_lane(before(j)), rows_b(j));
+            }
+            store_rows(to_a, all_a);
+            store_rows(to_b, all_b);
+        } else {
+            for (int j = 0; j < 4; ++j) {
+                store_rows(to_a + before(j), rows_a(j));
+                store_rows(to_b + before(j), rows_b(j));
+            }
+        }
+        return total;
     }
 
     static Batch4 load_rows4(const float* packed, const std::int32_t* rows) {

@@ -19,6 +19,13 @@
 ///   sqrt, abs, min, max (the second operand if one is NaN or both are zeros), select(mask, if_true,
 ///   if_false), any(mask), all(mask), bitmask(mask) -> unsigned, lane 0 in bit 0.
 ///
+/// For Real = float also
+///   rows_difference(a, b), rows_min(a, b)   of row numbers
+///   store_smallest4(p, a, b, c, d)          of each the smallest number, to p[0] ... p[3]
+///   store_marked_pairs(to_a, to_b, a, b, word)   for each set bit 16 j + i, in order: a[i] and b[i + j];
+///   returns
+///                                           how many. to_a and to_b need room for 71 numbers
+///
 /// For Real = double also
 ///   load_converted(float* or double*)   unaligned
 ///   floor(batch), floor_to_rows(batch)  toward minus infinity, |value| < 2^31

@@ -56,6 +56,26 @@ inline unsigned bitmask(bool mask) {
     return mask ? 1u : 0u;
 }
 
+/// For each set bit 16 j + i of the word, in order: a[i] to to_a, b[i + j] to to_b; returns how many. Instead
+/// of a branch a pair, one for each so many as there seldom are: to_a and to_b need room for 64 + 7 pairs.
+inline std::size_t store_marked_pairs_one_by_one(std::int32_t* to_a, std::int32_t* to_b,
+                                                 const std::int32_t* a, const std::int32_t* b,
+                                                 std::uint64_t word) {
+    constexpr int kPairsAtOnce = 8;
+    const auto total = static_cast<std::size_t>(__builtin_popcountll(word));
+    std::size_t written = 0;
+    do {
+        for (int pair = 0; pair < kPairsAtOnce; ++pair) {
+            const auto bit = static_cast<std::size_t>(__builtin_ctzll(word | (std::uint64_t{1} << 63)));
+            to_a[written] = a[bit % 16];
+            to_b[written] = b[bit % 16 + bit / 16];
+            ++written;
+            word &= word - 1;
+        }
+    } while (written < total);
+    return total;
+}
+
 template <class Real>
 struct ScalarLanes {
     static constexpr std::size_t size = 1;
@@ -97,7 +117,14 @@ struct ScalarLanes {
 };
 
 template <>
-struct Lanes<float, Scalar> : ScalarLanes<float> {};
+struct Lanes<float, Scalar> : ScalarLanes<float> {
+    static Rows rows_difference(Rows a, Rows b) { return a - b; }
+    static Rows rows_min(Rows a, Rows b) { return a < b ? a : b; }
+    static void store_smallest4(std::int32_t* to, Rows a, Rows b, Rows c, Rows d) {
+        to[0] = a, to[1] = b, to[2] = c, to[3] = d;
+    }
+    static constexpr auto store_marked_pairs = &store_marked_pairs_one_by_one;
+};
 
 template <>
 struct Lanes<double, Scalar> : ScalarLanes<double> {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "simd/batch.hpp"
+#include "simd/scalar_lanes.hpp"
 
 #include <emmintrin.h>
 
@@ -24,6 +25,18 @@ struct Lanes<float, xsimd::sse2> : BatchLanes<float, xsimd::sse2> {
     }
     static void store_rows(std::int32_t* to, Rows rows) {
         _mm_storeu_si128(reinterpret_cast<__m128i*>(to), rows);
+    }
+
+    static Rows rows_difference(Rows a, Rows b) { return _mm_sub_epi32(a, b); }
+    static Rows rows_min(Rows a, Rows b) {
+        const __m128i greater = _mm_cmpgt_epi32(a, b);
+        return _mm_or_si128(_mm_and_si128(greater, b), _mm_andnot_si128(greater, a));
+    }
+    static constexpr auto store_marked_pairs = &store_marked_pairs_one_by_one;
+    static void store_smallest4(std::int32_t* to, Rows a, Rows b, Rows c, Rows d) {
+        const Rows ab = rows_min(_mm_unpacklo_epi32(a, b), _mm_unpackhi_epi32(a, b));
+        const Rows cd = rows_min(_mm_unpacklo_epi32(c, d), _mm_unpackhi_epi32(c, d));
+        store_rows(to, rows_min(_mm_unpacklo_epi64(ab, cd), _mm_unpackhi_epi64(ab, cd)));
     }
 
     static Batch gather(const float* column, Rows rows) {
