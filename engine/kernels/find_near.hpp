@@ -6,74 +6,91 @@
 namespace carom {
 namespace {
 
-/// The bodies of consecutive places.
-struct Places {
-    std::size_t first, last;
-    std::size_t count() const { return last - first; }
-};
+/// The number of the cell of a query, or of a neighbouring one if rounding decides: cells are large enough
+/// for that.
+template <class Real>
+std::int32_t query_cell(const GridLevel<Real>& level, Real x, Real y) {
+    using One = simd::Lanes<double, simd::Scalar>;
+    const CellNumbering& n = level.numbering;
+    const double wide_x = static_cast<double>(x), wide_y = static_cast<double>(y);
+    if (n.wraps) return static_cast<std::int32_t>(cell_number<One, true>(wide_x, wide_y, n));
+    const auto cells_from = [&](double position, double low, double high) {
+        const double cells = simd::max(position * n.inverse_size - low, 0.0);
+        return static_cast<std::int32_t>(simd::min(cells, high - low));
+    };
+    return cells_from(wide_x, n.low_u, n.high_u) + level.width * cells_from(wide_y, n.low_v, n.high_v);
+}
 
-/// Writes the rows of the bodies near the query among those places to k.out + count; returns the new count.
+/// Writes the rows of the bodies near the query at places [first, last) to k.out + count; returns the new
+/// count.
 template <class L, class Real>
-std::size_t append_near(const SortedBodies<Real>& bodies, Places places, const FindNear<Real>& k,
-                        std::size_t count) {
+std::size_t append_near(const SortedBodies<Real>& bodies, std::int32_t first, std::int32_t last,
+                        const FindNear<Real>& k, std::size_t count) {
     const Probe<L> probe{L::broadcast(k.x), L::broadcast(k.y), L::broadcast(k.reach)};
-    scan_range<L>(bodies, places.first, places.last, probe, [&](std::size_t at, unsigned lanes) {
-        count += L::compress_store(k.out + count, L::load_rows(bodies.row + at), lanes);
-    });
+    scan_range<L>(bodies, static_cast<std::size_t>(first), static_cast<std::size_t>(last), probe,
+                  [&](std::size_t at, unsigned lanes) {
+                      count += L::compress_store(k.out + count, L::load_rows(bodies.row + at), lanes);
+                  });
     return count;
 }
 
-/// The places of three consecutive cells: one stretch, or two where numbers wrap around.
-struct CellRow {
-    Places places, rest;
-};
-
-template <class Real>
-CellRow three_cells(const GridLevel<Real>& level, std::int32_t first) {
+/// Any three rows of three cells; the last cell and the first may lie between.
+template <class L, class Real>
+std::size_t find_near_in_rows(const GridLevel<Real>& level, const std::int32_t (&first_cell)[3],
+                              const FindNear<Real>& k) {
     const std::int32_t* begin = level.bodies.cell_begin;
-    const auto places = [&](std::int32_t from, std::int32_t to) {
-        return Places{static_cast<std::size_t>(begin[from]), static_cast<std::size_t>(begin[to])};
-    };
-    if (first >= 0 && first + 3 <= level.cells) return {places(first, first + 3), {0, 0}};
-    if (first < 0) first += level.cells;
-    if (first >= level.cells) first -= level.cells;
-    if (first + 3 <= level.cells) return {places(first, first + 3), {0, 0}};
-    return {places(first, level.cells), places(0, first + 3 - level.cells)};
-}
-
-/// Those of the 3 x 3 cells around the query.
-template <class Real, class L>
-std::size_t find_near_in_block(const GridLevel<Real>& level, const FindNear<Real>& k) {
-    using One = simd::Lanes<double, simd::Scalar>;
-    const double x = static_cast<double>(k.x), y = static_cast<double>(k.y);
-    const CellNumbering& numbering = level.numbering;
-    const auto cell = static_cast<std::int32_t>(numbering.wraps ? cell_number<One, true>(x, y, numbering)
-                                                                : cell_number<One, false>(x, y, numbering));
-    const CellRow rows[3] = {three_cells(level, cell - level.width - 1), three_cells(level, cell - 1),
-                             three_cells(level, cell + level.width - 1)};
-    std::size_t most = L::size;
-    for (const CellRow& row : rows) most += row.places.count() + row.rest.count();
-    if (most > k.capacity) return kNoRoom;
     std::size_t count = 0;
-    for (const CellRow& row : rows) {
-        count = append_near<L>(level.bodies, row.places, k, count);
-        if (row.rest.count() > 0) count = append_near<L>(level.bodies, row.rest, k, count);
+    for (const std::int32_t first : first_cell) {
+        const std::int32_t last = first + 3 < level.cells ? first + 3 : level.cells;
+        const std::int32_t rest = first + 3 - last;
+        if (count + static_cast<std::size_t>(begin[last] - begin[first] + begin[rest]) + L::size > k.capacity)
+            return kNoRoom;
+        count = append_near<L>(level.bodies, begin[first], begin[last], k, count);
+        if (rest > 0) count = append_near<L>(level.bodies, begin[0], begin[rest], k, count);
     }
     return count;
+}
+
+/// The 3 x 3 cells around the query. Rows that fit a batch, which nearly all do, take no branch.
+template <class Real, class L>
+std::size_t find_near_in_block(const GridLevel<Real>& level, const FindNear<Real>& k) {
+    const std::int32_t cell = query_cell(level, k.x, k.y), cells = level.cells;
+    const std::int32_t below = cell - level.width - 1, own = cell - 1, above = cell + level.width - 1;
+    const std::int32_t first_cell[3] = {below < 0 ? below + cells : below, own < 0 ? own + cells : own,
+                                        above >= cells ? above - cells : above};
+    const SortedBodies<Real>& bodies = level.bodies;
+    std::size_t first[3], count[3];
+    bool is_usual = k.capacity >= 4 * L::size;
+    for (int i = 0; i < 3; ++i) {
+        const std::int32_t* begin = bodies.cell_begin + first_cell[i];
+        first[i] = static_cast<std::size_t>(begin[0]);
+        count[i] = static_cast<std::size_t>(begin[3]) - first[i];
+        is_usual = is_usual & (first_cell[i] + 3 <= cells) & (count[i] <= L::size);
+    }
+    if (!is_usual || L::size == 1) return find_near_in_rows<L>(level, first_cell, k);
+
+    const Probe<L> probe{L::broadcast(k.x), L::broadcast(k.y), L::broadcast(k.reach)};
+    std::size_t found = 0;
+    for (int i = 0; i < 3; ++i) {
+        const unsigned near = near_lanes<L>(bodies, first[i], probe) & ((1u << count[i]) - 1u);
+        found += L::compress_store(k.out + found, L::load_rows(bodies.row + first[i]), near);
+    }
+    return found;
 }
 
 /// A query larger than a cell: all cells that it touches, or the whole level if cells share numbers.
 template <class Real, class L>
 std::size_t find_near_in_box(const GridLevel<Real>& level, const FindNear<Real>& k) {
-    using One = simd::Lanes<double, simd::Scalar>;
     if (level.places + L::size > k.capacity) return kNoRoom;
-    if (level.numbering.wraps) return append_near<L>(level.bodies, {0, level.places}, k, 0);
+    if (level.numbering.wraps)
+        return append_near<L>(level.bodies, 0, static_cast<std::int32_t>(level.places), k, 0);
 
     constexpr double kRoundingMargin = 1 + 1e-5;
     const double reach =
         (static_cast<double>(k.reach) + static_cast<double>(level.largest_reach)) * kRoundingMargin;
     const CellNumbering& n = level.numbering;
     const auto cell = [&](double position, double low, double high) {
+        using One = simd::Lanes<double, simd::Scalar>;
         return static_cast<std::int32_t>(cell_coordinate<One>(position, n.inverse_size, low, high) - low);
     };
     const double x = static_cast<double>(k.x), y = static_cast<double>(k.y);
@@ -82,17 +99,15 @@ std::size_t find_near_in_box(const GridLevel<Real>& level, const FindNear<Real>&
     std::size_t count = 0;
     for (std::int32_t line = bottom; line <= top; ++line) {
         const std::int32_t* begin = level.bodies.cell_begin + line * level.width;
-        count = append_near<L>(
-            level.bodies, {static_cast<std::size_t>(begin[left]), static_cast<std::size_t>(begin[right + 1])},
-            k, count);
+        count = append_near<L>(level.bodies, begin[left], begin[right + 1], k, count);
     }
     return count;
 }
 
-/// Returns how many rows it wrote to out, which has room for kRowPadding more than that; or kNoRoom.
+/// Returns how many rows it wrote to out; or kNoRoom.
 template <class Real, class Isa>
 std::size_t find_near(const GridLevel<Real>& level, const FindNear<Real>& k) {
-    using L = simd::Lanes<Real, Isa>;
+    using L = simd::ShortLanes<Real, Isa>;
     if (k.reach <= level.largest_reach) return find_near_in_block<Real, L>(level, k);
     return find_near_in_box<Real, L>(level, k);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "simd/avx2_lanes.hpp"
 #include "simd/batch.hpp"
 
 #include <immintrin.h>
@@ -109,6 +110,9 @@ struct Lanes<float, xsimd::avx512bw> : BatchLanes<float, xsimd::avx512bw> {
                  Batch::Raw(_mm512_castpd_ps(_mm512_unpackhi_pd(ab_high, cd_high)))}};
     }
 };
+
+template <>
+struct ShortLanes<float, xsimd::avx512bw> : Lanes<float, xsimd::avx2> {};
 
 template <>
 struct Lanes<double, xsimd::avx512bw> : BatchLanes<double, xsimd::avx512bw> {

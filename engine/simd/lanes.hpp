@@ -4,6 +4,8 @@
 /// xsimd::avx2 or xsimd::avx512bw. Included by kernels only, and so by the files of isa/ alone; everything
 /// has internal linkage. A lane operation gives the bits of the scalar one: no fma, no approximation.
 ///
+/// `ShortLanes<Real, Isa>` has the same, with at most eight lanes.
+///
 ///   size                 lanes in a batch
 ///   Batch, Mask, Rows    Real lanes; booleans (&, |, !); as many int32 row numbers
 ///   Batch4               four batches, [0] ... [3]

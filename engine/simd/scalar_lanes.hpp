@@ -14,6 +14,10 @@ namespace {
 template <class Real, class Isa>
 struct Lanes;
 
+/// The lanes for a few numbers at a time: at most eight, where the instruction set has a choice.
+template <class Real, class Isa>
+struct ShortLanes : Lanes<Real, Isa> {};
+
 // Built-ins, not std::sqrt: an inline function of the library could be emitted out of line as a weak symbol.
 inline float sqrt(float value) {
     return __builtin_sqrtf(value);
