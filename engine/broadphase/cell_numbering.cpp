@@ -1,6 +1,7 @@
 #include "broadphase/cell_numbering.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace carom {
@@ -12,9 +13,12 @@ constexpr double kFewCells = 64;  // never worth folding
 // Else the plane is folded onto so many cells a body.
 constexpr double kFoldedCellsPerBody = 2;
 constexpr double kMostFoldedCells = (1 << 26) - 1;  // keeps the numbering's products exact in double
-// Rows of the folded plane start that fraction of all cells apart. With the golden section no short vector
-// leads from a cell to one of the same number, so that a cluster of any shape spreads over the cells.
+// Where the bodies form no one cluster, rows of the folded plane start that fraction of all cells apart. With
+// the golden section no short vector leads from a cell to one of the same number: bodies spread over the
+// cells.
 constexpr double kGoldenSection = 0.38196601125010515;
+
+constexpr std::size_t kSamples = 256;
 
 /// Whole cell coordinate of the lower and upper end; one cell if there is no number between them.
 struct Extent {
@@ -28,10 +32,36 @@ Extent extent_of(double low, double high, double inverse_size) {
     return {coordinate(low), coordinate(high)};
 }
 
+/// Cells across most of the bodies along one axis, strays left out: from the middle 80 % of a sample.
+template <class Real>
+double usual_width(const Real* position, std::size_t count, double inverse_size) {
+    std::array<double, kSamples> sample;
+    const std::size_t samples = std::min(count, kSamples);
+    for (std::size_t i = 0; i < samples; ++i) {
+        const double cell = static_cast<double>(position[i * count / samples]) * inverse_size;
+        sample[i] = std::isnan(cell) ? 0 : std::clamp(cell, -kFarthestCell, kFarthestCell);
+    }
+    const auto end = sample.begin() + static_cast<std::ptrdiff_t>(samples);
+    std::sort(sample.begin(), end);
+    const double middle = sample[samples - 1 - samples / 10] - sample[samples / 10];
+    return middle / 0.8 * 1.05 + 4;
+}
+
+/// How many numbers rows of the folded plane are apart. Rows of one large cluster follow each other as they
+/// would without folding, so that strays cost nothing; else they are spread.
+template <class Real>
+double folded_width(const Real* x, const Real* y, std::size_t count, double inverse_size, double cells) {
+    const double columns = std::ceil(usual_width(x, count, inverse_size));
+    const double lines = std::ceil(usual_width(y, count, inverse_size));
+    if (columns * lines <= cells && 2 * columns + 3 <= cells) return columns;
+    return std::floor(cells * kGoldenSection);
+}
+
 }  // namespace
 
 template <class Real>
-CellNumbering number_cells(const FindBounds<Real>& bounds, double size, std::size_t bodies) {
+CellNumbering number_cells(const FindBounds<Real>& bounds, const Real* x, const Real* y, std::size_t count,
+                           double size) {
     CellNumbering n{};
     n.inverse_size = 1 / size;
     const Extent u =
@@ -42,13 +72,13 @@ CellNumbering number_cells(const FindBounds<Real>& bounds, double size, std::siz
     n.low_v = v.low, n.high_v = v.high;
 
     const double columns = u.high - u.low + 1, lines = v.high - v.low + 1;
-    const auto count = static_cast<double>(bodies);
-    n.wraps = columns * lines > kBoxCellsPerBody * count + kFewCells;
+    const auto bodies = static_cast<double>(count);
+    n.wraps = columns * lines > kBoxCellsPerBody * bodies + kFewCells;
     if (n.wraps) {
-        const double wanted = std::max(kFoldedCellsPerBody * count, kFewCells) + 1;
-        n.cells = std::min(2 * std::floor(wanted / 2) + 1,
-                           kMostFoldedCells);  // odd: no cell grid divides it evenly
-        n.width = std::floor(n.cells * kGoldenSection);
+        const double wanted = std::max(kFoldedCellsPerBody * bodies, kFewCells);
+        n.cells =
+            std::min(2 * std::floor(wanted / 2) + 1, kMostFoldedCells);  // odd: even spacings share it out
+        n.width = folded_width(x, y, count, n.inverse_size, n.cells);
     } else {
         n.width = std::max(columns, 3.0);
         n.cells = std::max(n.width * lines, 2 * n.width + 3);
@@ -57,7 +87,9 @@ CellNumbering number_cells(const FindBounds<Real>& bounds, double size, std::siz
     return n;
 }
 
-template CellNumbering number_cells(const FindBounds<float>&, double, std::size_t);
-template CellNumbering number_cells(const FindBounds<double>&, double, std::size_t);
+template CellNumbering number_cells(const FindBounds<float>&, const float*, const float*, std::size_t,
+                                    double);
+template CellNumbering number_cells(const FindBounds<double>&, const double*, const double*, std::size_t,
+                                    double);
 
 }  // namespace carom

@@ -5,9 +5,11 @@
 namespace carom {
 
 /// Cells for bodies whose positions lie in a box.
-/// @param size  m, the side of a cell
-/// @param bodies  at least one; memory is O(bodies) wherever they are
+/// @param x, y    m, [count]
+/// @param count   at least one; memory is O(count) wherever the bodies are
+/// @param size    m, the side of a cell
 template <class Real>
-CellNumbering number_cells(const FindBounds<Real>& bounds, double size, std::size_t bodies);
+CellNumbering number_cells(const FindBounds<Real>& bounds, const Real* x, const Real* y, std::size_t count,
+                           double size);
 
 }  // namespace carom

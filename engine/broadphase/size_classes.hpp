@@ -7,37 +7,56 @@
 
 namespace carom {
 
-/// Bodies of one level of the grid differ in reach by at most this factor: a level costs every finer body a
-/// look-up of 3 x 3 cells, a mixed level a few more bodies in each cell.
+/// Bodies whose reaches differ by at most this factor share a level of the grid without further thought.
 inline constexpr double kLargestRatioInLevel = 3;
 
-inline constexpr std::uint8_t kNoLevel = 255;
+/// Other sizes share a level as long as it holds about so many bodies a cell where bodies are packed: looking
+/// at them costs less than looking up another level (docs/decisions/0001-broadphase.md).
+inline constexpr double kMostBodiesInPackedCell = 16;
+
+/// How sizes are put together.
+enum class Grouping : std::uint8_t {
+    by_area,   ///< trusts that bodies hardly overlap: large ones leave little room for small ones
+    by_ratio,  ///< trusts nothing
+};
 
 /// Which bodies go to which level of the grid. Levels are ordered from coarse to fine.
 template <class Real>
 class SizeClasses {
   public:
-    /// Sorts the reaches of all bodies that take part into as few levels as the ratio allows.
-    /// @param flags  null, or a byte a body; see broadphase_flags.hpp
-    void find(const Real* reach, const std::uint8_t* flags, std::size_t count);
+    /// Counts the bodies of each power of two of reach.
+    /// @param flags  null, or a byte a body; see body_flags.hpp
+    void count(const Real* reach, const std::uint8_t* flags, std::size_t count);
+
+    /// Puts them into as few levels as the grouping allows.
+    void group(Grouping grouping);
 
     std::size_t level_count() const { return level_count_; }
-    std::size_t bodies(std::size_t level) const { return bodies_[level]; }
-    Real largest_reach(std::size_t level) const { return largest_[level]; }
-    /// reach: of a body given to `find`, not disabled.
-    std::uint8_t level_of(Real reach) const { return level_of_class_[class_of(reach)]; }
+    std::size_t bodies(std::size_t level) const { return levels_[level].bodies; }
+    Real largest_reach(std::size_t level) const { return levels_[level].largest; }
+    /// Whether sizes in the level differ by more than kLargestRatioInLevel.
+    bool is_mixed(std::size_t level) const;
+    /// reach: of a body that was counted.
+    std::size_t level_of(Real reach) const { return level_of_class_[class_of(reach)]; }
 
   private:
     static constexpr std::size_t kClasses = 512;
+
+    struct Members {
+        std::size_t bodies = 0;
+        Real smallest = 0, largest = 0;  // m
+        double area = 0;                 // m², sum of reach²
+    };
 
     /// Sign and exponent: powers of two apart.
     static std::size_t class_of(Real reach) {
         return std::bit_cast<std::uint32_t>(static_cast<float>(reach)) >> 23;
     }
+    static bool fits(const Members& level, const Members& finer, Grouping grouping);
 
-    std::array<std::uint8_t, kClasses> level_of_class_{};
-    std::array<std::size_t, kClasses> bodies_{};
-    std::array<Real, kClasses> largest_{};
+    std::array<Members, kClasses> classes_{};
+    std::array<Members, kClasses> levels_{};
+    std::array<std::uint16_t, kClasses> level_of_class_{};
     std::size_t level_count_ = 0;
 };
 

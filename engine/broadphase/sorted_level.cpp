@@ -17,7 +17,7 @@ template <class Real>
 void SortedLevel<Real>::sort(const LevelInput<Real>& input, const KernelTable<Real>& kernels,
                              const Executor& executor) {
     const double size = std::max(2 * static_cast<double>(input.largest_reach) * kCellMargin, kSmallestCell);
-    view_.numbering = number_cells(input.bounds, size, input.count);
+    view_.numbering = number_cells(input.bounds, input.x, input.y, input.count, size);
     view_.width = static_cast<std::int32_t>(view_.numbering.width);
     view_.cells = static_cast<std::int32_t>(view_.numbering.cells);
     view_.largest_reach = input.largest_reach;
@@ -73,6 +73,16 @@ void SortedLevel<Real>::place_bodies(const LevelInput<Real>& input) {
     std::fill_n(y_.data() + count, kPlacesBeyond, Real{0});
     std::fill_n(reach_.data() + count, kPlacesBeyond, Real{0});
     std::fill_n(row_.data() + count, kPlacesBeyond, 0);
+}
+
+template <class Real>
+double SortedLevel<Real>::bodies_sharing_a_cell() const noexcept {
+    std::int64_t sum = 0;
+    for (std::size_t cell = 0; cell < static_cast<std::size_t>(view_.cells); ++cell) {
+        const std::int64_t bodies = cell_begin_[cell + 1] - cell_begin_[cell];
+        sum += bodies * bodies;
+    }
+    return static_cast<double>(sum) / static_cast<double>(view_.places);
 }
 
 template <class Real>

@@ -30,6 +30,8 @@ class SortedLevel {
     /// Valid until the next sort.
     const GridLevel<Real>& view() const noexcept { return view_; }
     std::span<const std::int32_t> rows() const noexcept { return {row_.data(), view_.places}; }
+    /// Mean over the bodies of how many are in their cell. Cost: O(cells).
+    double bodies_sharing_a_cell() const noexcept;
     std::size_t bytes() const noexcept;
 
   private:

@@ -5,6 +5,9 @@
 namespace carom {
 namespace {
 
+// Twice what a level of mixed sizes is made for; docs/decisions/0001-broadphase.md.
+constexpr double kMostBodiesSharingACell = 2 * kMostBodiesInPackedCell;
+
 bool any_flag(const std::uint8_t* flags, std::size_t count, std::uint8_t flag) {
     std::uint8_t all = 0;
     for (std::size_t row = 0; row < count; ++row) all = static_cast<std::uint8_t>(all | flags[row]);
@@ -55,9 +58,23 @@ void UniformGrid<Real>::build_one_level(const GridInput<Real>& input, const Find
                     executor);
 }
 
+/// Grouping sizes by area is tried first; bodies that overlap or crowd in a corner can make its cells too
+/// full.
 template <class Real>
 void UniformGrid<Real>::build_levels(const GridInput<Real>& input, const Executor& executor) {
-    classes_.find(input.reach, flags_, count_);
+    classes_.count(input.reach, flags_, count_);
+    classes_.group(Grouping::by_area);
+    sort_levels(input, executor);
+    for (std::size_t level = 0; level < level_count_; ++level)
+        if (classes_.is_mixed(level) && levels_[level].bodies_sharing_a_cell() > kMostBodiesSharingACell) {
+            classes_.group(Grouping::by_ratio);
+            sort_levels(input, executor);
+            return;
+        }
+}
+
+template <class Real>
+void UniformGrid<Real>::sort_levels(const GridInput<Real>& input, const Executor& executor) {
     level_count_ = classes_.level_count();
     if (levels_.size() < level_count_) levels_.resize(level_count_);
     split_by_level(input);
@@ -91,8 +108,8 @@ void UniformGrid<Real>::split_by_level(const GridInput<Real>& input) {
     for (Column<Real>* column : {&split_.x, &split_.y, &split_.reach}) column->resize_for_overwrite(places);
     split_.row.resize_for_overwrite(places);
 
-    std::array<std::size_t, kNoLevel> next;
-    std::copy(split_.first.begin(), split_.first.end(), next.begin());
+    std::vector<std::size_t>& next = split_.next;
+    next.assign(split_.first.begin(), split_.first.end());
     for (std::size_t row = 0; row < count_; ++row) {
         if (flags_ && (flags_[row] & kDisabled)) continue;
         const std::size_t place = next[classes_.level_of(input.reach[row])]++;

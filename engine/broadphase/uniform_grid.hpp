@@ -65,6 +65,7 @@ class UniformGrid {
     void build_one_level(const GridInput<Real>& input, const FindBounds<Real>& bounds,
                          const Executor& executor);
     void build_levels(const GridInput<Real>& input, const Executor& executor);
+    void sort_levels(const GridInput<Real>& input, const Executor& executor);
     void split_by_level(const GridInput<Real>& input);
     void list_order(const GridInput<Real>& input);
 
@@ -87,7 +88,7 @@ class UniformGrid {
     struct {
         Column<Real> x, y, reach;
         Column<std::int32_t> row;
-        std::vector<std::size_t> first;  // of each level
+        std::vector<std::size_t> first, next;  // place of each level
     } split_;
 
     Column<std::int32_t> order_;

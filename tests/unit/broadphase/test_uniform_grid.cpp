@@ -45,12 +45,14 @@ enum class Near { no, yes, rounding_decides };
 /// way.
 template <class Real>
 Near is_near(const Bodies<Real>& bodies, std::size_t a, long double x, long double y, long double reach) {
-    const long double distance =
-        std::hypot(static_cast<long double>(bodies.x[a]) - x, static_cast<long double>(bodies.y[a]) - y);
+    const long double dx = static_cast<long double>(bodies.x[a]) - x,
+                      dy = static_cast<long double>(bodies.y[a]) - y;
     const long double limit = static_cast<long double>(bodies.reach[a]) + reach;
-    const long double band = 4 * static_cast<long double>(std::numeric_limits<Real>::epsilon()) * limit;
-    if (distance < limit - band) return Near::yes;
-    return distance > limit + band ? Near::no : Near::rounding_decides;
+    const long double squared = dx * dx + dy * dy;
+    const long double band =
+        8 * static_cast<long double>(std::numeric_limits<Real>::epsilon()) * limit * limit;
+    if (squared < limit * limit - band) return Near::yes;
+    return squared > limit * limit + band ? Near::no : Near::rounding_decides;
 }
 
 template <class Real>
@@ -67,25 +69,25 @@ std::vector<Pair> listed(const CandidatePairs& pairs) {
     return list;
 }
 
-std::set<Pair> unordered(const std::vector<Pair>& pairs) {
-    std::set<Pair> set;
-    for (const auto& [a, b] : pairs) set.emplace(std::min(a, b), std::max(a, b));
-    return set;
-}
-
-/// How many pairs are missing or should not be there.
+/// How many pairs are missing, should not be there or are found twice.
 template <class Real>
-std::size_t wrong_pairs(const Bodies<Real>& bodies, const std::vector<Pair>& pairs) {
-    const std::set<Pair> found = unordered(pairs);
-    std::size_t wrong = pairs.size() - found.size();  // found twice
+std::size_t wrong_pairs(const Bodies<Real>& bodies, std::vector<Pair> found) {
+    for (auto& [a, b] : found)
+        if (a > b) std::swap(a, b);
+    std::sort(found.begin(), found.end());
+    const auto unique_end = std::unique(found.begin(), found.end());
+    auto wrong = static_cast<std::size_t>(found.end() - unique_end);
+    found.erase(unique_end, found.end());
+
+    auto next = found.begin();
     for (std::size_t a = 0; a < bodies.count(); ++a)
         for (std::size_t b = a + 1; b < bodies.count(); ++b) {
-            const bool is_found =
-                found.contains({static_cast<std::int32_t>(a), static_cast<std::int32_t>(b)});
+            const bool is_found = next != found.end() && *next == Pair(a, b);
+            if (is_found) ++next;
             const Near expected = is_candidate(bodies, a, b);
             if (expected != Near::rounding_decides && is_found != (expected == Near::yes)) ++wrong;
         }
-    return wrong;
+    return wrong + static_cast<std::size_t>(found.end() - next);  // pairs of no two rows
 }
 
 template <class Real>
