@@ -4,6 +4,15 @@
 #include <cstdint>
 #include <string_view>
 
+/// Operations on row numbers, of the float lanes only.
+struct RowProbe {
+    void (*rows)(const std::int32_t* a, const std::int32_t* b, std::size_t count, std::int32_t* difference,
+                 std::int32_t* min);
+    void (*smallest4)(const std::int32_t* rows, std::int32_t* out);  // of four batches in a row
+    std::size_t (*marked_pairs)(std::int32_t* to_a, std::int32_t* to_b, const std::int32_t* a,
+                                const std::int32_t* b, std::uint64_t word);
+};
+
 /// Every lane operation over arrays, compiled once an instruction set by lanes_on_<isa>.cpp.
 /// Arrays are 64-byte aligned and hold a multiple of 16 numbers; `count` is one.
 template <class Real>
@@ -28,4 +37,5 @@ struct LaneProbes {
     std::string_view isa;
     LaneProbe<float> single_precision;
     LaneProbe<double> double_precision;
+    RowProbe rows;
 };

@@ -92,6 +92,30 @@ void probe_floor(const float* values, std::size_t count, double* floors, std::in
     }
 }
 
+template <class Isa>
+void probe_rows(const std::int32_t* a, const std::int32_t* b, std::size_t count, std::int32_t* difference,
+                std::int32_t* min) {
+    using L = simd::Lanes<float, Isa>;
+    for (std::size_t i = 0; i < count; i += L::size) {
+        const auto x = L::load_rows(a + i), y = L::load_rows(b + i);
+        L::store_rows(difference + i, L::rows_difference(x, y));
+        L::store_rows(min + i, L::rows_min(x, y));
+    }
+}
+
+template <class Isa>
+void probe_smallest4(const std::int32_t* rows, std::int32_t* out) {
+    using L = simd::Lanes<float, Isa>;
+    const auto batch = [&](std::size_t k) { return L::load_rows(rows + k * L::size); };
+    L::store_smallest4(out, batch(0), batch(1), batch(2), batch(3));
+}
+
+template <class Isa>
+std::size_t probe_marked_pairs(std::int32_t* to_a, std::int32_t* to_b, const std::int32_t* a,
+                               const std::int32_t* b, std::uint64_t word) {
+    return simd::Lanes<float, Isa>::store_marked_pairs(to_a, to_b, a, b, word);
+}
+
 template <class Real, class Isa>
 constexpr LaneProbe<Real> make_lane_probe() {
     return {simd::Lanes<Real, Isa>::size,  &probe_arithmetic<Real, Isa>,
@@ -102,7 +126,10 @@ constexpr LaneProbe<Real> make_lane_probe() {
 
 template <class Isa>
 constexpr LaneProbes make_lane_probes(std::string_view isa) {
-    return {isa, make_lane_probe<float, Isa>(), make_lane_probe<double, Isa>()};
+    return {isa,
+            make_lane_probe<float, Isa>(),
+            make_lane_probe<double, Isa>(),
+            {&probe_rows<Isa>, &probe_smallest4<Isa>, &probe_marked_pairs<Isa>}};
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "state/column.hpp"
 
 #include <doctest/doctest.h>
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -246,6 +247,64 @@ TEST_SUITE("simd/lanes") {
                     all_equal && floors[i] == expected && rows[i] == static_cast<std::int32_t>(expected);
             }
             CHECK(all_equal);
+        }
+    }
+
+    TEST_CASE("row numbers are subtracted and compared lane by lane, negative ones included") {
+        Column<std::int32_t> a(256), b(256), difference(256), min(256);
+        std::mt19937 random(13);
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            a[i] = static_cast<std::int32_t>(random() % 2'000'001) - 1'000'000;
+            b[i] = static_cast<std::int32_t>(random() % 2'000'001) - 1'000'000;
+        }
+        for (const LaneProbes* probes : runnable_lane_probes()) {
+            CAPTURE(probes->isa);
+            probes->rows.rows(a.data(), b.data(), a.size(), difference.data(), min.data());
+            bool all_equal = true;
+            for (std::size_t i = 0; i < a.size(); ++i)
+                all_equal = all_equal && difference[i] == a[i] - b[i] && min[i] == std::min(a[i], b[i]);
+            CHECK(all_equal);
+
+            const std::size_t lanes = probes->single_precision.lanes;
+            for (std::size_t from = 0; from + 4 * lanes <= a.size(); from += lanes) {
+                std::int32_t smallest[4], expected[4];
+                probes->rows.smallest4(a.data() + from, smallest);
+                for (std::size_t k = 0; k < 4; ++k)
+                    expected[k] =
+                        *std::min_element(a.data() + from + k * lanes, a.data() + from + (k + 1) * lanes);
+                CHECK(std::equal(expected, expected + 4, smallest));
+            }
+        }
+    }
+
+    TEST_CASE("store_marked_pairs writes the pair of every set bit in order, for few bits and for many") {
+        Column<std::int32_t> a(16), b(20);
+        for (std::size_t i = 0; i < a.size(); ++i) a[i] = static_cast<std::int32_t>(100 + i);
+        for (std::size_t i = 0; i < b.size(); ++i) b[i] = static_cast<std::int32_t>(900 - 3 * i);
+        std::mt19937_64 random(21);
+        for (int trial = 0; trial < 400; ++trial) {
+            std::uint64_t word = random();
+            for (int thinner = trial % 6; thinner > 0; --thinner) word &= random();
+            if (trial == 0) word = 0;
+            if (trial == 6) word = ~std::uint64_t{0};
+            std::vector<std::int32_t> expected_a, expected_b;
+            for (std::size_t bit = 0; bit < 64; ++bit)
+                if ((word >> bit) & 1u) {
+                    expected_a.push_back(a[bit % 16]);
+                    expected_b.push_back(b[bit % 16 + bit / 16]);
+                }
+            for (const LaneProbes* probes : runnable_lane_probes()) {
+                std::vector<std::int32_t> to_a(72, -12345), to_b(72, -12345);
+                const std::size_t count =
+                    probes->rows.marked_pairs(to_a.data(), to_b.data(), a.data(), b.data(), word);
+                CAPTURE(probes->isa);
+                CAPTURE(word);
+                REQUIRE(count == expected_a.size());
+                CHECK(std::equal(expected_a.begin(), expected_a.end(), to_a.begin()));
+                CHECK(std::equal(expected_b.begin(), expected_b.end(), to_b.begin()));
+                CHECK(to_a.back() == -12345);
+                CHECK(to_b.back() == -12345);
+            }
         }
     }
 }
