@@ -9,15 +9,20 @@ namespace {
 
 // The common margin of a body: this many steps of the fastest body, between fractions of the largest and
 // smallest radius. docs/decisions/0002 has the measurements.
-constexpr double kStepsOfFastest = 1.25;
+constexpr double kStepsOfFastest = 2;
 constexpr double kSmallestMargin = 0.05;  // of the smallest radius
-constexpr double kLargestMargin = 0.5;    // of the largest radius
+constexpr double kLargestMargin = 1;      // of the largest radius
 // A body that crosses more than the common margin in one step gets its own path, and this much more for
 // deflections.
 constexpr double kOwnMargin = 1.25;
 
-// Bodies drift slowly compared to steps; sorting rows more often than this gains nothing that was measured.
+// Strays are looked up one by one while they are fewer than one body in this many.
+constexpr std::size_t kBodiesPerStray = 64;
+
+// Rows are sorted by place at the start and then this seldom: bodies drift slowly compared to steps. Columns
+// of fewer bodies fit into the first caches in any order.
 constexpr std::int64_t kRebuildsBetweenSorts = 32;
+constexpr std::size_t kFewestSortedRows = 1024;
 
 }  // namespace
 
@@ -25,51 +30,81 @@ template <class Real>
 void Candidates<Real>::prepare(std::size_t count) {
     if (reach_.size() == count) return;
     reach_.resize(count);
-    is_valid_ = false;
+    is_valid_ = false, radii_are_known_ = false;
 }
 
 template <class Real>
-void Candidates<Real>::choose_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity) {
-    const double fall = std::sqrt(length_squared(gravity)) * end.q;
-    const auto travel_of = [&](std::size_t row) {
-        const Vec2 v{bodies.velocity_x[row], bodies.velocity_y[row]};
-        return std::sqrt(length_squared(v)) * end.s + fall;
-    };
-    double fastest = 0;
-    smallest_radius_ = bodies.count > 0 ? bodies.radius[0] : 0, largest_radius_ = smallest_radius_;
-    for (std::size_t row = 0; row < bodies.count; ++row) {
-        fastest = std::fmax(fastest, travel_of(row));
-        smallest_radius_ = std::fmin(smallest_radius_, bodies.radius[row]);
-        largest_radius_ = std::fmax(largest_radius_, bodies.radius[row]);
+void Candidates<Real>::choose_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
+                                      double fastest) {
+    if (!radii_are_known_) {
+        smallest_radius_ = largest_radius_ = bodies.count > 0 ? bodies.radius[0] : 0;
+        for (std::size_t row = 0; row < bodies.count && !bodies.radius.is_uniform(); ++row) {
+            smallest_radius_ = std::fmin(smallest_radius_, bodies.radius[row]);
+            largest_radius_ = std::fmax(largest_radius_, bodies.radius[row]);
+        }
+        radii_are_known_ = true;
     }
+    const double fall = std::sqrt(length_squared(gravity)) * end.q;
+    const double most = fastest * end.s + fall;
     const double common = std::fmax(kSmallestMargin * smallest_radius_,
-                                    std::fmin(kStepsOfFastest * fastest, kLargestMargin * largest_radius_));
+                                    std::fmin(kStepsOfFastest * most, kLargestMargin * largest_radius_));
+    // A body that crosses more than the common margin in one step.
+    const double fast = (common / kOwnMargin - fall) / end.s;
+    const bool some_are_fast = most * kOwnMargin > common;
     for (std::size_t row = 0; row < bodies.count; ++row)
-        reach_[row] = static_cast<Real>(bodies.radius[row] + std::fmax(common, kOwnMargin * travel_of(row)));
+        reach_[row] = static_cast<Real>(static_cast<double>(bodies.radius[row]) + common);
+    for (std::size_t row = 0; row < bodies.count && some_are_fast; ++row) {
+        const Vec2 v{bodies.velocity_x[row], bodies.velocity_y[row]};
+        if (length_squared(v) <= fast * fast) continue;
+        const double travel = std::sqrt(length_squared(v)) * end.s + fall;
+        reach_[row] = static_cast<Real>(static_cast<double>(bodies.radius[row]) + kOwnMargin * travel);
+    }
+}
+
+template <class Real>
+bool Candidates<Real>::wants_sorted_rows() const {
+    return is_valid_ && rebuilds_until_sorted_ == 0 && reach_.size() >= kFewestSortedRows;
+}
+
+template <class Real>
+void Candidates<Real>::note_sorted_rows() {
+    rebuilds_until_sorted_ = kRebuildsBetweenSorts;
+    invalidate();
+}
+
+template <class Real>
+double Candidates<Real>::overshoot_of(std::int32_t row, double radius, Vec2 end) const {
+    const auto i = static_cast<std::size_t>(row);
+    const Vec2 way = end - Vec2{built_x()[i], built_y()[i]};
+    const double margin = static_cast<double>(reach_[i]) - radius;
+    const double squared = length_squared(way);
+    return squared > margin * margin ? std::sqrt(squared) - margin : 0;
 }
 
 template <class Real>
 void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
-                              bool is_displaced, const KernelTable<Real>& kernels, const Executor& executor) {
-    if (is_valid_ && !is_displaced) return;
-    choose_margins(bodies, end, gravity);
+                              std::span<const std::int32_t> displaced, double fastest,
+                              const KernelTable<Real>& kernels, const Executor& executor) {
+    strays_.clear(), overshoot_ = 0;
+    if (is_valid_ && displaced.size() * kBodiesPerStray <= bodies.count) {
+        strays_.assign(displaced.begin(), displaced.end());
+        for (const std::int32_t row : strays_) {
+            const auto i = static_cast<std::size_t>(row);
+            const Vec2 v{bodies.velocity_x[i], bodies.velocity_y[i]};
+            const Vec2 x{bodies.position_x[i], bodies.position_y[i]};
+            overshoot_ =
+                std::fmax(overshoot_, overshoot_of(row, bodies.radius[i], x + end.s * v + end.q * gravity));
+        }
+        return;
+    }
+    choose_margins(bodies, end, gravity, fastest);
     grid_.build({bodies.count, bodies.position_x.data(), bodies.position_y.data(), reach_.data(),
                  bodies.has_flags ? bodies.flags.data() : nullptr},
                 kernels, executor);
     grid_.find_candidates(executor);
     is_valid_ = true;
     ++rebuild_count_;
-}
-
-template <class Real>
-std::size_t Candidates<Real>::find_near(std::int32_t row, Vec2 end, double radius,
-                                        Column<std::int32_t>& out) const {
-    const auto i = static_cast<std::size_t>(row);
-    const Real x = built_x()[i], y = built_y()[i];
-    const Vec2 way = end - Vec2{x, y};
-    const double needed = radius + std::sqrt(length_squared(way));
-    const Real reach = needed > reach_[i] ? static_cast<Real>(needed) : reach_[i];
-    return grid_.find_near(x, y, reach, out);
+    if (rebuilds_until_sorted_ > 0) --rebuilds_until_sorted_;
 }
 
 template <class Real>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "broadphase/uniform_grid.hpp"
@@ -15,8 +16,10 @@ namespace carom {
 ///
 /// Each body has a margin of its own: a pair is a candidate if its bodies, grown by their margins, overlap.
 /// As long as no body has left its margin, no pair that is not a candidate can touch. Most bodies share one
-/// margin, a few steps of the fastest; bodies that cross more than that in a single step get what they need,
-/// and the grid's size classes keep them from slowing down the rest.
+/// margin; those that cross more than that in a single step get what they need, and the grid's size classes
+/// keep them from slowing down the rest. In a gas there is always some body that was just kicked out of its
+/// margin: such strays, while they are few, are looked up one by one, and the pairs of all the others stay in
+/// use.
 template <class Real>
 class Candidates {
   public:
@@ -24,16 +27,30 @@ class Candidates {
     void prepare(std::size_t count);
 
     /// Forgets the pairs: rows, radii or positions were changed from outside.
-    void invalidate() { is_valid_ = false; }
+    void invalidate() { is_valid_ = radii_are_known_ = false; }
 
-    /// Finds the pairs anew if they are void or if a body is about to leave its margin. `is_displaced`:
-    /// whether the flight that begins now takes some body out of its margin.
-    void update(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity, bool is_displaced,
-                const KernelTable<Real>& kernels, const Executor& executor);
+    /// Finds the pairs anew if they are void or if too many bodies leave their margins on the flights that
+    /// begin now.
+    /// @param displaced  rows whose flight leaves the margin
+    /// @param fastest  m/s, of all bodies
+    void update(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
+                std::span<const std::int32_t> displaced, double fastest, const KernelTable<Real>& kernels,
+                const Executor& executor);
 
-    /// Rows of bodies that can touch body `row`, whose flight ends at `end`, before the pairs are found anew.
-    /// @return how many rows are in `out`, `row` itself among them.
-    std::size_t find_near(std::int32_t row, Vec2 end, double radius, Column<std::int32_t>& out) const;
+    /// Bodies that leave their margins in this substep: what they can hit is not among the pairs.
+    std::span<const std::int32_t> strays() const { return strays_; }
+    /// How far the strays leave their margins [m].
+    double overshoot() const { return overshoot_; }
+    /// How far body `row` leaves its margin if its flight ends at `end` [m]; 0 if it does not.
+    double overshoot_of(std::int32_t row, double radius, Vec2 end) const;
+
+    /// Rows of all bodies that can come within `reach` of a place while no flight leaves its margin; one that
+    /// does by some overshoot is found if `reach` is larger by that much.
+    /// @return how many rows are in `out`.
+    std::size_t find_near(Vec2 place, double reach, Column<std::int32_t>& out) const {
+        return grid_.find_near(static_cast<Real>(place.x), static_cast<Real>(place.y),
+                               static_cast<Real>(reach * kRoundingUp), out);
+    }
 
     std::size_t pair_count() const { return grid_.candidates().count; }
     const std::int32_t* pair_a() const { return grid_.candidates().a.data(); }  ///< [padded(pair_count)]
@@ -45,11 +62,14 @@ class Candidates {
     }  ///< m, where the pairs were found, if valid
     const Column<Real>& built_y() const { return grid_.built_y(); }
     const Column<Real>& reach() const { return reach_; }  ///< m, radius plus margin
+    const UniformGrid<Real>& grid() const { return grid_; }
     double largest_radius() const { return largest_radius_; }
     double smallest_radius() const { return smallest_radius_; }
 
     /// Whether rows have drifted so far from the order of the cells that sorting them pays.
-    bool wants_sorted_rows() const { return is_valid_ && wants_sorted_rows_; }
+    bool wants_sorted_rows() const;
+    /// To be called when rows were sorted.
+    void note_sorted_rows();
     /// Row of each place in the order of the cells.
     const std::int32_t* order() const { return grid_.order().data(); }
 
@@ -57,15 +77,19 @@ class Candidates {
     std::size_t bytes() const;
 
   private:
-    void choose_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity);
+    static constexpr double kRoundingUp = 1 + 1e-6;  // reach and place are rounded to Real
+
+    void choose_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity, double fastest);
 
     UniformGrid<Real> grid_;
+    std::vector<std::int32_t> strays_;
+    double overshoot_ = 0;
     Column<Real> reach_;
     double largest_radius_ = 0, smallest_radius_ = 0;
     bool is_valid_ = false;
-    bool wants_sorted_rows_ = false;
+    bool radii_are_known_ = false;
     std::int64_t rebuild_count_ = 0;
-    std::int64_t rebuilds_since_sorted_ = 0;
+    std::int64_t rebuilds_until_sorted_ = 0;
 };
 
 extern template class Candidates<float>;

@@ -134,6 +134,29 @@ void UniformGrid<Real>::list_order(const GridInput<Real>& input) {
 }
 
 template <class Real>
+typename UniformGrid<Real>::Block UniformGrid<Real>::block_of(double x, double y,
+                                                              double cells_a_side) const noexcept {
+    if (level_count_ == 0) return {0, 0};
+    const CellNumbering& n = levels_[level_count_ - 1].view().numbering;
+    const auto along = [&](double position, double low, double high) {
+        const double cell = std::clamp(position * n.inverse_size, low, high) - low;
+        return static_cast<std::size_t>(cell / cells_a_side);
+    };
+    return {along(x, n.low_u, n.high_u), along(y, n.low_v, n.high_v)};
+}
+
+template <class Real>
+typename UniformGrid<Real>::Block UniformGrid<Real>::block_counts(double cells_a_side) const noexcept {
+    if (level_count_ == 0) return {0, 0};
+    const CellNumbering& n = levels_[level_count_ - 1].view().numbering;
+    if (n.wraps) return {0, 0};
+    const auto along = [&](double low, double high) {
+        return static_cast<std::size_t>((high - low) / cells_a_side) + 1;
+    };
+    return {along(n.low_u, n.high_u), along(n.low_v, n.high_v)};
+}
+
+template <class Real>
 std::size_t UniformGrid<Real>::bytes() const noexcept {
     std::size_t sum = built_x_.bytes() + built_y_.bytes() + split_.x.bytes() + split_.y.bytes() +
                       split_.reach.bytes() + split_.row.bytes() + order_.bytes() + near_.bytes();

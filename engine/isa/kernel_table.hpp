@@ -17,11 +17,13 @@ struct KernelTable {
     std::size_t (*find_candidates)(FindCandidates<Real>&);
     std::size_t (*find_near)(const GridLevel<Real>&, const FindNear<Real>&);
 
-    FlightCounts (*begin_flight)(const BeginFlight<Real>&, std::size_t first, std::size_t last);
-    FlightCounts (*begin_flight_uniform_radius)(const BeginFlight<Real>&, std::size_t first,
-                                                std::size_t last);
+    FlightCounts<Real> (*begin_flight)(const BeginFlight<Real>&, std::size_t first, std::size_t last);
+    FlightCounts<Real> (*begin_flight_uniform_radius)(const BeginFlight<Real>&, std::size_t first,
+                                                      std::size_t last);
     std::size_t (*find_impacts)(const FindImpacts<Real>&, std::size_t first, std::size_t last);
     std::size_t (*find_impacts_uniform_radius)(const FindImpacts<Real>&, std::size_t first, std::size_t last);
+    std::size_t (*find_impacts_of)(const FindImpactsOf<Real>&);
+    std::size_t (*find_impacts_of_uniform_radius)(const FindImpactsOf<Real>&);
     void (*end_flight)(const EndFlight<Real>&, std::size_t first, std::size_t last);
     void (*advance_rotation)(const AdvanceRotation<Real>&, std::size_t first, std::size_t last);
 };

@@ -16,18 +16,21 @@ auto reaches_wall(F x, F end, F radius, F bend, F min, F max) {
 }
 
 template <bool kUniformRadius, class Real, class Isa>
-FlightCounts begin_flight(const BeginFlight<Real>& k, std::size_t first, std::size_t last) {
+FlightCounts<Real> begin_flight(const BeginFlight<Real>& k, std::size_t first, std::size_t last) {
     using Lanes = simd::Lanes<Real, Isa>;
     using F = typename Lanes::Batch;
     const F s(k.s), fall_x(k.fall_x), fall_y(k.fall_y), gain_x(k.gain_x), gain_y(k.gain_y);
     const F bend_x(k.bend_x), bend_y(k.bend_y), min_x(k.min_x), min_y(k.min_y), max_x(k.max_x),
         max_y(k.max_y);
     const F largest_position(k.largest_position), largest_speed(k.largest_speed);
-    FlightCounts counts{0, 0, 0};
+    FlightCounts<Real> counts{0, 0, 0, 0};
+    F fastest(Real(0));
     for (std::size_t i = first; i < last; i += Lanes::size) {
         const F x = Lanes::load(k.position_x + i), y = Lanes::load(k.position_y + i);
         const F vx = Lanes::load(k.velocity_x + i), vy = Lanes::load(k.velocity_y + i);
         Lanes::store_rows4(k.motion + 4 * i, kConsecutive, {{x, y, vx, vy}});
+
+        fastest = simd::max(fastest, vx * vx + vy * vy);
 
         const F end_x = x + vx * s + fall_x, end_y = y + vy * s + fall_y;
         F radius(k.uniform_radius);
@@ -57,6 +60,9 @@ FlightCounts begin_flight(const BeginFlight<Real>& k, std::size_t first, std::si
         list(k.displaced_rows, counts.displaced, displaced_bits);
         list(k.lost_rows, counts.lost, lost_bits);
     }
+    Real lanes[Lanes::size];
+    Lanes::store_unaligned(lanes, fastest);
+    for (const Real lane : lanes) counts.fastest_squared = simd::max(counts.fastest_squared, lane);
     return counts;
 }
 

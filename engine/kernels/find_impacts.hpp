@@ -50,5 +50,30 @@ std::size_t find_impacts(const FindImpacts<Real>& k, std::size_t first, std::siz
     return count;
 }
 
+/// @return how many rows were found.
+template <bool kUniformRadius, class Real, class Isa>
+std::size_t find_impacts_of(const FindImpactsOf<Real>& k) {
+    using Lanes = simd::Lanes<Real, Isa>;
+    using F = typename Lanes::Batch;
+    const Real* own = k.motion + 4 * static_cast<std::ptrdiff_t>(k.row);
+    const F x(own[0]), y(own[1]), vx(own[2]), vy(own[3]);
+    const F from(k.from), duration(k.until - k.from), slack(k.slack);
+    const Real own_radius = kUniformRadius ? k.uniform_radius : k.radius[k.row];
+    std::size_t count = 0;
+    for (std::size_t n = 0; n < k.count; n += Lanes::size) {
+        const auto other = Lanes::load_rows4(k.motion, k.rows + n);
+        const auto rows = Lanes::load_rows(k.rows + n);
+        F reach(own_radius + own_radius);
+        if constexpr (!kUniformRadius) reach = F(own_radius) + Lanes::gather(k.radius, rows);
+        const F relative_x = other[2] - vx, relative_y = other[3] - vy;
+        const F dx = other[0] - x + relative_x * from, dy = other[1] - y + relative_y * from;
+        const F close = reach + slack;
+        auto found = approaches_within(dx, dy, relative_x, relative_y, close, duration);
+        if (k.slack > Real(0)) found = found | (dx * dx + dy * dy < close * close);
+        count += Lanes::compress_store(k.found + count, rows, simd::bitmask(found));
+    }
+    return count;
+}
+
 }  // namespace
 }  // namespace carom

@@ -34,11 +34,13 @@ struct BeginFlight {
     std::int32_t* lost_rows;       // out: rows whose state leaves the limits, or is not a number
 };
 
-/// How many rows each list got.
+/// How many rows each list got, and the largest speed squared [m²/s²].
+template <class Real>
 struct FlightCounts {
     std::size_t wall;
     std::size_t displaced;
     std::size_t lost;
+    Real fastest_squared;
 };
 
 /// Candidate pairs that may touch in this substep, or whose bodies are as near as `near` already.
@@ -53,6 +55,21 @@ struct FindImpacts {
     Real slack;           // m, >= 0, how far accelerations can bring two paths nearer than straight lines
     Real near;            // m, separation up to which a pair is listed whether or not it approaches
     std::int32_t* found;  // out: pair numbers, ascending; room for last - first + a batch
+};
+
+/// Of some bodies those that body `row` may meet between clock `from` and the end of the substep.
+template <class Real>
+struct FindImpactsOf {
+    const Real* motion;        // [rows][4]: x, y, vx, vy
+    const std::int32_t* rows;  // the bodies asked about
+    std::size_t count;         // of rows, a multiple of kRowPadding; `row` itself is never found
+    std::int32_t row;
+    const Real* radius;  // m, or null: uniform_radius serves all
+    Real uniform_radius;
+    Real from;            // s
+    Real until;           // s
+    Real slack;           // m, >= 0, as for FindImpacts; pairs as near as that are listed even if they part
+    std::int32_t* found;  // out; may be `rows`
 };
 
 /// Writes positions and velocities at the end of the flight back into the columns.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "simd/prefetch.hpp"
 #include "solver/impact_time.hpp"
 #include "solver/separate_overlaps.hpp"
 
@@ -24,6 +25,14 @@ constexpr double kPersistingFraction = 1.5;
 constexpr std::size_t kMostImpacts = 20000;
 constexpr std::size_t kMostImpactsPerBody = 64;
 
+// Meetings are looked at in the order of the plane, which memory follows if told a little ahead.
+constexpr std::size_t kMeetingsAhead = 8;
+
+// A tile's share of what impacts touch, some 60 bytes a body, about fits into a second-level cache of 1 MiB.
+// Its side is in cells of the grid, which hold one to two bodies in a gas.
+constexpr std::size_t kBodiesOfTile = 16384;
+constexpr std::size_t kTileCells = 112;
+
 // Impacts closer in time than this part of the substep count as simultaneous: above the round-off of Real.
 template <class Real>
 constexpr double kSameInstant = sizeof(Real) == sizeof(float) ? 1e-5 : 1e-11;
@@ -31,23 +40,26 @@ constexpr double kSameInstant = sizeof(Real) == sizeof(float) ? 1e-5 : 1e-11;
 }  // namespace
 
 template <class Real>
-void ImpulseSolver<Real>::settle_contacts(std::span<const Meeting> meetings, const Handles& handles) {
+void ImpulseSolver<Real>::settle_contacts(std::span<const Meeting> meetings, const Handles& handles,
+                                          const Candidates<Real>& candidates, double slack,
+                                          const KernelTable<Real>& kernels) {
+    slack_ = slack, kernels_ = &kernels;
     const double dt = flights.end.t;
     const double gravity = std::sqrt(length_squared(flights.common_acceleration));
     flights.rest_speed = kRestFraction * gravity * flights.end.s;
     deflections_.resize(std::max(deflections_.size(), flights.bodies->count));
     budget_ = kMostImpacts + kMostImpactsPerBody * flights.bodies->count;
-    overlaps_.clear(), held_.clear(), queue_.clear();
+    overlaps_.clear(), held_.clear();
+    tiles_a_side_ = 1;
+    while (tiles_a_side_ * tiles_a_side_ * kBodiesOfTile < flights.bodies->count) ++tiles_a_side_;
+    candidates_ = &candidates;
+    queue_.start(flights.end.s, meetings.size(), tiles_a_side_ * tiles_a_side_);
     at_rest_.clear();
 
     if (gravity > 0) collect_persisting(handles);
-    for (const Meeting& m : meetings) {
-        const Encounter e = flights.encounter(m, 0);
-        const double radius = flights.smaller_radius(m);
-        if (e.separation < -kSlopFraction * radius) overlaps_.push_back(m);
-        if (std::fabs(e.normal_velocity) <= flights.rest_speed && e.separation <= kTouchFraction * radius &&
-            flights.rest_speed > 0)
-            at_rest_.push_back({m, 0});
+    for (std::size_t i = 0; i < meetings.size(); ++i) {
+        prefetch_meeting(meetings[std::min(i + kMeetingsAhead, meetings.size() - 1)]);
+        sort_out(meetings[i]);
     }
     if (!overlaps_.empty())
         counters.overlaps_corrected += separate_overlaps(flights, overlaps_, dt, separation_targets_);
@@ -58,6 +70,25 @@ void ImpulseSolver<Real>::settle_contacts(std::span<const Meeting> meetings, con
         for (const PressedMeeting& p : at_rest_) keep_resting(p.meeting, p.force);
     }
     for (const Meeting& m : meetings) foresee(m, 0);
+    overshoot_ = candidates.overshoot();
+    for (const std::int32_t row : candidates.strays()) foresee_near(row, 0, candidates);
+}
+
+/// Lists a meeting that overlaps or rests at the start of the substep.
+template <class Real>
+void ImpulseSolver<Real>::sort_out(Meeting m) {
+    const double radius = flights.smaller_radius(m);
+    if (!m.with_wall() && !(flights.rest_speed > 0)) {  // the usual case needs no root
+        const Vec2 d = flights.flight(m.b).position - flights.flight(m.a).position;
+        const double overlapping = flights.reach(m) - kSlopFraction * radius;
+        if (length_squared(d) < overlapping * overlapping) overlaps_.push_back(m);
+        return;
+    }
+    const Encounter e = flights.encounter(m, 0);
+    if (e.separation < -kSlopFraction * radius) overlaps_.push_back(m);
+    if (std::fabs(e.normal_velocity) <= flights.rest_speed && e.separation <= kTouchFraction * radius &&
+        flights.rest_speed > 0)
+        at_rest_.push_back({m, 0});
 }
 
 /// A contact to be looked at first in the next substep.
@@ -123,56 +154,145 @@ double ImpulseSolver<Real>::approach_noise(Meeting m) const {
 /// Puts the next impact of a meeting, if there is one from clock `from` on, into the queue.
 template <class Real>
 void ImpulseSolver<Real>::foresee(Meeting m, double from) {
-    const Window window{from, flights.end.s, flights.drag()};
     const Flight fa = flights.flight(m.a);
-    double s = kNever;
-    if (m.with_wall()) {
-        const Vec2 n = Flights<Real>::wall_normal(m.b);
-        const double clearance = flights.wall_clearance(m.b, fa.position) - flights.radius(m.a);
-        s = wall_impact_time(clearance, -dot(n, fa.velocity), -dot(n, fa.acceleration), window);
-    } else {
-        const Flight fb = flights.flight(m.b);
-        const Flight relative{fb.position - fa.position, fb.velocity - fa.velocity,
-                              fb.acceleration - fa.acceleration};
-        const double reach = flights.reach(m);
-        s = relative.acceleration == Vec2{}
-                ? straight_impact_time(relative.position + from * relative.velocity, relative.velocity, reach,
-                                       window)
-                : accelerated_impact_time(relative, reach, window,
-                                          4 * std::numeric_limits<Real>::epsilon() * reach);
+    const double s =
+        m.with_wall() ? time_at_wall(m.a, fa, m.b, from) : time_of_pair(m, fa, flights.flight(m.b), from);
+    if (s != kNever) queue(m, from, s);
+}
+
+template <class Real>
+double ImpulseSolver<Real>::time_at_wall(std::int32_t row, const Flight& f, std::int32_t side,
+                                         double from) const {
+    const Vec2 n = Flights<Real>::wall_normal(side);
+    const double clearance = flights.wall_clearance(side, f.position) - flights.radius(row);
+    return wall_impact_time(clearance, -dot(n, f.velocity), -dot(n, f.acceleration),
+                            {from, flights.end.s, flights.drag()});
+}
+
+template <class Real>
+double ImpulseSolver<Real>::time_of_pair(Meeting m, const Flight& fa, const Flight& fb, double from) const {
+    const Window window{from, flights.end.s, flights.drag()};
+    const Flight relative{fb.position - fa.position, fb.velocity - fa.velocity,
+                          fb.acceleration - fa.acceleration};
+    if (relative.acceleration == Vec2{}) {
+        const Vec2 d = relative.position + from * relative.velocity;
+        if (!(dot(d, relative.velocity) < 0)) return kNever;  // most: worth asking first
+        return straight_impact_time(d, relative.velocity, flights.reach(m), window);
     }
-    if (s == kNever) return;
+    const double reach = flights.reach(m);
+    return accelerated_impact_time(relative, reach, window, 4 * std::numeric_limits<Real>::epsilon() * reach);
+}
+
+template <class Real>
+void ImpulseSolver<Real>::queue(Meeting m, double from, double s) {
     if (flights.rest_speed > 0 && flights.rests(m, from) && flights.rests(m, s)) {
         keep_resting(m, 0);  // too gentle to bounce from here on
         return;
     }
     queue_.push({s, m, deflections_[static_cast<std::size_t>(m.a)],
-                 m.with_wall() ? 0 : deflections_[static_cast<std::size_t>(m.b)]});
+                 m.with_wall() ? 0 : deflections_[static_cast<std::size_t>(m.b)]},
+                tile_of(m.a));
 }
 
-/// Foresees what a body can hit after it was deflected.
+/// The queue's tile that a body is in: a block of the grid, numbered on a torus.
+template <class Real>
+std::size_t ImpulseSolver<Real>::tile_of(std::int32_t row) const {
+    if (tiles_a_side_ == 1) return 0;
+    const Vec2 x = flights.flight(row).position;
+    const auto block = candidates_->grid().block_of(x.x, x.y, kTileCells);
+    return block.v % tiles_a_side_ * tiles_a_side_ + block.u % tiles_a_side_;
+}
+
+template <class Real>
+void ImpulseSolver<Real>::prefetch_meeting(Meeting m) const {
+    const auto prefetch_row = [&](std::int32_t row) {
+        prefetch(&flights.motion[static_cast<std::size_t>(row) * Flights<Real>::kMotionWidth]);
+        prefetch(&deflections_[static_cast<std::size_t>(row)]);
+    };
+    prefetch_row(m.a);
+    if (!m.with_wall()) prefetch_row(m.b);
+}
+
+/// Asks the memory for all that the impacts of a tile will touch. Without, each waits for some thirty cache
+/// lines.
+template <class Real>
+void ImpulseSolver<Real>::prefetch_tile(std::size_t tile) const {
+    const auto& grid = candidates_->grid();
+    const auto counts = grid.block_counts(kTileCells);
+    if (counts.u > tiles_a_side_ || counts.v > tiles_a_side_) return;  // more than one block of that number
+    const auto prefetch_rows = [&](std::span<const std::int32_t> rows) {
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            const auto row = static_cast<std::size_t>(rows[i]);
+            prefetch(&flights.motion[row * Flights<Real>::kMotionWidth]);
+            if (i % 8 != 0) continue;  // neighbours in the plane are nearly neighbours in the columns
+            prefetch(&deflections_[row]);
+            prefetch(&grid.built_x()[row]);
+            prefetch(&grid.built_y()[row]);
+            prefetch(&candidates_->reach()[row]);
+        }
+    };
+    grid.prefetch_block({tile % tiles_a_side_, tile / tiles_a_side_}, kTileCells, prefetch_rows);
+}
+
+/// Foresees what a body can hit after it was deflected at clock `from`.
 template <class Real>
 void ImpulseSolver<Real>::foresee_all_of(std::int32_t row, double from, const Candidates<Real>& candidates) {
+    if (flights.walls) foresee_walls(row, from);
+    const Vec2 end = position_at(flights.flight(row), flights.end.s, flights.end.q);
+    overshoot_ = std::max(overshoot_, candidates.overshoot_of(row, flights.radius(row), end));
+    foresee_near(row, from, candidates);
+}
+
+template <class Real>
+void ImpulseSolver<Real>::foresee_walls(std::int32_t row, double from) {
     const Flight f = flights.flight(row);
-    if (flights.walls) {
-        const Vec2 end = position_at(f, flights.end.s, flights.end.q);
-        const Vec2 now = position_at(f, from, flight_q(from, flights.drag()));
-        for (const std::int32_t side : kWallSides) {
-            if (!flights.has_wall(side)) continue;
-            // The path bends by no more than a q between its ends.
-            const double bend =
-                std::fabs(dot(f.acceleration, Flights<Real>::wall_normal(side))) * flights.end.q;
-            const double nearest =
-                std::fmin(flights.wall_clearance(side, now), flights.wall_clearance(side, end)) - bend;
-            if (nearest < flights.radius(row)) foresee({row, side}, from);
-        }
-    }
-    const std::size_t count =
-        candidates.find_near(row, position_at(f, flights.end.s, flights.end.q), flights.radius(row), near_);
-    for (std::size_t i = 0; i < count; ++i) {
+    const Vec2 now = position_at(f, from, flight_q(from, flights.drag()));
+    const Vec2 end = position_at(f, flights.end.s, flights.end.q);
+    // The path bends by no more than a q between its ends.
+    const double x = flights.radius(row) + std::fabs(f.acceleration.x) * flights.end.q;
+    const double y = flights.radius(row) + std::fabs(f.acceleration.y) * flights.end.q;
+    const Walls& walls = *flights.walls;
+    const auto look_at = [&](std::int32_t side, bool is_near) {
+        if (!is_near || !flights.has_wall(side)) return;
+        const double s = time_at_wall(row, f, side, from);
+        if (s != kNever) queue({row, side}, from, s);
+    };
+    look_at(kLeft, std::min(now.x, end.x) - x < walls.min.x);
+    look_at(kRight, std::max(now.x, end.x) + x > walls.max.x);
+    look_at(kBottom, std::min(now.y, end.y) - y < walls.min.y);
+    look_at(kTop, std::max(now.y, end.y) + y > walls.max.y);
+}
+
+/// Foresees what other bodies a body can hit from clock `from` on.
+template <class Real>
+void ImpulseSolver<Real>::foresee_near(std::int32_t row, double from, const Candidates<Real>& candidates) {
+    const Flight f = flights.flight(row);
+    const Vec2 now = position_at(f, from, flight_q(from, flights.drag()));
+    const Vec2 way = position_at(f, flights.end.s, flights.end.q) - now;
+    // No point of the path is farther from `now` than this; others stay within their margins and the
+    // overshoot.
+    const double travel = std::fabs(way.x) + std::fabs(way.y) +
+                          (std::fabs(f.acceleration.x) + std::fabs(f.acceleration.y)) * flights.end.q;
+    const std::size_t count = candidates.find_near(now, flights.radius(row) + travel + overshoot_, near_);
+    for (std::size_t n = count; n < padded(count); ++n) near_[n] = row;  // which never meets itself
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    const FindImpactsOf<Real> k{flights.motion.data(),
+                                near_.data(),
+                                padded(count),
+                                row,
+                                flights.bodies->radius.data(),
+                                flights.bodies->radius.uniform_value(),
+                                real(from),
+                                real(flights.end.s),
+                                real(slack_),
+                                near_.data()};
+    const std::size_t found = flights.bodies->radius.is_uniform()
+                                  ? kernels_->find_impacts_of_uniform_radius(k)
+                                  : kernels_->find_impacts_of(k);
+    const bool immovable = flights.is_immovable(row);
+    for (std::size_t i = 0; i < found; ++i) {
         const std::int32_t other = near_[i];
-        if (other == row) continue;
-        if (flights.is_immovable(row) && flights.is_immovable(other)) continue;
+        if (other == row || (immovable && flights.is_immovable(other))) continue;
         // One order for a pair, whichever of the two asks: the same bits and the same ties.
         foresee(row < other ? Meeting{row, other} : Meeting{other, row}, from);
     }
@@ -187,9 +307,12 @@ bool ImpulseSolver<Real>::is_foreseen_rightly(const Impact& i) const {
 /// Pops every valid impact at the instant of the earliest one into `simultaneous_`.
 template <class Real>
 void ImpulseSolver<Real>::take_simultaneous(double s) {
+    const auto on_tile = [&](std::size_t tile) { prefetch_tile(tile); };
     const double last = s + kSameInstant<Real> * flights.end.s;
-    while (!queue_.is_empty() && queue_.next().s <= last) {
-        const Impact impact = queue_.pop();
+    while (const Impact* next = queue_.next(on_tile)) {
+        if (next->s > last || next->s < s) break;  // earlier ones belong to another tile
+        const Impact impact = *next;
+        queue_.pop();
         if (!is_foreseen_rightly(impact)) continue;
         // Foreseen from both sides, a meeting can be queued twice; equal impacts are neighbours in the
         // queue's order.
@@ -249,14 +372,15 @@ void ImpulseSolver<Real>::carry_out_together() {
 
 template <class Real>
 void ImpulseSolver<Real>::resolve_impacts(const Candidates<Real>& candidates) {
-    while (!queue_.is_empty()) {
-        const Impact first = queue_.pop();
-        if (!is_foreseen_rightly(first)) continue;
+    const auto on_tile = [&](std::size_t tile) { prefetch_tile(tile); };
+    while (const Impact* next = queue_.next(on_tile)) {
+        const Impact first = *next;
         if (budget_ == 0) {
-            counters.unresolved_impacts += static_cast<std::int64_t>(queue_.size()) + 1;
-            queue_.clear();
+            counters.unresolved_impacts += static_cast<std::int64_t>(queue_.size());
             return;
         }
+        queue_.pop();
+        if (!is_foreseen_rightly(first)) continue;
         --budget_;
         moved_.clear(), simultaneous_.assign(1, first);
         take_simultaneous(first.s);

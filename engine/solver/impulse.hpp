@@ -41,12 +41,13 @@ class ImpulseSolver {
 
     /// Sorts the meetings the kernels found into overlaps, contacts at rest and possible impacts, deals with
     /// the first two and foresees the third. Every meeting is listed once.
-    void settle_contacts(std::span<const Meeting> meetings, const Handles& handles);
+    void settle_contacts(std::span<const Meeting> meetings, const Handles& handles,
+                         const Candidates<Real>& candidates, double slack, const KernelTable<Real>& kernels);
 
     /// Carries out every impact until the end of the substep.
     void resolve_impacts(const Candidates<Real>& candidates);
 
-    /// Rows held by contacts at rest this substep: their flight is not the common one.
+    /// Rows held by contacts at rest this substep, each once: their flight is not the common one.
     const std::vector<std::int32_t>& held_rows() const { return held_; }
 
     /// Forgets contacts at rest, e.g. because bodies were moved or removed from outside.
@@ -58,7 +59,16 @@ class ImpulseSolver {
     void collect_persisting(const Handles& handles);
     void drop_duplicates_at_rest();
     void keep_resting(Meeting m, double force);
+    void sort_out(Meeting m);
     void foresee(Meeting meeting, double from);
+    double time_at_wall(std::int32_t row, const Flight& f, std::int32_t side, double from) const;
+    double time_of_pair(Meeting m, const Flight& fa, const Flight& fb, double from) const;
+    void queue(Meeting m, double from, double s);
+    std::size_t tile_of(std::int32_t row) const;
+    void prefetch_meeting(Meeting m) const;
+    void prefetch_tile(std::size_t tile) const;
+    void foresee_walls(std::int32_t row, double from);
+    void foresee_near(std::int32_t row, double from, const Candidates<Real>& candidates);
     void foresee_all_of(std::int32_t row, double from, const Candidates<Real>& candidates);
     void take_simultaneous(double s);
     void carry_out(const Impact& impact);
@@ -79,8 +89,13 @@ class ImpulseSolver {
     SimultaneousImpacts<Real> together_;
     std::vector<std::int32_t> moved_;
     Column<std::int32_t> near_;
-    std::vector<std::uint32_t> deflections_;  // [rows], how often each body was deflected, ever
-    std::size_t budget_ = 0;                  // impacts this substep may still carry out
+    std::vector<std::uint32_t> deflections_;      // [rows], how often each body was deflected, ever
+    const KernelTable<Real>* kernels_ = nullptr;  // of this substep
+    const Candidates<Real>* candidates_ = nullptr;
+    double slack_ = 0;      // m, see FindImpacts::slack
+    double overshoot_ = 0;  // m, farthest that a path of this substep leaves its margin
+    std::size_t tiles_a_side_ = 1;
+    std::size_t budget_ = 0;  // impacts this substep may still carry out
 };
 
 extern template class ImpulseSolver<float>;

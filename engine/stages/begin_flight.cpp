@@ -99,17 +99,22 @@ void begin_flight(Simulation<Real>& sim) {
     const auto kernel = all.radius ? sim.kernels->begin_flight : sim.kernels->begin_flight_uniform_radius;
     for (ChunkedList* list : {&sim.wall_rows, &sim.displaced_rows, &sim.lost_rows})
         list->prepare(count, kRowsPerChunk);
-    sim.executor.for_each_chunk(count, kRowsPerChunk,
-                                [&](std::size_t chunk, std::size_t first, std::size_t last) {
-                                    BeginFlight<Real> k = all;
-                                    k.wall_rows = sim.wall_rows.part(chunk);
-                                    k.displaced_rows = sim.displaced_rows.part(chunk);
-                                    k.lost_rows = sim.lost_rows.part(chunk);
-                                    const FlightCounts counts = kernel(k, first, padded(last));
-                                    sim.wall_rows.set_count(chunk, counts.wall);
-                                    sim.displaced_rows.set_count(chunk, counts.displaced);
-                                    sim.lost_rows.set_count(chunk, counts.lost);
-                                });
+    sim.chunk_fastest.assign((count + kRowsPerChunk - 1) / kRowsPerChunk, 0);
+    const auto fly = [&](std::size_t chunk, std::size_t first, std::size_t last) {
+        BeginFlight<Real> k = all;
+        k.wall_rows = sim.wall_rows.part(chunk);
+        k.displaced_rows = sim.displaced_rows.part(chunk);
+        k.lost_rows = sim.lost_rows.part(chunk);
+        const FlightCounts<Real> counts = kernel(k, first, padded(last));
+        sim.wall_rows.set_count(chunk, counts.wall);
+        sim.displaced_rows.set_count(chunk, counts.displaced);
+        sim.lost_rows.set_count(chunk, counts.lost);
+        sim.chunk_fastest[chunk] = static_cast<double>(counts.fastest_squared);
+    };
+    sim.executor.for_each_chunk(count, kRowsPerChunk, fly);
+    double fastest_squared = 0;
+    for (const double fastest : sim.chunk_fastest) fastest_squared = std::fmax(fastest_squared, fastest);
+    sim.fastest = std::sqrt(fastest_squared);
     quarantine_lost(sim);
 }
 

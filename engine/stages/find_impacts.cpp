@@ -55,7 +55,8 @@ void find_impacts(Simulation<Real>& sim) {
     all.a = sim.candidates.pair_a(), all.b = sim.candidates.pair_b();
     all.radius = bodies.radius.data(), all.uniform_radius = bodies.radius.uniform_value();
     all.s = static_cast<Real>(sim.solver.flights.end.s);
-    all.slack = static_cast<Real>(slack_of(sim));
+    sim.slack = slack_of(sim);
+    all.slack = static_cast<Real>(sim.slack);
     all.near = static_cast<Real>(near);
     const auto kernel = all.radius ? sim.kernels->find_impacts : sim.kernels->find_impacts_uniform_radius;
     const std::size_t pairs = sim.candidates.pair_count();

@@ -48,7 +48,8 @@ OverlapReport measure_overlaps(Simulation<Real>& sim) {
     const Bodies<Real>& bodies = sim.world.bodies;
     sim.candidates.prepare(bodies.count);
     // A clock that stands still: if there are no pairs yet, those of the present positions.
-    sim.candidates.update(bodies, FlightClock{}, {}, false, *sim.kernels, sim.executor);
+    if (!sim.candidates.is_valid())
+        sim.candidates.update(bodies, FlightClock{}, {}, {}, 0, *sim.kernels, sim.executor);
     Overlaps overlaps;
     overlaps.report.candidates = static_cast<std::int64_t>(sim.candidates.pair_count());
     for (std::size_t p = 0; p < sim.candidates.pair_count(); ++p) {

@@ -4,7 +4,7 @@ namespace carom {
 
 template <class Real>
 void settle_contacts(Simulation<Real>& sim) {
-    sim.solver.settle_contacts(sim.meetings, sim.world.handles);
+    sim.solver.settle_contacts(sim.meetings, sim.world.handles, sim.candidates, sim.slack, *sim.kernels);
 }
 
 template <class Real>

@@ -54,7 +54,11 @@ struct Simulation {
     int substeps = 1;  ///< what was asked for; strong drag can make a step take more
 
     // Of the present substep.
-    double h = 0;  ///< s
+    double h = 0;                       ///< s
+    double fastest = 0;                 ///< m/s, at the start, of all bodies
+    double slack = 0;                   ///< m, how far accelerations bring paths nearer than straight lines
+    std::vector<double> chunk_fastest;  ///< m²/s², by chunk
+    std::vector<std::int32_t> displaced;
     ChunkedList wall_rows, displaced_rows, lost_rows, found_pairs;
     std::vector<Meeting> meetings;      ///< that the solver has to look at
     std::vector<Real> immovable_spins;  ///< rad/s, kept over the turn

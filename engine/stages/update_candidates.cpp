@@ -6,17 +6,17 @@ template <class Real>
 void sort_rows(Simulation<Real>& sim) {
     if (!sim.candidates.wants_sorted_rows()) return;
     sim.world.reorder(sim.candidates.order());
-    sim.candidates.invalidate();
+    sim.candidates.note_sorted_rows();
     sim.solver.flights.accelerations.clear();
 }
 
 template <class Real>
 void update_candidates(Simulation<Real>& sim) {
     const Bodies<Real>& bodies = sim.world.bodies;
-    bool is_displaced = false;
-    sim.displaced_rows.for_each_below(bodies.count, [&](std::int32_t) { is_displaced = true; });
-    sim.candidates.update(bodies, sim.solver.flights.end, sim.world.gravity, is_displaced, *sim.kernels,
-                          sim.executor);
+    sim.displaced.clear();
+    sim.displaced_rows.for_each_below(bodies.count, [&](std::int32_t row) { sim.displaced.push_back(row); });
+    sim.candidates.update(bodies, sim.solver.flights.end, sim.world.gravity, sim.displaced, sim.fastest,
+                          *sim.kernels, sim.executor);
 }
 
 template void sort_rows(Simulation<float>&);
