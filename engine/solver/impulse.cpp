@@ -57,8 +57,11 @@ void ImpulseSolver<Real>::settle_contacts(std::span<const Meeting> meetings, con
     at_rest_.clear();
 
     if (gravity > 0) collect_persisting(handles);
+    const auto prefetch_ahead = [&](std::size_t i) {
+        if (i + kMeetingsAhead < meetings.size()) prefetch_meeting(meetings[i + kMeetingsAhead]);
+    };
     for (std::size_t i = 0; i < meetings.size(); ++i) {
-        prefetch_meeting(meetings[std::min(i + kMeetingsAhead, meetings.size() - 1)]);
+        prefetch_ahead(i);
         sort_out(meetings[i]);
     }
     if (!overlaps_.empty())
@@ -69,7 +72,10 @@ void ImpulseSolver<Real>::settle_contacts(std::span<const Meeting> meetings, con
         resting_.hold(flights, at_rest_, held_);
         for (const PressedMeeting& p : at_rest_) keep_resting(p.meeting, p.force);
     }
-    for (const Meeting& m : meetings) foresee(m, 0);
+    for (std::size_t i = 0; i < meetings.size(); ++i) {
+        prefetch_ahead(i);
+        foresee(meetings[i], 0);
+    }
     overshoot_ = candidates.overshoot();
     for (const std::int32_t row : candidates.strays()) foresee_near(row, 0, candidates);
 }
