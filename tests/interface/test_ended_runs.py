@@ -110,7 +110,7 @@ class KilledTest(ProgramTest):
 class FullDiskTest(ProgramTest):
     def test_a_file_that_may_not_grow_ends_the_run_and_leaves_nothing(self):
         scene = self.write_scene(gas(10, steps=300))  # ledger 80 KB, trajectory 600 KB
-        for limit in (0, 100, 1000, 3000, 10_000, 40_000, 100_000, 300_000):
+        for limit in (2000, 3000, 10_000, 40_000, 100_000, 300_000):  # below, libomp cannot start
             def limit_files():
                 resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
             done = self.carom("run", scene, "--out", "deep/out", expect=3, preexec_fn=limit_files)

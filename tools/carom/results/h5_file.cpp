@@ -41,6 +41,7 @@ hid_t H5File::check(hid_t result) {
     if (result >= 0) return result;
     std::string reason = "HDF5 error";
     H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, &note_reason, &reason);
+    H5Eclear2(H5E_DEFAULT);
     throw WriteError(joined(name_, ": ", reason));
 }
 
