@@ -14,8 +14,8 @@ using carom::bench::make_gas;
 
 void finish(benchmark::State& state, const carom::KernelTables& tables, std::size_t bodies) {
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(bodies));  // items = bodies
-    state.counters["ns/body"] =
-        benchmark::Counter(1e-9 * static_cast<double>(bodies),
+    state.counters["time/body"] =
+        benchmark::Counter(static_cast<double>(bodies),
                            benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
     state.SetLabel(std::string(tables.of<float>().isa));
 }
