@@ -72,7 +72,7 @@ class BasicWorld {
     BasicWorld& operator=(BasicWorld&&) noexcept;
 
     /// Advances the world by dt.
-    /// @param dt  s, finite, 0 <= dt <= kLargestStep; 0 changes no bit of any body.
+    /// @param dt  s: 0, which changes no bit of any body, or kSmallestStep ... kLargestStep.
     /// @throws Error if dt is out of range; the world is then unchanged.
     /// Cost: O(bodies + candidate pairs); no allocation once the world has reached its largest size.
     void step(double dt);
