@@ -7,8 +7,9 @@
 
 namespace carom {
 
-inline constexpr std::size_t kRowsPerChunk = 2048;          // 8 KiB a float column
-inline constexpr std::size_t kSmallestParallelRows = 8192;  // below, waking threads costs more than it gains
+inline constexpr std::size_t kRowsPerChunk = 2048;  // 8 KiB a float column
+inline constexpr std::size_t kSmallestParallelRows =
+    32768;  // below, waking threads costs about what it gains
 
 /// Runs chunks of rows, on several threads if there are any and the rows are many. Chunks depend on the rows
 /// alone, never on the threads: work that writes by chunk gives the same result for any number of them.
@@ -51,6 +52,8 @@ class Executor {
 
     int threads_;  // 0: the embedding program knows
     ParallelFor parallel_for_;
+    mutable int loops_alone_ = 0;       // that still run on one thread, because the machine is busy
+    mutable int loops_next_time_ = 32;  // half of what the first wait that is too long costs
 };
 
 }  // namespace carom
