@@ -74,7 +74,6 @@ void find_impacts(Simulation<Real>& sim) {
         sim.meetings.push_back(a < b ? Meeting{a, b} : Meeting{b, a});
     });
     if (sim.world.walls) list_wall_meetings(sim, std::fmax(near, 0));
-    sim.meeting_count = static_cast<std::int64_t>(sim.meetings.size());
 }
 
 template void find_impacts(Simulation<float>&);

@@ -64,7 +64,6 @@ struct Simulation {
     std::vector<Real> immovable_spins;  ///< rad/s, kept over the turn
 
     std::int64_t step_count = 0;
-    std::int64_t meeting_count = 0;  ///< of the last substep
 
     /// To be called when rows, masses or laws have changed outside of a step.
     void forget_derived_state() {

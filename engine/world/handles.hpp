@@ -55,7 +55,6 @@ class Handles {
     std::size_t bytes() const {
         return slots_.capacity() * sizeof(Slot) + free_.capacity() * sizeof(std::uint32_t);
     }
-    void reserve(std::size_t bodies) { slots_.reserve(bodies); }
 
     static constexpr std::uint32_t kNoRow = UINT32_MAX;
 
