@@ -25,6 +25,10 @@ struct LevelInput {
 template <class Real>
 class SortedLevel {
   public:
+    SortedLevel() = default;
+    SortedLevel(SortedLevel&&) noexcept = default;  // not copied: the view points into the columns
+    SortedLevel& operator=(SortedLevel&&) noexcept = default;
+
     void sort(const LevelInput<Real>& input, const KernelTable<Real>& kernels, const Executor& executor);
 
     /// Valid until the next sort.
