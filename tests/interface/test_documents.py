@@ -1,4 +1,4 @@
-"""Runs what README.md and docs/getting-started.md tell readers to run, on the files they show, and compares the output
+"""Runs what README.md and pages of docs/ tell readers to run, on the files they show, and compares the output
 they show. What sets up and builds the project itself is left to those scripts; installing and embedding run in release."""
 import os
 import pathlib
@@ -87,6 +87,13 @@ class DocumentsTest(ProgramTest):
         seen = self.shell("python3 look.py")
         self.assertRegex(seen, r"the ball rose to [\d.]+ m\n")
 
+    @unittest.skipUnless(IS_RELEASE, "they run a large scene")
+    def test_commands_of_the_pages_on_the_engine_work(self):
+        for document in ("docs/how-a-step-works.md", "docs/architecture.md"):
+            self.run_document(document)
+        scalar, best = ((self.folder / "out" / run / "summary.json").read_text() for run in ("scalar", "best"))
+        self.assertEqual(*(re.search(r'"state_hash": "\w+"', summary).group() for summary in (scalar, best)))
+
     @unittest.skipUnless(IS_RELEASE, "the example is linked against the release build")
     def test_embedding_example_prints_what_the_readme_shows(self):
         blocks = blocks_of("README.md")
@@ -98,7 +105,7 @@ class DocumentsTest(ProgramTest):
         self.assertEqual(self.shell("./example"), blocks[index + 1][2])
 
     def test_links_lead_somewhere(self):
-        for document in (SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))):
+        for document in (SOURCE / "README.md", *sorted((SOURCE / "docs").rglob("*.md"))):
             for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", document.read_text()):
                 if not target.startswith("http"):
                     self.assertTrue((document.parent / target).exists(), f"{document.name}: {target}")

@@ -45,10 +45,69 @@ class StagesTest(unittest.TestCase):
         listed = re.search(r"enum class StageName[^{]*\{([^}]*)\}", text_of("engine/stage_info.hpp")).group(1)
         self.assertEqual(re.findall(r"\w+", listed), names)
 
-    def test_constants_the_page_names_exist(self):
+
+class ConstantsTest(unittest.TestCase):
+    def test_constants_have_the_values_that_pages_give(self):
         sources = "".join(path.read_text() for path in (SOURCE / "engine").rglob("*.[ch]pp"))
-        for name in re.findall(r"`(k[A-Z]\w+)`", text_of("docs/how-a-step-works.md")):
-            self.assertRegex(sources, rf"\b{name}(<Real>)? =", name)
+        for page in pages():
+            text = text_of("docs/" + page)
+            for name, value in re.findall(r"`(k[A-Z]\w+) = ([^`]+)`", text):
+                self.assertRegex(sources, rf"\b{name}\s*=\s*{re.escape(value)};", f"{page}: {name}")
+
+    def test_constants_that_the_page_on_the_step_names_exist(self):
+        sources = "".join(path.read_text() for path in (SOURCE / "engine").rglob("*.[ch]pp"))
+        for name in re.findall(r"`(k[A-Z]\w+)", text_of("docs/how-a-step-works.md")):
+            self.assertRegex(sources, rf"\b{name}\b", name)
+
+
+class LayersTest(unittest.TestCase):
+    """The table of docs/architecture.md against tools/checks/check_layers.py, both ways."""
+
+    def setUp(self):
+        rows = re.findall(r"^\| (-?[\d.]+) \| (.*?) \| (.*?) \|$", text_of("docs/architecture.md"), re.MULTILINE)
+        self.folders, self.files, self.meaning, self.other = {}, {}, {}, None
+        for layer, where, meaning in rows:
+            if where.startswith("other files"):
+                self.other = float(layer)
+                continue
+            for name in re.findall(r"`([^`]+)`", where):
+                (self.folders if name.endswith("/") else self.files)[name.rstrip("/")] = float(layer)
+                self.meaning[name.rstrip("/")] = meaning
+
+    def test_folders_are_in_the_layers_that_the_check_has(self):
+        self.assertEqual(self.folders, check_layers.LAYER_OF_FOLDER)
+        self.assertEqual(self.other, check_layers.TOP_LAYER)
+
+    def test_files_are_in_the_layers_that_the_check_has(self):
+        for name, layer in self.files.items():
+            self.assertEqual(check_layers.layer_of(name.replace("*", "words_")), layer, name)
+
+    def test_the_page_has_every_file_that_the_check_has(self):
+        for pattern in check_layers.LAYER_OF_FILE:
+            self.assertTrue(any(re.fullmatch(pattern, name.replace("*", "words_")) for name in self.files), pattern)
+
+    def test_folders_exist_or_are_said_to_be_missing(self):
+        for folder in self.folders:
+            is_there = any((SOURCE / "engine" / folder).glob("**/*.[ch]pp"))
+            self.assertEqual(is_there, not self.meaning[folder].startswith("not built yet"), folder)
+
+
+class ListsOfPagesTest(unittest.TestCase):
+    def linked(self, document):
+        folder = (SOURCE / document).parent
+        targets = (folder / target for target in LINK.findall(text_of(document)) if not target.startswith("http"))
+        return {os.path.relpath(target.resolve(), DOCS.resolve()) for target in targets}
+
+    def test_the_list_of_pages_has_every_page(self):
+        named, decisions = self.linked("docs/README.md"), text_of("docs/decisions/README.md")
+        for page in pages():
+            folder, _, name = page.rpartition("/")
+            self.assertTrue(page in named or (folder == "decisions" and f"`{name}`" in decisions), page)
+
+    def test_readme_and_getting_started_lead_to_every_page(self):
+        own = {page for page in pages() if "/" not in page}
+        self.assertLessEqual(own | {"README.md", "decisions/README.md"}, self.linked("README.md"))
+        self.assertIn("README.md", self.linked("docs/getting-started.md"))
 
 
 if __name__ == "__main__":
