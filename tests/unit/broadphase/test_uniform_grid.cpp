@@ -115,6 +115,7 @@ struct World {
     double largest;        // m
     std::size_t clusters;  // 0: evenly spread
     bool flyer = false;
+    bool crowd = false;  // every fourth body in one corner of one cell
 };
 
 const std::vector<World> kWorlds{
@@ -132,6 +133,8 @@ const std::vector<World> kWorlds{
     {"spread over 1e6 m", 1500, 1e6, 1, 30, 0},
     {"a flyer", 1500, 50, .65, .65, 0, true},
     {"no reach", 100, 10, 0, 0, 0},
+    {"a crowd among few", 1500, 60, .65, .65, 0, false, true},
+    {"a crowd, far from few", 1500, 5000, .65, .65, 0, false, true},
 };
 
 template <class Real>
@@ -150,6 +153,7 @@ Bodies<Real> make_bodies(const World& world, unsigned seed) {
             x = std::cos(cluster) * world.extent + uniform(-1, 1) * 12 * world.largest;
             y = std::sin(cluster) * world.extent + uniform(-1, 1) * 12 * world.largest;
         }
+        if (world.crowd && i % 4 == 0) x = uniform(3, 3.2), y = uniform(-3.2, -3);
         bodies.add(x, y, reach);
         if (i % 50 == 49) bodies.add(x, y, reach);  // coincident
     }
@@ -204,6 +208,30 @@ TEST_SUITE("broadphase/uniform_grid") {
     TEST_CASE("five thousand bodies of sizes 1:1000 give brute force's candidates") {
         check_world(make_bodies<float>({"", 5000, 300, .01, 10, 0}, 3));
         check_world(make_bodies<float>({"", 5000, 300, .01, 10, 0, true}, 3));
+    }
+
+    TEST_CASE("positions a whole number of folded planes apart share cells and are still told apart") {
+        Bodies<float> bodies;
+        for (std::size_t i = 0; i < 1000; ++i) {
+            const double step = 1.3 * (1 + 1e-5) * 2001;  // m, cells of a plane folded for 1,000 bodies
+            bodies.add(step * static_cast<double>(i % 30), step * static_cast<double>(i / 30), .65);
+        }
+        check_world(bodies);
+    }
+
+    TEST_CASE("sizes share a level where bodies hardly overlap, and do not where small ones crowd") {
+        const auto levels = [](double extent_of_small) {
+            Bodies<float> bodies = make_bodies<float>({"", 500, 20'000, 100, 100, 0}, 3);
+            const Bodies<float> small = make_bodies<float>({"", 1500, extent_of_small, .65, .65, 0}, 4);
+            for (std::size_t i = 0; i < small.count(); ++i)
+                bodies.add(small.x[i], small.y[i], small.reach[i]);
+            UniformGrid<float> grid;
+            grid.build(bodies.input(), carom::select_kernels("auto").of<float>(), Executor(1));
+            check_world(bodies);
+            return grid.level_count();
+        };
+        CHECK(levels(20'000) == 1);
+        CHECK(levels(60) == 2);
     }
 
     TEST_CASE("disabled bodies are in no pair, and two immovable ones are not a pair") {
