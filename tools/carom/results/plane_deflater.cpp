@@ -1,99 +1,79 @@
 #include "results/plane_deflater.hpp"
 
+#include <zlib.h>
+
+#include <array>
 #include <cmath>
 #include <cstdint>
-#include <new>
-#include <stdexcept>
-
-#include "format.hpp"
 
 namespace carom::tool {
 namespace {
 
-constexpr int kFastest = 1;                // zlib level; 6 takes twice as long and gains 0 to 2 % here
-constexpr int kStored = 0;                 // zlib level: no compression
+constexpr std::size_t kSampleSize = 4096;  // bytes: tells an entropy to 0.05 bits
 constexpr double kNoiseEntropy = 7.0;      // bits a byte; above it frequencies gain less than an eighth
-constexpr std::size_t kSampleSize = 8192;  // bytes: enough to tell an entropy to 0.02 bits
-constexpr double kRepeatedPart = 0.97;     // of the bytes: below it, looking for matches takes twice the time
+constexpr double kRepeatedPart = 0.1;      // of the bytes: below it, looking for matches does not pay
 
 template <std::size_t kSize>
-void shuffle_elements(const std::byte* data, std::byte* planes, std::size_t count) {
+void shuffle(const std::byte* data, std::byte* planes, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i)
         for (std::size_t byte = 0; byte < kSize; ++byte) planes[byte * count + i] = data[i * kSize + byte];
 }
 
-void check(int result) {
-    if (result == Z_MEM_ERROR) throw std::bad_alloc();
-    if (result != Z_OK) throw std::logic_error(format("zlib: deflate failed with %d", result));
+double entropy_of(const std::array<std::uint32_t, 256>& frequency, double count) {
+    double bits = 0;
+    for (const std::uint32_t times : frequency)
+        if (times > 0) bits -= times / count * std::log2(times / count);
+    return bits;
 }
 
 }  // namespace
 
 PlaneKind kind_of_plane(std::span<const std::byte> plane, std::size_t row) {
-    std::size_t repeated = 0;
-    for (std::size_t i = row; i < plane.size(); ++i) repeated += plane[i] == plane[i - row] ? 1 : 0;
-    if (row < plane.size() &&
-        static_cast<double>(repeated) > kRepeatedPart * static_cast<double>(plane.size() - row))
-        return PlaneKind::repeats;
-
     const std::size_t stride = plane.size() / kSampleSize | 1;  // odd, so that x and y both count
-    const double samples = static_cast<double>((plane.size() + stride - 1) / stride);
     std::array<std::uint32_t, 256> frequency{};
-    for (std::size_t i = 0; i < plane.size(); i += stride)
+    std::uint32_t samples = 0, runs = 0, compared = 0, repeated = 0;
+    for (std::size_t i = 1; i < plane.size(); i += stride, ++samples) {
         ++frequency[std::to_integer<std::size_t>(plane[i])];
-    double entropy = 0;  // bits a byte
-    for (const std::uint32_t count : frequency)
-        if (count > 0) entropy -= count / samples * std::log2(count / samples);
-    return entropy < kNoiseEntropy ? PlaneKind::uneven : PlaneKind::noise;
+        runs += plane[i] == plane[i - 1] ? 1 : 0;
+        if (i < row) continue;
+        ++compared;
+        repeated += plane[i] == plane[i - row] ? 1 : 0;
+    }
+    if (repeated > kRepeatedPart * compared || 2 * runs > samples) return PlaneKind::repeats;
+    return entropy_of(frequency, samples) < kNoiseEntropy ? PlaneKind::uneven : PlaneKind::noise;
 }
 
-PlaneDeflater::PlaneDeflater() {
-    check(deflateInit(&stream_, kFastest));
-}
-
-PlaneDeflater::~PlaneDeflater() {
-    deflateEnd(&stream_);
-}
-
-void PlaneDeflater::shuffle(std::span<const std::byte> data, std::size_t element_size) {
-    planes_.resize(data.size());
-    const std::size_t count = data.size() / element_size;
-    if (element_size == sizeof(float))
-        shuffle_elements<sizeof(float)>(data.data(), planes_.data(), count);
-    else
-        shuffle_elements<sizeof(double)>(data.data(), planes_.data(), count);
-}
-
-void PlaneDeflater::deflate_plane(std::span<const std::byte> plane, std::size_t row) {
-    // Matches are looked for only where there are some: runs and frequencies alone take half the time, and
-    // give 3 to 5 % smaller planes of signs and exponents.
+BitWriter PlaneDeflater::deflate_plane(BitWriter output, std::span<const std::byte> plane, std::size_t row) {
     const PlaneKind kind = kind_of_plane(plane, row);
-    check(deflateParams(&stream_, kind == PlaneKind::noise ? kStored : kFastest,
-                        kind == PlaneKind::repeats ? Z_DEFAULT_STRATEGY : Z_RLE));
-    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(plane.data()));
-    stream_.avail_in = static_cast<uInt>(plane.size());
-    check(deflate(&stream_, Z_NO_FLUSH));
-}
-
-void PlaneDeflater::finish() {
-    const int result = deflate(&stream_, Z_FINISH);
-    check(result == Z_STREAM_END ? Z_OK : result == Z_OK ? Z_BUF_ERROR : result);
+    if (kind == PlaneKind::repeats) block_.match(plane, row);
+    if (kind == PlaneKind::uneven) block_.list(plane);
+    if (kind == PlaneKind::noise || !block_.put(output)) DeflateBlock::put_stored(output, plane);
+    return output;
 }
 
 std::span<const std::byte> PlaneDeflater::compress(std::span<const std::byte> data, std::size_t element_size,
                                                    std::size_t row) {
-    shuffle(data, element_size);
-    check(deflateReset(&stream_));
-    // Room for the worst case: all stored, and a block more for every change of level.
-    output_.resize(deflateBound(&stream_, static_cast<uLong>(data.size())) + data.size() / 1024 + 256);
-    stream_.next_out = reinterpret_cast<Bytef*>(output_.data());
-    stream_.avail_out = static_cast<uInt>(output_.size());
+    constexpr std::uint64_t kZlibHeader = 0x0178;     // deflate, window of 32 KiB, low effort
+    constexpr std::uint64_t kLastEmptyBlock = 0b011;  // the last; type 1; its end is seven zeros
+    const std::size_t count = data.size() / element_size;
+    planes_.resize(data.size());
+    if (element_size == sizeof(float))
+        shuffle<sizeof(float)>(data.data(), planes_.data(), count);
+    else
+        shuffle<sizeof(double)>(data.data(), planes_.data(), count);
 
-    const std::size_t plane_size = data.size() / element_size;
+    constexpr std::size_t kAroundPlanes = 32;  // header, last block, sum, and what BitWriter asks for
+    output_.resize(element_size * DeflateBlock::largest_size(count) + kAroundPlanes);
+    BitWriter output(output_.data());
+    output.put(kZlibHeader, 16);
     for (std::size_t plane = 0; plane < element_size; ++plane)
-        deflate_plane({planes_.data() + plane * plane_size, plane_size}, row);
-    finish();
-    return {output_.data(), output_.size() - stream_.avail_out};
+        output = deflate_plane(output, {planes_.data() + plane * count, count}, row);
+    output.put(kLastEmptyBlock, 10);
+    output.align_to_byte();
+    const auto sum = static_cast<std::uint32_t>(
+        adler32_z(1, reinterpret_cast<const Bytef*>(planes_.data()), planes_.size()));
+    for (int shift = 24; shift >= 0; shift -= 8) output.put(sum >> shift & 0xff, 8);
+    return {output_.data(), output.end()};
 }
 
 }  // namespace carom::tool

@@ -8,7 +8,7 @@
 namespace carom::tool {
 namespace {
 
-constexpr std::size_t kBlockBytes = 512 * 1024;  // small enough for caches, large enough for deflate
+constexpr std::size_t kBlockBytes = 1024 * 1024;  // several frames, as the next differs little from the last
 constexpr std::size_t kLargestBodiesAChunk =
     64 * 1024;                            // 1 MiB of double positions: what HDF5 caches by default
 constexpr std::size_t kNumbersABody = 5;  // position, velocity, angle

@@ -13,7 +13,8 @@
 
 namespace carom::tool {
 
-/// Where a simulation writes one frame: arrays of its own precision in body order, aligned for it.
+/// Where a simulation writes one frame: arrays of its own precision in body order, aligned for it. Angles are
+/// zero before; a simulation without rotation leaves them so.
 struct FrameTarget {
     std::byte* position;  // m, [bodies, 2]
     std::byte* velocity;  // m/s, [bodies, 2]

@@ -34,14 +34,21 @@ class WorldSimulation final : public Simulation {
         auto* velocity = reinterpret_cast<Real*>(frame.velocity);
         auto* angle = reinterpret_cast<Real*>(frame.angle);
         const BodyView<Real> view = world_.bodies();
-        for (std::size_t i = 0; i < view.count; ++i) {
-            const std::size_t body = view.id[i].index;
+        // Rows are in the order of cells. Reading the columns out of order is cheap, they are in this core's
+        // cache; the frame is in that of the core which writes it to the file, and better written from end to
+        // end.
+        row_of_.resize(view.count);
+        for (std::size_t i = 0; i < view.count; ++i)
+            row_of_[view.id[i].index] = static_cast<std::uint32_t>(i);
+        for (std::size_t body = 0; body < view.count; ++body) {
+            const std::size_t i = row_of_[body];
             position[2 * body] = view.position_x[i];
             position[2 * body + 1] = view.position_y[i];
             velocity[2 * body] = view.velocity_x[i];
             velocity[2 * body + 1] = view.velocity_y[i];
-            angle[body] = view.angle.empty() ? Real{0} : view.angle[i];
         }
+        if (view.angle.empty()) return;  // where nothing turns the frame keeps its zeros
+        for (std::size_t body = 0; body < view.count; ++body) angle[body] = view.angle[row_of_[body]];
     }
 
     bool keeps_ledger() const override { return keeps_ledger_; }
@@ -59,6 +66,7 @@ class WorldSimulation final : public Simulation {
   private:
     BasicWorld<Real> world_;
     bool keeps_ledger_ = false;
+    mutable std::vector<std::uint32_t> row_of_;  // of each body, while a frame is copied
 };
 
 }  // namespace
