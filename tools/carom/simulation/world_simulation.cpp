@@ -10,6 +10,10 @@ namespace {
 /// body's place in the scene.
 template <class Real>
 class WorldSimulation final : public Simulation {
+    struct Moving {
+        Real x, y, vx, vy;
+    };
+
   public:
     WorldSimulation(const Scene& scene, const WorldOptions& options) : world_(scene, options) {
         const Plan plan = world_.plan();
@@ -34,21 +38,20 @@ class WorldSimulation final : public Simulation {
         auto* velocity = reinterpret_cast<Real*>(frame.velocity);
         auto* angle = reinterpret_cast<Real*>(frame.angle);
         const BodyView<Real> view = world_.bodies();
-        // Rows are in the order of cells. Reading the columns out of order is cheap, they are in this core's
-        // cache; the frame is in that of the core which writes it to the file, and better written from end to
-        // end.
-        row_of_.resize(view.count);
+        // Rows are in the order of cells. Each body is one random access here, to memory of this core; the
+        // frame goes to another one and is written from end to end.
+        by_body_.resize(view.count);
         for (std::size_t i = 0; i < view.count; ++i)
-            row_of_[view.id[i].index] = static_cast<std::uint32_t>(i);
+            by_body_[view.id[i].index] = {view.position_x[i], view.position_y[i], view.velocity_x[i],
+                                          view.velocity_y[i]};
         for (std::size_t body = 0; body < view.count; ++body) {
-            const std::size_t i = row_of_[body];
-            position[2 * body] = view.position_x[i];
-            position[2 * body + 1] = view.position_y[i];
-            velocity[2 * body] = view.velocity_x[i];
-            velocity[2 * body + 1] = view.velocity_y[i];
+            position[2 * body] = by_body_[body].x;
+            position[2 * body + 1] = by_body_[body].y;
+            velocity[2 * body] = by_body_[body].vx;
+            velocity[2 * body + 1] = by_body_[body].vy;
         }
         if (view.angle.empty()) return;  // where nothing turns the frame keeps its zeros
-        for (std::size_t body = 0; body < view.count; ++body) angle[body] = view.angle[row_of_[body]];
+        for (std::size_t i = 0; i < view.count; ++i) angle[view.id[i].index] = view.angle[i];
     }
 
     bool keeps_ledger() const override { return keeps_ledger_; }
@@ -66,7 +69,7 @@ class WorldSimulation final : public Simulation {
   private:
     BasicWorld<Real> world_;
     bool keeps_ledger_ = false;
-    mutable std::vector<std::uint32_t> row_of_;  // of each body, while a frame is copied
+    mutable std::vector<Moving> by_body_;  // while a frame is copied
 };
 
 }  // namespace
