@@ -13,9 +13,9 @@ namespace carom::tool {
 /// byte of every number, then the next, ... as one zlib stream (RFC 1950).
 ///
 /// With an encoder of its own, because a trajectory is written while the next steps are computed: zlib at its
-/// fastest takes nine times as long on a gas and makes it larger (docs/decisions/0003-recording.md). What there is to gain is known here:
-/// bytes equal to those one frame before, runs, and the frequencies of signs and exponents. The low bytes of
-/// a simulation's numbers are noise and are stored.
+/// fastest takes nine times as long on a gas and makes it larger (docs/decisions/0003-recording.md). What
+/// there is to gain is known here: bytes equal to those one frame before, runs, and the frequencies of signs
+/// and exponents. The low bytes of a simulation's numbers are noise and are stored.
 class PlaneDeflater {
   public:
     /// @param data  a whole number of elements
