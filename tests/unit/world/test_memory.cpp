@@ -1,0 +1,136 @@
+#include <doctest/doctest.h>
+#include <carom/carom.hpp>
+#include <carom/generators.hpp>
+
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <new>
+
+#include "support/report.hpp"
+
+// Every allocation of the test program passes here and is counted.
+
+namespace {
+
+std::atomic<long> allocation_count{0};
+
+void* counted(std::size_t bytes, std::size_t alignment) {
+    ++allocation_count;
+    const std::size_t rounded = (bytes + alignment - 1) / alignment * alignment;
+    if (void* memory = std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded)) return memory;
+    throw std::bad_alloc();
+}
+
+}  // namespace
+
+void* operator new(std::size_t bytes) {
+    return counted(bytes, alignof(std::max_align_t));
+}
+void* operator new[](std::size_t bytes) {
+    return counted(bytes, alignof(std::max_align_t));
+}
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+    return counted(bytes, static_cast<std::size_t>(alignment));
+}
+void* operator new[](std::size_t bytes, std::align_val_t alignment) {
+    return counted(bytes, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+void operator delete[](void* memory) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
+void operator delete[](void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+    std::free(memory);
+}
+void operator delete[](void* memory, std::align_val_t) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+    std::free(memory);
+}
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
+    std::free(memory);
+}
+
+namespace {
+
+using namespace carom;
+
+/// Discs between walls at packing fraction .3; what varies from test to test is set by the caller.
+Scene box_of_discs(std::int64_t count, RadiusRange radius) {
+    Scene scene;
+    scene.walls.emplace();
+    const double side = std::sqrt(static_cast<double>(count) * 3.14159 * radius.max * radius.max / 0.3);
+    scene.walls->max = {side, side};
+    scene.walls->material.restitution = 1;
+    Gas gas;
+    gas.count = count;
+    gas.radius = radius;
+    gas.velocity_rms = 3;
+    gas.body.material.restitution = 1;
+    add_gas(scene, gas);
+    return scene;
+}
+
+constexpr double kStep = 1.0 / 60;  // s
+
+template <class World>
+long allocations_of_steps(World& world, int warm_up, int steps) {
+    for (int i = 0; i < warm_up; ++i) world.step(kStep);
+    const long before = allocation_count.load();
+    for (int i = 0; i < steps; ++i) world.step(kStep);
+    return allocation_count.load() - before;
+}
+
+}  // namespace
+
+TEST_SUITE("world/memory") {
+    TEST_CASE_TEMPLATE("a warm gas steps without an allocation", World, carom::World, World64) {
+        World world(box_of_discs(2000, {0.5, 0.5}), {.threads = 1});
+        // Buffers grow to the busiest step so far: a longer run has fewer left to come.
+        CHECK(allocations_of_steps(world, 1500, 200) == 0);
+    }
+
+    TEST_CASE(
+        "a warm world with gravity, drag, mixed sizes, spin and the ledger steps without an allocation") {
+        Scene scene = box_of_discs(300, {0.2, 0.6});
+        scene.gravity = {0, -4};
+        scene.drag = {.linear = 0.5, .angular = 0.2};
+        scene.bodies[7].angular_velocity = 3;
+        scene.effects.ledger = true;
+        World world(scene, {.threads = 1});
+        CHECK(allocations_of_steps(world, 3000, 200) == 0);
+    }
+
+    TEST_CASE("memory a body stays below what docs/how-a-step-works.md can count on") {
+        constexpr double kMostBytes = 300;  // a body; in float, all scratch memory included
+        for (const std::int64_t count : {10'000, 50'000}) {
+            World world(box_of_discs(count, {0.5, 0.5}), {.threads = 1});
+            for (int i = 0; i < 60; ++i) world.step(kStep);
+            const double bytes = static_cast<double>(world.profile().bytes) / static_cast<double>(count);
+            test::report("memory of a gas of ", count, ": ", bytes, " bytes a body");
+            CHECK(bytes < kMostBytes);
+            CHECK(bytes > 32);  // the columns alone
+        }
+    }
+
+    TEST_CASE("one body flying off to the limit costs no memory") {
+        Scene scene = box_of_discs(2000, {0.5, 0.5});
+        scene.walls.reset();
+        World near_by(scene, {.threads = 1});
+        scene.bodies[3].position = {0.9e8, -0.9e8};
+        World far_off(scene, {.threads = 1});
+        for (int i = 0; i < 20; ++i) near_by.step(kStep), far_off.step(kStep);
+        CHECK(static_cast<double>(far_off.profile().bytes) <
+              1.5 * static_cast<double>(near_by.profile().bytes));
+    }
+}
