@@ -38,6 +38,8 @@ class ImpactQueue {
         stretches_a_second_ = end > 0 ? static_cast<double>(stretches) / end : 0;
     }
 
+    void reserve(std::size_t impacts) { waiting_.reserve(impacts), today_heap_.reserve(impacts); }
+
     std::size_t size() const { return count_; }
 
     /// @param tile  the one it happens in

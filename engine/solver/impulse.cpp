@@ -25,6 +25,10 @@ constexpr double kPersistingFraction = 1.5;
 constexpr std::size_t kMostImpacts = 20000;
 constexpr std::size_t kMostImpactsPerBody = 64;
 
+// Room in every list from the start, so that a small world soon has met its busiest step; lists double from
+// there.
+constexpr std::size_t kRoomAtStart = 256;
+
 // Meetings are looked at in the order of the plane, which memory follows if told a little ahead.
 constexpr std::size_t kMeetingsAhead = 8;
 
@@ -38,6 +42,15 @@ template <class Real>
 constexpr double kSameInstant = sizeof(Real) == sizeof(float) ? 1e-5 : 1e-11;
 
 }  // namespace
+
+template <class Real>
+ImpulseSolver<Real>::ImpulseSolver() {
+    for (auto* list : {&held_, &moved_}) list->reserve(kRoomAtStart);
+    overlaps_.reserve(kRoomAtStart), separation_targets_.reserve(kRoomAtStart),
+        at_rest_.reserve(kRoomAtStart);
+    persisting_.reserve(kRoomAtStart), simultaneous_.reserve(kRoomAtStart);
+    together_.reserve(kRoomAtStart), resting_.reserve(kRoomAtStart), queue_.reserve(kRoomAtStart);
+}
 
 template <class Real>
 void ImpulseSolver<Real>::settle_contacts(std::span<const Meeting> meetings, const Handles& handles,

@@ -36,6 +36,8 @@ struct ImpulseCounters {
 template <class Real>
 class ImpulseSolver {
   public:
+    ImpulseSolver();
+
     Flights<Real> flights;
     ImpulseCounters counters;
 

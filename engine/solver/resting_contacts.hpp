@@ -34,6 +34,7 @@ class RestingContacts {
     /// appended to `held`, each once.
     void hold(Flights<Real>& flights, std::vector<PressedMeeting>& contacts, std::vector<std::int32_t>& held);
 
+    void reserve(std::size_t count) { solved_.reserve(count), stopped_.reserve(count); }
     std::size_t bytes() const { return solved_.capacity() * sizeof(Solved) + stopped_.bytes(); }
 
   private:

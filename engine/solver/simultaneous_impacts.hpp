@@ -26,6 +26,7 @@ class SimultaneousImpacts {
         std::size_t place_a, place_b;
     };
 
+    void reserve(std::size_t count) { impacts_.reserve(count), changes_.reserve(count); }
     void clear() { impacts_.clear(), changes_.clear(); }
 
     void add(const Flights<Real>& flights, Meeting m, const Encounter& e, double s, double target);

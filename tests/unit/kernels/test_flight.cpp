@@ -157,7 +157,7 @@ TEST_SUITE("kernels/flight") {
             const auto a = static_cast<std::size_t>(columns.a[p]), b = static_cast<std::size_t>(columns.b[p]);
             const double dx = columns.x[b] - columns.x[a], dy = columns.y[b] - columns.y[a];
             const double vx = columns.vx[b] - columns.vx[a], vy = columns.vy[b] - columns.vy[a];
-            const double reach = columns.radius[a] + columns.radius[b], s = 0.05;
+            const double reach = columns.radius[a] + columns.radius[b], s = 0.3;
             double least = std::hypot(dx, dy);  // on the way, sampled finely
             const bool approaches = dx * vx + dy * vy < 0;
             const bool near = least < reach - 0.01;
@@ -176,7 +176,7 @@ TEST_SUITE("kernels/flight") {
                                       columns.b.data(),
                                       columns.radius.data(),
                                       Real(0),
-                                      Real(0.05),
+                                      Real(0.3),
                                       Real(0.02),
                                       Real(-0.01),
                                       found.numbers.data()};
