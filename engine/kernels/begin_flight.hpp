@@ -9,10 +9,10 @@ namespace {
 /// Lane numbers as rows of a record block: store_rows4 writes consecutive records.
 constexpr std::int32_t kConsecutive[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
-/// Whether a path from x to end, bulging by `bend`, comes nearer than radius to [min, max]'s ends.
+/// Whether a path from x to end, bulging by `bend`, comes nearer than `touch` to [min, max]'s ends.
 template <class F>
-auto reaches_wall(F x, F end, F radius, F bend, F min, F max) {
-    return (simd::min(x, end) - radius - bend < min) | (simd::max(x, end) + radius + bend > max);
+auto reaches_wall(F x, F end, F touch, F bend, F min, F max) {
+    return (simd::min(x, end) - touch - bend < min) | (simd::max(x, end) + touch + bend > max);
 }
 
 template <bool kUniformRadius, class Real, class Isa>
@@ -22,7 +22,7 @@ FlightCounts<Real> begin_flight(const BeginFlight<Real>& k, std::size_t first, s
     const F s(k.s), fall_x(k.fall_x), fall_y(k.fall_y), gain_x(k.gain_x), gain_y(k.gain_y);
     const F bend_x(k.bend_x), bend_y(k.bend_y), min_x(k.min_x), min_y(k.min_y), max_x(k.max_x),
         max_y(k.max_y);
-    const F largest_position(k.largest_position), largest_speed(k.largest_speed);
+    const F touch_ratio(k.touch_ratio), largest_position(k.largest_position), largest_speed(k.largest_speed);
     FlightCounts<Real> counts{0, 0, 0, 0};
     F fastest(Real(0));
     for (std::size_t i = first; i < last; i += Lanes::size) {
@@ -35,8 +35,9 @@ FlightCounts<Real> begin_flight(const BeginFlight<Real>& k, std::size_t first, s
         const F end_x = x + vx * s + fall_x, end_y = y + vy * s + fall_y;
         F radius(k.uniform_radius);
         if constexpr (!kUniformRadius) radius = Lanes::load(k.radius + i);
-        const auto at_wall = reaches_wall(x, end_x, radius, bend_x, min_x, max_x) |
-                             reaches_wall(y, end_y, radius, bend_y, min_y, max_y);
+        const F touch = radius * touch_ratio;
+        const auto at_wall = reaches_wall(x, end_x, touch, bend_x, min_x, max_x) |
+                             reaches_wall(y, end_y, touch, bend_y, min_y, max_y);
 
         const F moved_x = end_x - Lanes::load(k.built_x + i), moved_y = end_y - Lanes::load(k.built_y + i);
         const F margin = Lanes::load(k.reach + i) - radius;

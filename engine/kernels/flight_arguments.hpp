@@ -24,6 +24,7 @@ struct BeginFlight {
     Real fall_x, fall_y;  // m, acceleration times q at the end
     Real gain_x, gain_y;  // m/s, acceleration times s at the end
     Real bend_x, bend_y;  // m, how far a path can bulge beyond both its ends
+    Real touch_ratio;     // no unit, >= 1: within this many radii of a wall a body may touch it
     Real min_x, min_y;    // m, walls; infinite where there is none
     Real max_x, max_y;
     Real largest_position;         // m

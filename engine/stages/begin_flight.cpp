@@ -49,6 +49,8 @@ BeginFlight<Real> arguments_of(const Simulation<Real>& sim) {
     k.gain_x = real(world.gravity.x * end.s), k.gain_y = real(world.gravity.y * end.s);
     k.bend_x = real(std::fabs(world.gravity.x) * end.q * kBendOfFall);
     k.bend_y = real(std::fabs(world.gravity.y) * end.q * kBendOfFall);
+    const bool may_rest = length_squared(world.gravity) > 0;
+    k.touch_ratio = real(may_rest ? 1 + kTouchFraction : 1);
     k.min_x = k.min_y = -kOpen, k.max_x = k.max_y = kOpen;
     if (world.walls) {
         if (world.walls->left) k.min_x = real(world.walls->min.x);
