@@ -1,0 +1,172 @@
+// B7 and B8 of the design notes: bodies that start inside each other come apart, no faster than the cap, and
+// their velocities learn nothing of it. What it costs against gravity is booked as correction.
+#include "support/effort.hpp"
+#include "support/report.hpp"
+#include "support/scenes.hpp"
+#include "support/trial.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+using namespace carom;
+using namespace carom::test;
+
+namespace {
+
+constexpr double kStep = 1.0 / 60, kRadius = 0.5;
+constexpr double kPushCap = 6 * kRadius;  // m/s: six radii a second, 3 m/s for these discs
+constexpr double kOverlapLeft = 0.01;     // of the radius, what counts as apart
+constexpr int kTwoSeconds = 120;
+
+template <class Real>
+double fastest(const BasicWorld<Real>& world) {
+    const BodyView<Real> bodies = world.bodies();
+    double speed = 0;
+    for (std::size_t row = 0; row < bodies.count; ++row)
+        speed = std::max(speed, std::hypot(static_cast<double>(bodies.velocity_x[row]),
+                                           static_cast<double>(bodies.velocity_y[row])));
+    return speed;
+}
+
+template <class Real>
+std::vector<Vec2> positions(const BasicWorld<Real>& world) {
+    std::vector<Vec2> places(world.body_count());
+    for (std::uint32_t i = 0; i < places.size(); ++i) places[i] = world.state({i, 0}).position;
+    return places;
+}
+
+double distance(Vec2 a, Vec2 b) {
+    return std::hypot(b.x - a.x, b.y - a.y);
+}
+
+/// Steps for two seconds; returns the fastest that any disc was moved [m/s].
+template <class Real>
+double push_apart(Trial<Real>& trial) {
+    double speed = 0;
+    for (int i = 0; i < kTwoSeconds; ++i) {
+        const std::vector<Vec2> before = positions(trial.world);
+        trial.step(kStep);
+        const std::vector<Vec2> after = positions(trial.world);
+        for (std::size_t b = 0; b < after.size(); ++b) {
+            REQUIRE(std::isfinite(after[b].x + after[b].y));
+            speed = std::max(speed, distance(before[b], after[b]) / kStep);
+        }
+    }
+    return speed;
+}
+
+Scene coincident(int count, Vec2 at, double mass_ratio = 1) {
+    Scene scene;
+    for (int i = 0; i < count; ++i) scene.add(disc(kRadius, i == 0 ? mass_ratio : 1, at));
+    return scene;
+}
+
+}  // namespace
+
+TEST_SUITE("hard cases/overlaps") {
+    TEST_CASE_TEMPLATE("two coincident discs come apart the same way every time, without speed", Real, float,
+                       double) {
+        for (const Vec2 at : {Vec2{0, 0}, Vec2{-123.25, 77.5}}) {
+            Trial<Real> first(coincident(2, at)), again(coincident(2, at));
+            const double speed = push_apart(first);
+            push_apart(again);
+            CHECK(first.world.state_hash() == again.world.state_hash());
+            const Vec2 a = first.state(0).position, b = first.state(1).position;
+            CHECK(distance(a, b) > 2 * kRadius - kOverlapLeft * kRadius);
+            CHECK(distance(a, b) < 2 * kRadius * (1 + 1e-6));
+            CHECK(std::abs(a.x + b.x - 2 * at.x) < 1e-4 * kRadius);  // the centre of mass stays
+            CHECK(std::abs(a.y + b.y - 2 * at.y) < 1e-4 * kRadius);
+            CHECK(speed <= kPushCap * (1 + 1e-3));
+            CHECK(fastest(first.world) == 0);
+            first.check(1);
+        }
+    }
+
+    TEST_CASE_TEMPLATE("a thousand coincident discs come apart within two seconds, without speed", Real,
+                       float, double) {
+        constexpr int kDiscs = scaled(1000, 200);
+        Trial<Real> first(coincident(kDiscs, {3, -2}));
+        const double speed = push_apart(first);
+        BasicWorld<Real> again(coincident(kDiscs, {3, -2}));
+        for (int i = 0; i < kTwoSeconds; ++i) again.step(kStep);
+        CHECK(first.world.state_hash() == again.state_hash());
+        const OverlapReport overlaps = first.world.overlaps();
+        report(kDiscs, " coincident discs: largest overlap after 2 s ", overlaps.max, ", mean ",
+               overlaps.mean, ", moved at most at ", speed, " m/s");
+        CHECK(overlaps.mean < kOverlapLeft);
+        CHECK(overlaps.max < 5 * kOverlapLeft);
+        first.run(60, kStep);
+        CHECK(first.world.overlaps().max < kOverlapLeft);
+        CHECK(fastest(first.world) == 0);
+        Vec2 centre;
+        for (const Vec2 place : positions(first.world))
+            centre.x += place.x / kDiscs, centre.y += place.y / kDiscs;
+        CHECK(std::abs(centre.x - 3) < 1e-3);
+        CHECK(std::abs(centre.y + 2) < 1e-3);
+        first.check(1);
+    }
+
+    TEST_CASE_TEMPLATE("overlapping discs are pushed apart by mass, below the cap, and gain no speed", Real,
+                       float, double) {
+        for (const double overlap : {0.25, 0.5, 0.9})  // of the smaller disc's diameter
+            for (const double ratio : {1.0, 1e-3, 1e6}) {
+                CAPTURE(overlap);
+                CAPTURE(ratio);
+                constexpr double kSmall = 0.2;
+                Scene scene;
+                const double apart = kRadius + kSmall - 2 * kSmall * overlap;
+                scene.add(disc(kRadius, 1, {0, 0}));
+                scene.add(disc(kSmall, ratio, {0.6 * apart, 0.8 * apart}));
+                Trial<Real> trial(scene);
+                const double speed = push_apart(trial);
+                CHECK(speed <= 6 * kSmall * (1 + 1e-3));
+                const Vec2 a = trial.state(0).position, b = trial.state(1).position;
+                CHECK(distance(a, b) > kRadius + kSmall - kOverlapLeft * kSmall);
+                CHECK(fastest(trial.world) == 0);
+                const double mass = 1 + ratio;
+                CHECK(std::abs(a.x + ratio * b.x - ratio * 0.6 * apart) < 1e-5 * mass);
+                CHECK(std::abs(a.y + ratio * b.y - ratio * 0.8 * apart) < 1e-5 * mass);
+                trial.check(1);
+            }
+    }
+
+    TEST_CASE_TEMPLATE("a disc half inside the floor is lifted out, and the ledger says at what cost", Real,
+                       float, double) {
+        for (const double overlap : {0.25, 0.5, 0.9}) {
+            CAPTURE(overlap);
+            Scene scene;
+            scene.gravity = {0, -10};
+            scene.walls = floor_at(0, 1);
+            const double start = kRadius * (1 - 2 * overlap);
+            Body body = disc(kRadius, 2, {0, std::max(start, 0.0)}, {}, 1);
+            scene.add(body);
+            Trial<Real> trial(scene);
+            const double speed = push_apart(trial);
+            CHECK(speed <= kPushCap * (1 + 1e-3));
+            const BodyState state = trial.state(0);
+            CHECK(std::abs(state.position.y - kRadius) < kOverlapLeft * kRadius);
+            CHECK(std::abs(state.velocity.y) < 1e-6);
+            const double lifted = state.position.y - body.position.y;
+            const EnergyByCause by = trial.all_on.ledger().energy_by_cause;
+            CHECK(by.correction == doctest::Approx(2 * 10 * lifted).epsilon(0.02));
+            trial.check(2 * 10 * kRadius);
+        }
+    }
+
+    TEST_CASE_TEMPLATE("moving discs that overlap leave as fast as they would without", Real, float, double) {
+        // Apart already by their velocities: nothing may be added. Approaching: one impact, nothing more.
+        for (const double speed : {1.0, -1.0}) {
+            Scene scene;
+            scene.add(disc(kRadius, 1, {0, 0}, {-speed, 0}, 1));
+            scene.add(disc(kRadius, 1, {0.5, 0}, {speed, 0}, 1));
+            Trial<Real> trial(scene);
+            push_apart(trial);
+            CHECK(trial.state(0).velocity.x == -1);
+            CHECK(trial.state(1).velocity.x == 1);
+            trial.check();
+        }
+    }
+}
