@@ -18,7 +18,13 @@ constexpr std::size_t padded(std::size_t rows) {
     return (rows + kRowPadding - 1) / kRowPadding * kRowPadding;
 }
 
-/// One contiguous array, aligned to a cache line. Rows [size(), padded(size())) exist and are zero. Memory
+/// Rows a column holds memory for: its padding, and always one row after the last, which padded lists may
+/// name.
+constexpr std::size_t held(std::size_t rows) {
+    return padded(rows + 1);
+}
+
+/// One contiguous array, aligned to a cache line. Rows [size(), held(size())) exist and are zero. Memory
 /// only grows, by doubling, so that a world which has reached its largest size allocates no more.
 template <class T>
 class Column {
@@ -48,14 +54,14 @@ class Column {
     void resize(std::size_t rows) {
         const std::size_t kept = std::min(size_, rows);
         grow(rows, kept);
-        std::fill(rows_ + kept, rows_ + padded(rows), T{});
+        std::fill(rows_ + kept, rows_ + held(rows), T{});
         size_ = rows;
     }
 
     /// As `resize`, but nothing is kept and rows [0, rows) are indeterminate; the padding is zero.
     void resize_for_overwrite(std::size_t rows) {
         grow(rows, 0);
-        std::fill(rows_ + rows, rows_ + padded(rows), T{});
+        std::fill(rows_ + rows, rows_ + held(rows), T{});
         size_ = rows;
     }
 
@@ -88,8 +94,8 @@ class Column {
 
   private:
     void grow(std::size_t rows, std::size_t kept) {
-        if (padded(rows) <= capacity_) return;
-        const std::size_t capacity = std::max(padded(rows), capacity_ == 0 ? 0 : 2 * capacity_);
+        if (held(rows) <= capacity_) return;
+        const std::size_t capacity = std::max(held(rows), 2 * capacity_);
         T* larger =
             static_cast<T*>(::operator new (capacity * sizeof(T), std::align_val_t{kColumnAlignment}));
         std::copy_n(rows_, kept, larger);
