@@ -105,9 +105,21 @@ void ImpulseSolver<Real>::sort_out(Meeting m) {
     }
     const Encounter e = flights.encounter(m, 0);
     if (e.separation < -kSlopFraction * radius) overlaps_.push_back(m);
-    if (std::fabs(e.normal_velocity) <= flights.rest_speed && e.separation <= kTouchFraction * radius &&
-        flights.rest_speed > 0)
+    const bool is_slow = std::fabs(e.normal_velocity) <= flights.rest_speed && flights.rest_speed > 0;
+    if (is_slow && e.separation <= std::fmin(kTouchFraction * radius, rest_height(m)))
         at_rest_.push_back({m, 0});
+}
+
+/// Separation of two surfaces from which they meet at the rest speed, or that is round-off [m]: what is
+/// farther apart, at the top of a small bounce, is going to bounce again.
+template <class Real>
+double ImpulseSolver<Real>::rest_height(Meeting m) const {
+    constexpr double kUnits = 8;
+    const Vec2 x = flights.flight(m.a).position;
+    const double noise =
+        kUnits * std::numeric_limits<Real>::epsilon() * (std::fabs(x.x) + std::fabs(x.y) + flights.reach(m));
+    const double gravity = std::sqrt(length_squared(flights.common_acceleration));
+    return std::fmax(0.5 * flights.rest_speed * flights.rest_speed / gravity, noise);
 }
 
 /// A contact to be looked at first in the next substep.

@@ -78,6 +78,7 @@ class ImpulseSolver {
     void note_impact(Meeting m, const Encounter& e);
     double restitution_of(Meeting m, const Encounter& e) const;
     double approach_noise(Meeting m) const;
+    double rest_height(Meeting m) const;
     bool is_foreseen_rightly(const Impact& impact) const;
 
     ImpactQueue queue_;
