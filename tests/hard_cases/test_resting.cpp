@@ -102,7 +102,7 @@ TEST_SUITE("hard cases/resting") {
     TEST_CASE_TEMPLATE("a ball that rises ever so slowly from the floor does not hover", Real, float,
                        double) {
         for (const double speed : {1e-7, 1e-5, 3e-5, 1e-3, 3e-3})  // of it, gravity takes 0.17 m/s in a step
-            for (const double restitution : {0.0, 0.8, 1.0}) {
+            for (const double restitution : {0.0, 0.5, 0.8}) {
                 CAPTURE(speed);
                 CAPTURE(restitution);
                 Scene scene = box_for(4, 0);
