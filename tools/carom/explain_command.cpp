@@ -1,5 +1,6 @@
 #include <carom/version.hpp>
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>

@@ -1,5 +1,6 @@
 #include <carom/errors.hpp>
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <new>

@@ -1,5 +1,6 @@
 #include "run_settings.hpp"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <functional>

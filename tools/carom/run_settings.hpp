@@ -2,12 +2,14 @@
 
 #include <carom/scene.hpp>
 
-#include <CLI/CLI.hpp>
-
 #include <cstdint>
 #include <optional>
 
 #include "simulation/simulation.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace carom::tool {
 
