@@ -1,0 +1,165 @@
+// B28 of the design notes: the same scene gives the same bits on rerun, for every instruction set and any
+// number of threads, in every build. The hashes below hold for gcc and clang, release and debug; to print new
+// ones after a change that is meant to change them:
+//   CAROM_TEST_FIGURES=1 build/release/bin/carom_tests --test-case="*golden*"
+#include <doctest/doctest.h>
+#include <carom/carom.hpp>
+#include <carom/generators.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "support/effort.hpp"
+#include "support/report.hpp"
+
+using namespace carom;
+
+namespace {
+
+constexpr double kStep = 1.0 / 60;  // s
+
+Scene gas(std::int64_t count, RadiusRange radius, double restitution) {
+    Scene scene;
+    scene.name = "gas";
+    scene.walls.emplace();
+    const double side = std::sqrt(static_cast<double>(count) * 3.2 * radius.max * radius.max / 0.4);
+    scene.walls->max = {side, side};
+    scene.walls->material.restitution = restitution;
+    Gas discs;
+    discs.count = count, discs.radius = radius, discs.velocity_rms = 3, discs.seed = 4;
+    discs.body.material.restitution = restitution;
+    add_gas(scene, discs);
+    return scene;
+}
+
+Scene falling_sizes() {
+    Scene scene = gas(300, {0.01, 1}, 0.6);
+    scene.name = "falling sizes";
+    scene.gravity = {0.5, -9.81};
+    scene.drag = {.linear = 0.3, .angular = 0.1};
+    scene.bodies[5].angular_velocity = 2;
+    return scene;
+}
+
+Scene moving_obstacles() {
+    Scene scene = gas(200, {0.3, 0.5}, 0.8);
+    scene.name = "moving obstacles";
+    scene.gravity = {0, -5};
+    const double side = scene.walls->max.x;
+    Body post;
+    post.type = BodyType::static_body;
+    post.shape = Disc{1.5};
+    post.position = {side / 2, side / 3};
+    scene.add(post);
+    post.type = BodyType::kinematic_body;
+    post.position = {2, -3}, post.velocity = {1, 0.5};
+    scene.add(post);
+    return scene;
+}
+
+Scene stack_at_rest() {
+    Scene scene;
+    scene.name = "stack at rest";
+    scene.gravity = {0, -10};
+    scene.walls.emplace();
+    scene.walls->max = {3, 30};
+    Stack discs;
+    discs.count = 6, discs.origin = {1.5, 0.5};
+    discs.body.material.restitution = 0.5;
+    add_stack(scene, discs);
+    return scene;
+}
+
+std::vector<Scene> scenes() {
+    return {gas(400, {0.5, 0.5}, 1), falling_sizes(), moving_obstacles(), stack_at_rest()};
+}
+
+template <class Real>
+std::uint64_t hash_after(const Scene& scene, int steps, const WorldOptions& options) {
+    BasicWorld<Real> world(scene, options);
+    for (int i = 0; i < steps; ++i) world.step(kStep);
+    return world.state_hash();
+}
+
+constexpr int kSteps = 90;
+
+struct Golden {
+    const char* scene;
+    std::uint64_t single_precision, double_precision;
+};
+constexpr Golden kGolden[] = {
+    {"gas", 0x680b8eec4001de52, 0x87bedad9b790c353},
+    {"falling sizes", 0xfb955f54104946b0, 0xa89719be9d9f7e88},
+    {"moving obstacles", 0x40b0a699a54d25d8, 0x8d886382b5915bee},
+    {"stack at rest", 0xa436021f760768ad, 0xfd75b447dc578a50},
+};
+
+}  // namespace
+
+TEST_SUITE("determinism/same bits") {
+    TEST_CASE_TEMPLATE("every instruction set and a rerun give the same bits", Real, float, double) {
+        for (const Scene& scene : scenes()) {
+            CAPTURE(scene.name);
+            const std::uint64_t expected = hash_after<Real>(scene, kSteps, {.isa = "scalar", .threads = 1});
+            for (const std::string& isa : runnable_instruction_sets()) {
+                CAPTURE(isa);
+                CHECK(hash_after<Real>(scene, kSteps, {.isa = isa, .threads = 1}) == expected);
+            }
+        }
+    }
+
+    TEST_CASE_TEMPLATE("1, 2, 3 and 7 threads, and an embedding program's own, give the same bits", Real,
+                       float, double) {
+        Scene scene = gas(40'000, {0.5, 0.5}, 0.9);  // enough rows for threads to be used
+        scene.gravity = {0, -1};
+        scene.bodies[9].angular_velocity = 1;
+        const int steps = test::scaled(12, 4);
+        const std::uint64_t expected = hash_after<Real>(scene, steps, {.threads = 1});
+        for (const int threads : {2, 3, 7}) {
+            CAPTURE(threads);
+            CHECK(hash_after<Real>(scene, steps, {.threads = threads}) == expected);
+        }
+        std::size_t tasks_run = 0;
+        WorldOptions own{.threads = 2};
+        own.parallel_for = [&](std::size_t count, const std::function<void(std::size_t)>& task) {
+            const std::size_t half = count / 2;
+            std::thread other([&] {
+                for (std::size_t i = 0; i < half; ++i) task(i);
+            });
+            for (std::size_t i = count; i-- > half;) task(i);
+            other.join();
+            tasks_run += count;
+        };
+        CHECK(hash_after<Real>(scene, steps, own) == expected);
+        CHECK(tasks_run > 0);
+    }
+
+    TEST_CASE_TEMPLATE("effects that are on but zero-valued, and the ledger, change no bit", Real, float,
+                       double) {
+        for (const Scene& scene : scenes()) {
+            CAPTURE(scene.name);
+            WorldOptions on{.threads = 1};
+            on.effects.gravity = on.effects.drag = on.effects.rotation = on.effects.restitution = true;
+            on.effects.ledger = true;
+            CHECK(hash_after<Real>(scene, kSteps, on) == hash_after<Real>(scene, kSteps, {.threads = 1}));
+        }
+    }
+
+    TEST_CASE("the golden hashes hold in every build") {
+        for (const Scene& scene : scenes()) {
+            CAPTURE(scene.name);
+            const std::uint64_t single = hash_after<float>(scene, kSteps, {.threads = 1});
+            const std::uint64_t twice = hash_after<double>(scene, kSteps, {.threads = 1});
+            test::report(std::hex, "{\"", scene.name, "\", 0x", single, ", 0x", twice, "},");
+            for (const Golden& golden : kGolden) {
+                if (golden.scene != scene.name) continue;
+                CHECK(single == golden.single_precision);
+                CHECK(twice == golden.double_precision);
+            }
+        }
+    }
+}
