@@ -163,7 +163,7 @@ std::string folder_name(const std::string& scene_name) {
     };
     for (char& c : name)
         if (!is_plain(c)) c = '_';
-    if (name.empty() || name[0] == '.') name.insert(0, "_");
+    if (name.empty() || name[0] == '.') name.insert(name.begin(), '_');
     return name;
 }
 
