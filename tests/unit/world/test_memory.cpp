@@ -24,6 +24,14 @@ void* counted(std::size_t bytes, std::size_t alignment) {
 
 }  // namespace
 
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
+    ++allocation_count;
+    return std::malloc(bytes == 0 ? 1 : bytes);
+}
+void* operator new[](std::size_t bytes, const std::nothrow_t&) noexcept {
+    ++allocation_count;
+    return std::malloc(bytes == 0 ? 1 : bytes);
+}
 void* operator new(std::size_t bytes) {
     return counted(bytes, alignof(std::max_align_t));
 }
