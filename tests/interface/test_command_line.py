@@ -216,6 +216,19 @@ class OtherCommandsTest(ProgramTest):
                 self.assertEqual(summary[key], plan[key])
 
 
+class QuarantineTest(ProgramTest):
+    def test_a_body_that_leaves_the_limits_is_named_and_the_exit_code_is_1(self):
+        scene = gas(2, steps=20)
+        del scene["walls"]
+        scene["bodies"][2].update(position=[9.99e7, 0], velocity=[1e6, 0])
+        results = self.run_scene(scene, expect=1)
+        self.assertEqual(results.summary["quarantined"], [2])
+        self.assertEqual(self.files_in("out"), ALL_FILES)
+        done = self.carom("run", self.folder / "scene.json", "--quiet", expect=1)
+        self.assertIn("body 2", done.stderr)
+        self.assertEqual(done.stdout, "")
+
+
 class TableTest(ProgramTest):
     def test_run_prints_energy_momentum_contacts_ledger_time_bodies_and_where_the_results_are(self):
         text = self.carom("run", SEED, "--solver", "pairwise", "--out", "there").stdout
