@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
 namespace CLI {
 class App;
@@ -15,6 +16,7 @@ using Action = std::function<int()>;
 void add_run_command(CLI::App& program, Action& action);
 void add_explain_command(CLI::App& program, Action& action);
 void add_check_command(CLI::App& program, Action& action);
+void add_report_command(CLI::App& program, Action& action);
 
 /// Version, instruction sets, threads, xsimd: the answer to --version.
 std::string version_text();

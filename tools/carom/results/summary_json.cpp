@@ -105,7 +105,8 @@ std::string hash_text(std::uint64_t hash) {
 
 Json summary_of(const RunOutcome& run) {
     const Ledger& books = run.ledger;
-    Json json{{"scene", run.scene_name},
+    Json json{{"kind", "run"},
+              {"scene", run.scene_name},
               {"version", kVersion},
               {"bodies", run.bodies},
               {"joints", 0},

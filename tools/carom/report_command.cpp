@@ -1,0 +1,56 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "exit_codes.hpp"
+#include "format.hpp"
+#include "report/kinds.hpp"
+#include "results/page_file.hpp"
+
+namespace carom::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Report {
+    std::vector<fs::path> files;
+    std::optional<fs::path> out;
+};
+
+/// Where the page goes unless it is said: into the folder of the run, if that is what is drawn.
+fs::path default_out(const Report& asked) {
+    std::error_code ignored;
+    if (asked.files.size() == 1 && fs::is_directory(asked.files[0], ignored))
+        return asked.files[0] / "report.html";
+    throw UsageError("--out: say where the page shall go, as in --out page.html");
+}
+
+int report(const Report& asked) {
+    const fs::path out = asked.out ? *asked.out : default_out(asked);
+    try {
+        write_page(out, report::page_of(asked.files));
+    } catch (const report::ResultError& error) {
+        throw UsageError(error.what());
+    }
+    std::printf("Report in %s\n", out.c_str());
+    return kDone;
+}
+
+}  // namespace
+
+void add_report_command(CLI::App& program, Action& action) {
+    CLI::App* const command =
+        program.add_subcommand("report", "Draws result files, or the results of a run, as one HTML page");
+    auto asked = std::make_shared<Report>();
+    command->add_option("files", asked->files, "Result files, or the folder of a run")
+        ->required()
+        ->type_name("FILE.json|RUN_DIR");
+    command->add_option("--out", asked->out, "The page (default for the folder of a run: report.html in it)")
+        ->type_name("FILE.html");
+    command->callback([asked, &action] { action = [asked] { return report(*asked); }; });
+}
+
+}  // namespace carom::tool

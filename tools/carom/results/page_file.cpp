@@ -1,0 +1,42 @@
+#include "results/page_file.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "exit_codes.hpp"
+#include "format.hpp"
+
+namespace carom::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& path) {
+    throw WriteError(joined(path.string(), ": ", std::strerror(errno)));
+}
+
+}  // namespace
+
+void write_page_to(const fs::path& path, const report::Page& page) {
+    std::ofstream file(path, std::ios::binary);
+    if (!file) fail(path);
+    page.write(file);
+    file.close();
+    if (!file) fail(path);
+}
+
+void write_page(const fs::path& path, const report::Page& page) {
+    const fs::path temporary = path.string() + ".part";
+    std::error_code error;
+    try {
+        write_page_to(temporary, page);
+        fs::rename(temporary, path, error);
+        if (error) throw WriteError(joined(path.string(), ": ", error.message()));
+    } catch (...) {
+        fs::remove(temporary, error);
+        throw;
+    }
+}
+
+}  // namespace carom::tool

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <vector>
+
+#include "report/page.hpp"
+
+namespace carom::report {
+
+/// A result file that cannot be read or drawn; the message names it and what was expected.
+class ResultError : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+/// A result file that was read: JSON with its kind at the top level, {"kind": "scaling", ...}.
+struct Result {
+    std::filesystem::path file;
+    Json json;
+};
+
+/// How one kind of result is drawn; each is in a file of its own. The table of them is in kinds.cpp.
+/// @throws ResultError
+void draw_run(const Result& result, Page& page);
+
+/// The page of some result files, one after the other, each drawn as its kind is. A folder stands for the
+/// summary.json in it.
+/// @throws ResultError
+Page page_of(const std::vector<std::filesystem::path>& files);
+
+}  // namespace carom::report

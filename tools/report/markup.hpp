@@ -1,0 +1,18 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+namespace carom::report {
+
+using Json = nlohmann::ordered_json;
+
+/// The text as HTML shows it: whatever it holds, it is never markup, inside or outside of attributes. Bytes
+/// that are not UTF-8 are replaced.
+std::string as_html(std::string_view text);
+
+/// JSON that may stand inside a <script> element: nothing in it ends the element or starts a comment.
+std::string as_script_data(const Json& json);
+
+}  // namespace carom::report
