@@ -57,13 +57,12 @@ inline double accelerated_impact_time(const Flight& relative, double reach, cons
         const double slope = distance > 0 ? dot(d, v) / distance : 0;
         if (separation <= tolerance && slope < 0) return s;
         const double clear = separation > 0 ? separation : 0;
-        const double root = slope * slope + 2 * curvature * clear;
-        const double rate = std::sqrt(root) - slope;  // > 0 unless moving apart without acceleration
-        if (!(rate > 0)) return kNever;
-        // From contact and moving apart, the parabola returns after 2 slope / curvature; else the usual root.
-        const double advance =
-            slope > 0 && curvature > 0 ? (slope + std::sqrt(root)) / curvature : 2 * clear / rate;
         if (!(curvature > 0) && slope >= 0) return kNever;
+        const double root = std::sqrt(slope * slope + 2 * curvature * clear);
+        // From contact and moving apart, the parabola returns after 2 slope / curvature; else the usual root.
+        const double advance = slope > 0   ? (slope + root) / curvature
+                               : clear > 0 ? 2 * clear / (root - slope)
+                                           : 0;
         s += advance;
         if (s > window.until) return kNever;
         if (advance == 0) return slope < 0 ? s : kNever;

@@ -13,6 +13,7 @@ struct Books {
     bool is_open = false;    ///< the ledger effect; nothing is written while closed, but wall_impulse
     double drag = 0;         // J
     double restitution = 0;  // J
+    double friction = 0;     // J
     double correction = 0;   // J
     double drive = 0;        // J
     Vec2 gravity_momentum;   // kg m/s, and below

@@ -93,7 +93,7 @@ struct Golden {
 };
 constexpr Golden kGolden[] = {
     {"gas", 0x680b8eec4001de52, 0x87bedad9b790c353},
-    {"falling sizes", 0xfb955f54104946b0, 0xa89719be9d9f7e88},
+    {"falling sizes", 0x3c289ec5db9dcdbe, 0x8ebecc6cbe6c743b},
     {"moving obstacles", 0x40b0a699a54d25d8, 0x8d886382b5915bee},
     {"stack at rest", 0xa436021f760768ad, 0xfd75b447dc578a50},
 };
