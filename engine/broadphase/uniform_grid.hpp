@@ -68,8 +68,7 @@ class UniformGrid {
     /// One beyond the last block in each direction; nothing if the grid is folded, so that a block is no
     /// square.
     Block block_counts(double cells_a_side) const noexcept;
-    /// Asks the memory for everything `find_near` will read in a block. Calls fn(rows) for its bodies, in
-    /// pieces.
+    /// Asks the memory for the cells of a block. Calls fn(rows) for its bodies, in pieces.
     template <class Fn>
     void prefetch_block(Block block, std::size_t cells_a_side, const Fn& fn) const {
         if (level_count_ == 0) return;
@@ -83,17 +82,13 @@ class UniformGrid {
             const auto first = static_cast<std::size_t>(begin[left]),
                        last = static_cast<std::size_t>(begin[right]);
             for (std::size_t u = left; u < right; u += 64 / sizeof(std::int32_t)) prefetch(begin + u);
-            constexpr std::size_t kPlacesOfLine = 64 / sizeof(Real);  // a cache line
-            for (std::size_t place = first; place < last; place += kPlacesOfLine) {
-                prefetch(level.bodies.x + place);
-                prefetch(level.bodies.y + place);
-                prefetch(level.bodies.reach + place);
-            }
             fn(std::span<const std::int32_t>(level.bodies.row + first, last - first));
         }
     }
 
     std::size_t level_count() const noexcept { return level_count_; }
+    /// Coarse to fine, for kernels that look around themselves in the grid.
+    const GridLevel<Real>& level(std::size_t i) const noexcept { return levels_[i].view(); }
     std::size_t bytes() const noexcept;
 
   private:

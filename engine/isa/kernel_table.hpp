@@ -22,8 +22,8 @@ struct KernelTable {
                                                       std::size_t last);
     std::size_t (*find_impacts)(const FindImpacts<Real>&, std::size_t first, std::size_t last);
     std::size_t (*find_impacts_uniform_radius)(const FindImpacts<Real>&, std::size_t first, std::size_t last);
-    std::size_t (*find_impacts_of)(const FindImpactsOf<Real>&);
-    std::size_t (*find_impacts_of_uniform_radius)(const FindImpactsOf<Real>&);
+    std::size_t (*find_impacts_near)(const GridLevel<Real>&, const FindImpactsNear<Real>&);
+    std::size_t (*find_impacts_near_uniform_radius)(const GridLevel<Real>&, const FindImpactsNear<Real>&);
     void (*end_flight)(const EndFlight<Real>&, std::size_t first, std::size_t last);
     void (*advance_rotation)(const AdvanceRotation<Real>&, std::size_t first, std::size_t last);
 };

@@ -26,8 +26,8 @@ constexpr KernelTable<Real> make_table(std::string_view isa) {
         .begin_flight_uniform_radius = &begin_flight<true, Real, Isa>,
         .find_impacts = &find_impacts<false, Real, Isa>,
         .find_impacts_uniform_radius = &find_impacts<true, Real, Isa>,
-        .find_impacts_of = &find_impacts_of<false, Real, Isa>,
-        .find_impacts_of_uniform_radius = &find_impacts_of<true, Real, Isa>,
+        .find_impacts_near = &find_impacts_near<false, Real, Isa>,
+        .find_impacts_near_uniform_radius = &find_impacts_near<true, Real, Isa>,
         .end_flight = &end_flight<Real, Isa>,
         .advance_rotation = &advance_rotation<Real, Isa>,
     };

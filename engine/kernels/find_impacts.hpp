@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kernels/find_near.hpp"
 #include "kernels/flight_arguments.hpp"
 #include "simd/lanes.hpp"
 
@@ -50,9 +51,12 @@ std::size_t find_impacts(const FindImpacts<Real>& k, std::size_t first, std::siz
     return count;
 }
 
-/// @return how many rows were found.
+/// Most lists are not longer; looking at so many rows always takes no branch that depends on the number.
+constexpr std::size_t kUsualNeighbours = 16;
+
+/// Of listed rows keeps those that k.row may meet, in order. The list has room for kUsualNeighbours more.
 template <bool kUniformRadius, class Real, class Isa>
-std::size_t find_impacts_of(const FindImpactsOf<Real>& k) {
+std::size_t keep_impacts_of(const FindImpactsNear<Real>& k, std::int32_t* rows, std::size_t listed) {
     using Lanes = simd::Lanes<Real, Isa>;
     using F = typename Lanes::Batch;
     const Real* own = k.motion + 4 * static_cast<std::ptrdiff_t>(k.row);
@@ -60,19 +64,42 @@ std::size_t find_impacts_of(const FindImpactsOf<Real>& k) {
     const F from(k.from), duration(k.until - k.from), slack(k.slack);
     const Real own_radius = kUniformRadius ? k.uniform_radius : k.radius[k.row];
     std::size_t count = 0;
-    for (std::size_t n = 0; n < k.count; n += Lanes::size) {
-        const auto other = Lanes::load_rows4(k.motion, k.rows + n);
-        const auto rows = Lanes::load_rows(k.rows + n);
+    std::size_t end = listed;
+    if constexpr (Lanes::size > 1) {
+        const auto own_row = Lanes::broadcast_row(k.row);  // which never meets itself
+        for (std::size_t n = 0; n < kUsualNeighbours; n += Lanes::size)
+            Lanes::store_rows(rows + listed + n, own_row);
+        if (end < kUsualNeighbours) end = kUsualNeighbours;
+    }
+    for (std::size_t n = 0; n < end; n += Lanes::size) {
+        const auto other = Lanes::load_rows4(k.motion, rows + n);
+        const auto other_rows = Lanes::load_rows(rows + n);
         F reach(own_radius + own_radius);
-        if constexpr (!kUniformRadius) reach = F(own_radius) + Lanes::gather(k.radius, rows);
+        if constexpr (!kUniformRadius) reach = F(own_radius) + Lanes::gather(k.radius, other_rows);
         const F relative_x = other[2] - vx, relative_y = other[3] - vy;
         const F dx = other[0] - x + relative_x * from, dy = other[1] - y + relative_y * from;
         const F close = reach + slack;
-        auto found = approaches_within(dx, dy, relative_x, relative_y, close, duration);
-        if (k.slack > Real(0)) found = found | (dx * dx + dy * dy < close * close);
-        count += Lanes::compress_store(k.found + count, rows, simd::bitmask(found));
+        unsigned found = simd::bitmask(approaches_within(dx, dy, relative_x, relative_y, close, duration));
+        if (k.slack > Real(0)) {
+            const unsigned near = simd::bitmask(dx * dx + dy * dy < close * close);
+            found |= n + Lanes::size <= listed ? near : n < listed ? near & ((1u << (listed - n)) - 1u) : 0u;
+        }
+        count += Lanes::compress_store(rows + count, other_rows, found);
     }
     return count;
+}
+
+/// Which of the cells' bodies are near is not asked: nearly all are, and reading where they were costs as
+/// many cache lines as reading where they are.
+/// @return how many rows were found, or kNoRoom
+template <bool kUniformRadius, class Real, class Isa>
+std::size_t find_impacts_near(const GridLevel<Real>& level, const FindImpactsNear<Real>& k) {
+    using L = simd::ShortLanes<Real, Isa>;
+    if (k.capacity < kUsualNeighbours) return kNoRoom;
+    const FindNear<Real> around{k.x, k.y, k.reach, k.found, k.capacity - kUsualNeighbours};
+    const std::size_t listed = pick_around<L>(level, around, PickAll<L, Real>{level.bodies});
+    if (listed == kNoRoom) return kNoRoom;
+    return keep_impacts_of<kUniformRadius, Real, Isa>(k, k.found, listed);
 }
 
 }  // namespace

@@ -58,19 +58,20 @@ struct FindImpacts {
     std::int32_t* found;  // out: pair numbers, ascending; room for last - first + a batch
 };
 
-/// Of some bodies those that body `row` may meet between clock `from` and the end of the substep.
+/// Of the bodies in the cells around a place, those that body `row` may meet between clock `from` and the end
+/// of the substep.
 template <class Real>
-struct FindImpactsOf {
-    const Real* motion;        // [rows][4]: x, y, vx, vy
-    const std::int32_t* rows;  // the bodies asked about
-    std::size_t count;         // of rows, a multiple of kRowPadding; `row` itself is never found
-    std::int32_t row;
+struct FindImpactsNear {
+    Real x, y, reach;    // m, where to look: cells that hold a body with distance below reach + its own reach
+    const Real* motion;  // [rows][4]: x, y, vx, vy
+    std::int32_t row;    // never found itself unless slack > 0
     const Real* radius;  // m, or null: uniform_radius serves all
     Real uniform_radius;
     Real from;            // s
     Real until;           // s
     Real slack;           // m, >= 0, as for FindImpacts; pairs as near as that are listed even if they part
-    std::int32_t* found;  // out; may be `rows`
+    std::int32_t* found;  // out: rows
+    std::size_t capacity;
 };
 
 /// Writes positions and velocities at the end of the flight back into the columns.

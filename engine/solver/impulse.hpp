@@ -9,6 +9,7 @@
 #include "solver/impact_queue.hpp"
 #include "solver/resting_contacts.hpp"
 #include "solver/simultaneous_impacts.hpp"
+#include "solver/tiles.hpp"
 #include "world/handles.hpp"
 
 namespace carom {
@@ -66,13 +67,13 @@ class ImpulseSolver {
     double time_at_wall(std::int32_t row, const Flight& f, std::int32_t side, double from) const;
     double time_of_pair(Meeting m, const Flight& fa, const Flight& fb, double from) const;
     void queue(Meeting m, double from, double s);
-    std::size_t tile_of(std::int32_t row) const;
     void prefetch_meeting(Meeting m) const;
+    void prefetch_margins(Meeting m) const;
     void prefetch_tile(std::size_t tile) const;
     void foresee_walls(std::int32_t row, double from);
     void foresee_near(std::int32_t row, double from, const Candidates<Real>& candidates);
     void foresee_all_of(std::int32_t row, double from, const Candidates<Real>& candidates);
-    void take_simultaneous(double s);
+    void take_simultaneous(const Impact& first);
     void carry_out(const Impact& impact);
     void carry_out_together();
     void note_impact(Meeting m, const Encounter& e);
@@ -97,7 +98,7 @@ class ImpulseSolver {
     const Candidates<Real>* candidates_ = nullptr;
     double slack_ = 0;      // m, see FindImpacts::slack
     double overshoot_ = 0;  // m, farthest that a path of this substep leaves its margin
-    std::size_t tiles_a_side_ = 1;
+    Tiles tiles_;
     std::size_t budget_ = 0;  // impacts this substep may still carry out
 };
 
