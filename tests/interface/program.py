@@ -14,7 +14,7 @@ import numpy
 SOURCE = pathlib.Path(os.environ.get("CAROM_SOURCE_DIR", pathlib.Path(__file__).parents[2]))
 PROGRAM = os.environ.get("CAROM_PROGRAM", str(SOURCE / "build/release/bin/carom"))
 SEED = SOURCE / "docs/scenes/seed.json"
-ALL_FILES = {"summary.json", "final.csv", "ledger.csv", "trajectory.h5"}
+ALL_FILES = {"summary.json", "final.csv", "ledger.csv", "trajectory.h5", "report.html"}
 
 
 def gas(side, *, name="gas", steps=50, every=1, precision="float", solver="auto", speed=3.0, **more):

@@ -58,7 +58,7 @@ class SummaryTest(ProgramTest):
 
     def test_files_written_are_those_the_summary_names(self):
         for options, left_out in (([], set()), (["--no-trajectory"], {"trajectory.h5"}),
-                                  (["--effects", "-ledger"], {"ledger.csv"}), (["--no-report"], set())):
+                                  (["--effects", "-ledger"], {"ledger.csv"}), (["--no-report"], {"report.html"})):
             results = self.run_scene(SEED, *options, "--steps", 3)  # the same folder: earlier files must go
             self.assertEqual(self.files_in("out"), ALL_FILES - left_out)
             self.assertEqual(set(results.summary["files"]), ALL_FILES - left_out)

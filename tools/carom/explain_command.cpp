@@ -8,6 +8,7 @@
 #include "commands.hpp"
 #include "exit_codes.hpp"
 #include "format.hpp"
+#include "results/plan_json.hpp"
 #include "run_settings.hpp"
 #include "scene_file/printable.hpp"
 #include "scene_reader.hpp"
@@ -26,28 +27,8 @@ struct Explain {
 };
 
 Json to_json(const Plan& plan, const std::string& scene, std::size_t bodies) {
-    Json json{{"scene", scene},
-              {"version", kVersion},
-              {"bodies", bodies},
-              {"solver", {{"name", plan.solver}, {"reason", plan.solver_reason}}},
-              {"substeps", plan.substeps},
-              {"precision", plan.precision},
-              {"isa", plan.isa},
-              {"threads", plan.threads},
-              {"effects", Json::array()},
-              {"stages", Json::array()},
-              {"columns", Json::array()},
-              {"bytes_per_body", plan.bytes_per_body}};
-    for (const EffectReport& effect : plan.effects)
-        json["effects"].push_back({{"name", effect.name}, {"on", effect.on}, {"reason", effect.reason}});
-    for (const StageReport& stage : plan.stages)
-        json["stages"].push_back({{"name", stage.name},
-                                  {"kernel", stage.kernel},
-                                  {"reads", stage.reads},
-                                  {"writes", stage.writes}});
-    for (const ColumnReport& column : plan.columns)
-        json["columns"].push_back(
-            {{"name", column.name}, {"unit", column.unit}, {"bytes_per_body", column.bytes_per_body}});
+    Json json{{"scene", scene}, {"version", kVersion}, {"bodies", bodies}};
+    json.update(plan_json(plan));
     return json;
 }
 

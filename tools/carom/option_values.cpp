@@ -1,5 +1,6 @@
 #include "option_values.hpp"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <system_error>
@@ -58,6 +59,18 @@ std::vector<std::string> split_at_commas(const std::string& text) {
         parts.push_back(text.substr(begin, comma - begin));
     parts.push_back(text.substr(begin));
     return parts;
+}
+
+void add_page_size_option(CLI::App& command, std::size_t& bytes) {
+    constexpr std::int64_t kMegabyte = 1'000'000, kMost = 2000;  // browsers refuse larger files
+    command
+        .add_option_function<std::string>(
+            "--page-size",
+            [&bytes](const std::string& text) {
+                bytes = static_cast<std::size_t>(kMegabyte * whole_number("--page-size", text, 1, kMost));
+            },
+            "Megabytes the page may have; frames are thinned until it fits (default: 50)")
+        ->type_name("MB");
 }
 
 }  // namespace carom::tool

@@ -5,6 +5,10 @@
 #include <string_view>
 #include <vector>
 
+namespace CLI {
+class App;
+}
+
 namespace carom::tool {
 
 /// The value of an option as a whole number from `min` to `max`. @throws UsageError
@@ -20,5 +24,8 @@ const std::string& known_value(std::string_view option, const std::string& text,
 
 /// The parts between commas, empty ones included.
 std::vector<std::string> split_at_commas(const std::string& text);
+
+/// Adds --page-size: megabytes a page may have.
+void add_page_size_option(CLI::App& command, std::size_t& bytes);
 
 }  // namespace carom::tool

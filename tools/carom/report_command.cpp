@@ -7,6 +7,7 @@
 #include "commands.hpp"
 #include "exit_codes.hpp"
 #include "format.hpp"
+#include "option_values.hpp"
 #include "report/kinds.hpp"
 #include "results/page_file.hpp"
 
@@ -18,6 +19,7 @@ namespace fs = std::filesystem;
 struct Report {
     std::vector<fs::path> files;
     std::optional<fs::path> out;
+    std::size_t page_bytes = report::kDefaultPageBytes;
 };
 
 /// Where the page goes unless it is said: into the folder of the run, if that is what is drawn.
@@ -31,7 +33,7 @@ fs::path default_out(const Report& asked) {
 int report(const Report& asked) {
     const fs::path out = asked.out ? *asked.out : default_out(asked);
     try {
-        write_page(out, report::page_of(asked.files));
+        write_page(out, report::page_of(asked.files, asked.page_bytes));
     } catch (const report::ResultError& error) {
         throw UsageError(error.what());
     }
@@ -50,6 +52,7 @@ void add_report_command(CLI::App& program, Action& action) {
         ->type_name("FILE.json|RUN_DIR");
     command->add_option("--out", asked->out, "The page (default for the folder of a run: report.html in it)")
         ->type_name("FILE.html");
+    add_page_size_option(*command, asked->page_bytes);
     command->callback([asked, &action] { action = [asked] { return report(*asked); }; });
 }
 

@@ -6,6 +6,7 @@
 #include "exit_codes.hpp"
 #include "format.hpp"
 #include "interrupt.hpp"
+#include "option_values.hpp"
 #include "run_scene.hpp"
 #include "scene_reader.hpp"
 #include "summary_table.hpp"
@@ -18,7 +19,6 @@ struct Run {
     std::optional<std::string> out;
     RunSettings settings;
     RunChoices choices;
-    bool no_report = false;  // there is no report yet that could be left out
 };
 
 void print_results(const Run& asked, const Scene& scene, const Simulation& simulation,
@@ -27,6 +27,9 @@ void print_results(const Run& asked, const Scene& scene, const Simulation& simul
         joined(summary_table(outcome), body_table(scene, simulation), "\nResults in ", *asked.out, ":");
     for (const std::string& file : outcome.files) text.append(" ").append(file);
     text += "\n";
+    if (!asked.choices.no_report)
+        text +=
+            joined("Open ", (std::filesystem::path(*asked.out) / "report.html").string(), " in a browser.\n");
     std::fwrite(text.data(), 1, text.size(), stdout);
 }
 
@@ -55,7 +58,8 @@ void add_run_command(CLI::App& program, Action& action) {
     command->add_option("--out", asked->out, "Folder for the results (default: out/<scene name>)")
         ->type_name("DIR");
     add_settings_options(*command, asked->settings);
-    command->add_flag("--no-report", asked->no_report, "Do not write report.html");
+    command->add_flag("--no-report", asked->choices.no_report, "Do not write report.html");
+    add_page_size_option(*command, asked->choices.page_bytes);
     command->add_flag("--no-trajectory", asked->choices.no_trajectory, "Do not write trajectory.h5");
     command->add_flag("--quiet", asked->choices.quiet, "Print nothing but errors");
     command->callback([asked, &action] { action = [asked] { return run(*asked); }; });

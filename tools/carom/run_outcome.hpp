@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "contact_course.hpp"
+
 namespace carom::tool {
 
 /// Everything a run has to tell when it is over; summary.json and the table are made of it.
@@ -29,6 +31,7 @@ struct RunOutcome {
     std::optional<Ledger> first_step;  ///< after the first one; as the books started, if no step was taken
     bool keeps_ledger = false;
     OverlapReport overlaps;
+    std::vector<ContactCourse::Moment> contacts;  ///< during the run
     std::vector<std::size_t> quarantined;
     std::uint64_t state_hash = 0;
 

@@ -13,8 +13,10 @@
 #include "format.hpp"
 #include "interrupt.hpp"
 #include "progress_bar.hpp"
+#include "report/run_page.hpp"
 #include "results/final_csv.hpp"
 #include "results/ledger_csv.hpp"
+#include "results/page_file.hpp"
 #include "results/summary_json.hpp"
 #include "results/trajectory_h5.hpp"
 
@@ -29,6 +31,17 @@ double seconds_between(Clock::time_point start, Clock::time_point end) {
     return std::chrono::duration<double>(end - start).count();
 }
 
+nlohmann::ordered_json walls_json(const std::optional<Walls>& walls) {
+    if (!walls) return nullptr;
+    nlohmann::ordered_json sides = nlohmann::ordered_json::array();
+    for (const auto& [name, closed] : {std::pair{"left", walls->left},
+                                       {"right", walls->right},
+                                       {"bottom", walls->bottom},
+                                       {"top", walls->top}})
+        if (closed) sides.push_back(name);
+    return {{"min", {walls->min.x, walls->min.y}}, {"max", {walls->max.x, walls->max.y}}, {"sides", sides}};
+}
+
 /// What the run does with the scene, for whoever opens the trajectory alone.
 std::string settings_text(const Scene& scene, const Plan& plan) {
     nlohmann::ordered_json json{{"version", kVersion},
@@ -36,6 +49,9 @@ std::string settings_text(const Scene& scene, const Plan& plan) {
                                 {"steps", scene.step.count},
                                 {"record_every", scene.record.every},
                                 {"trail", scene.record.trail},
+                                {"gravity", {scene.gravity.x, scene.gravity.y}},
+                                {"drag", {{"linear", scene.drag.linear}, {"angular", scene.drag.angular}}},
+                                {"walls", walls_json(scene.walls)},
                                 {"solver", plan.solver},
                                 {"substeps", plan.substeps},
                                 {"precision", plan.precision},
@@ -91,6 +107,7 @@ class Recorder {
 
 void take_steps(const Scene& scene, Simulation& simulation, Recorder& recorder, bool quiet, RunOutcome& run) {
     ProgressBar progress(scene.step.count, !quiet);
+    ContactCourse contacts(scene.step.count, simulation.body_count());
     const Clock::time_point start = Clock::now();
     Clock::time_point before = start;
     while (run.steps < scene.step.count && !is_interrupted()) {
@@ -98,6 +115,7 @@ void take_steps(const Scene& scene, Simulation& simulation, Recorder& recorder, 
         const Clock::time_point stepped = Clock::now();
         ++run.steps;
         recorder.record(simulation, run.steps);
+        contacts.look(simulation, run.steps);
         if (run.steps == 1) run.first_step = simulation.ledger();
         const Clock::time_point recorded = Clock::now();
         run.stepping_seconds += seconds_between(before, stepped);
@@ -106,6 +124,7 @@ void take_steps(const Scene& scene, Simulation& simulation, Recorder& recorder, 
         before = Clock::now();
     }
     run.total_seconds = seconds_between(start, before);
+    run.contacts = contacts.moments();
     run.interrupted = run.steps < scene.step.count;
 }
 
@@ -136,6 +155,21 @@ void describe_end(const Scene& scene, const Simulation& simulation, RunOutcome& 
                                       static_cast<long long>(run.profile.unresolved_impacts)));
 }
 
+/// Drawn from the files that were just written.
+void write_report(const RunOutcome& run, ResultFolder& folder, const RunChoices& choices) {
+    if (choices.no_report) return;
+    report::RunFiles files{.summary = summary_of(run),
+                           .final_csv = folder.temporary("final.csv"),
+                           .ledger_csv = {},
+                           .trajectory_h5 = {},
+                           .page_bytes = choices.page_bytes};
+    if (run.keeps_ledger) files.ledger_csv = folder.temporary("ledger.csv");
+    if (!choices.no_trajectory) files.trajectory_h5 = folder.temporary("trajectory.h5");
+    report::Page page("");
+    report::draw_run(files, page);
+    write_page_to(folder.temporary("report.html"), page);
+}
+
 }  // namespace
 
 RunOutcome run_scene(const Scene& scene, Simulation& simulation, ResultFolder& folder,
@@ -148,9 +182,11 @@ RunOutcome run_scene(const Scene& scene, Simulation& simulation, ResultFolder& f
     take_steps(scene, simulation, recorder, choices.quiet, run);
     recorder.close(simulation, run.steps);
     describe_end(scene, simulation, run);
+    if (!choices.no_report) folder.temporary("report.html");
     run.files = folder.names();
     write_final_csv(final, scene, simulation);
     write_summary_json(summary, run);
+    write_report(run, folder, choices);
     folder.commit();
     return run;
 }

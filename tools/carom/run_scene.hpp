@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "report/run_page.hpp"
 #include "results/result_folder.hpp"
 #include "run_outcome.hpp"
 #include "run_settings.hpp"
@@ -12,6 +13,8 @@ namespace carom::tool {
 
 struct RunChoices {
     bool no_trajectory = false;
+    bool no_report = false;
+    std::size_t page_bytes = report::kDefaultPageBytes;  ///< of report.html
     bool quiet = false;
     std::string scene_text;  ///< for the trajectory's notes
 };

@@ -32,10 +32,10 @@ std::string known_kinds() {
     throw ResultError(file.string() + ": " + statement);
 }
 
-Result read_result(const fs::path& path) {
+Result read_result(const fs::path& path, std::size_t page_bytes) {
     std::error_code ignored;
     const bool is_folder = fs::is_directory(path, ignored);
-    Result result{.file = is_folder ? path / "summary.json" : path, .json = {}};
+    Result result{.file = is_folder ? path / "summary.json" : path, .json = {}, .page_bytes = page_bytes};
     std::ifstream file(result.file, std::ios::binary);
     if (!file)
         refuse(result.file,
@@ -66,9 +66,9 @@ void draw(const Result& result, Page& page) {
 
 }  // namespace
 
-Page page_of(const std::vector<fs::path>& files) {
+Page page_of(const std::vector<fs::path>& files, std::size_t page_bytes) {
     Page page("Carom");
-    for (const fs::path& file : files) draw(read_result(file), page);
+    for (const fs::path& file : files) draw(read_result(file, page_bytes), page);
     return page;
 }
 

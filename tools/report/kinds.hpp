@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "report/page.hpp"
+#include "report/run_page.hpp"
 
 namespace carom::report {
 
@@ -18,6 +18,7 @@ class ResultError : public std::runtime_error {
 struct Result {
     std::filesystem::path file;
     Json json;
+    std::size_t page_bytes;  ///< what a part of the page may take
 };
 
 /// How one kind of result is drawn; each is in a file of its own. The table of them is in kinds.cpp.
@@ -25,8 +26,8 @@ struct Result {
 void draw_run(const Result& result, Page& page);
 
 /// The page of some result files, one after the other, each drawn as its kind is. A folder stands for the
-/// summary.json in it.
-/// @throws ResultError
-Page page_of(const std::vector<std::filesystem::path>& files);
+/// summary.json in it. No part that can be thinned takes more than `page_bytes`.
+/// @throws ResultError, also while the page is written
+Page page_of(const std::vector<std::filesystem::path>& files, std::size_t page_bytes = kDefaultPageBytes);
 
 }  // namespace carom::report

@@ -17,13 +17,9 @@ constexpr const char* kHead =
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; "
     "style-src 'unsafe-inline'; img-src data: blob:\">\n";
 
-bool is_style(const Asset& asset) {
-    return asset.name.ends_with(".css");
-}
-
 void write_assets(std::ostream& out, bool styles) {
     for (const Asset& asset : assets()) {
-        if (is_style(asset) != styles) continue;
+        if (!asset.name.ends_with(styles ? ".css" : ".js")) continue;
         out << (styles ? "<style>\n" : "<script>\n");
         for (const std::string_view piece : asset.pieces) out << piece;
         out << (styles ? "\n</style>\n" : "\n</script>\n");

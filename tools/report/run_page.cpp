@@ -1,42 +1,123 @@
+#include "report/run_page.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
 #include "report/kinds.hpp"
+#include "report/ledger_charts.hpp"
+#include "report/player.hpp"
+#include "report/run_tables.hpp"
 
 namespace carom::report {
 namespace {
 
-/// JSON as a person writes it: texts without quotes.
-std::string plain(const Json& value) {
-    return value.is_string() ? value.get<std::string>() : value.dump();
+constexpr std::size_t kMostRows = 2000;  // of the ledger: more than a chart has pixels
+constexpr double kBooksClose = 0.01;     // of the energy that moved: beyond, the reader is warned
+
+/// "2.5 %": a part of something, in words.
+std::string percent(double part) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2g %%", 100 * part);
+    return text;
 }
 
-void add_settings(const Json& summary, Page& page) {
-    Table table{.caption = "Settings", .headers = {"setting", "value"}};
-    for (const char* key : {"bodies", "steps", "dt", "time", "solver", "substeps", "iterations", "precision",
-                            "isa", "threads", "version", "state_hash"})
-        table.rows.push_back({key, plain(summary.at(key))});
-    page.table(table);
+/// Whether the causes of the ledger add up; the naive engine keeps no books, which is no news.
+void warn_of_books(const Json& summary, Page& page) {
+    if (!summary.contains("energy_by_cause") || summary.at("solver") == "pairwise") return;
+    double moved = 0;
+    for (const auto& [cause, work] : summary.at("energy_by_cause").items())
+        if (cause != "unexplained") moved = std::max(moved, std::abs(work.get<double>()));
+    moved = std::max(moved, summary.at("energy").at("initial").at("kinetic").get<double>());
+    const double rest = std::abs(summary.at("energy_by_cause").at("unexplained").get<double>());
+    if (rest > kBooksClose * moved)
+        page.warning("The books do not close: " + percent(rest / moved) +
+                     " of the energy that moved is explained by no cause. A shorter step or more substeps "
+                     "would help.");
+}
+
+void add_warnings(const Json& summary, Page& page) {
+    for (const Json& message : summary.at("messages")) {
+        std::string text = message.get<std::string>();
+        if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
+            text[0] = static_cast<char>(text[0] - 'a' + 'A');
+        page.warning(text + ".");
+    }
+    warn_of_books(summary, page);
+}
+
+void add_introduction(const Json& summary, Page& page) {
+    char text[200];
+    std::snprintf(text, sizeof text, "%lld bodies, %lld steps of %.6g s: %.6g s simulated in %.4g s. ",
+                  summary.at("bodies").get<long long>(), summary.at("steps").get<long long>(),
+                  summary.at("dt").get<double>(), summary.at("time").get<double>(),
+                  summary.at("wall").at("total_s").get<double>());
+    page.paragraph(text + std::string("Solver ") + summary.at("solver").get<std::string>() + ", " +
+                   summary.at("precision").get<std::string>() + " precision.");
 }
 
 void add_stage_times(const Json& summary, Page& page) {
     Series seconds{.name = "time"};
     for (const Json& stage : summary.at("stages"))
         seconds.points.push_back(
-            {.y = 1e3 * stage.at("seconds").get<double>(), .label = plain(stage.at("name"))});
+            {.y = 1e3 * stage.at("seconds").get<double>(), .label = stage.at("name").get<std::string>()});
+    if (seconds.points.empty()) return;
     page.chart({.id = "stages",
                 .title = "Time by stage",
-                .x_label = "",
                 .y_label = "time (ms)",
                 .series = {seconds},
                 .bars = true});
 }
 
+void add_charts(const RunFiles& files, Page& page) {
+    page.heading("What happened over time");
+    if (!files.ledger_csv.empty()) {
+        const NumberTable ledger = read_numbers(files.ledger_csv, kMostRows);
+        if (ledger.row_count() < ledger.rows_in_file)
+            page.paragraph("The charts show " + std::to_string(ledger.row_count()) + " of " +
+                           std::to_string(ledger.rows_in_file) +
+                           " steps, evenly chosen; ledger.csv has all.");
+        add_ledger_charts(ledger, page);
+    } else {
+        page.paragraph("This run kept no ledger, so there are no charts of energy and momentum.");
+    }
+    add_contact_charts(files.summary, page);
+    add_stage_times(files.summary, page);
+}
+
 }  // namespace
 
+void draw_run(const RunFiles& files, Page& page) {
+    const Json& summary = files.summary;
+    page.set_title(summary.at("scene").get<std::string>());
+    add_warnings(summary, page);
+    add_introduction(summary, page);
+    if (!files.trajectory_h5.empty())
+        add_player(files, page);
+    else
+        page.paragraph("This run recorded no trajectory, so there is nothing to play.");
+    add_charts(files, page);
+    page.heading("Settings and results");
+    add_summary_tables(summary, page);
+    if (!files.final_csv.empty()) add_body_table(files, page);
+}
+
 void draw_run(const Result& result, Page& page) {
-    const Json& summary = result.json;
-    page.set_title(plain(summary.at("scene")));
-    for (const Json& message : summary.at("messages")) page.warning(plain(message));
-    add_stage_times(summary, page);
-    add_settings(summary, page);
+    RunFiles files{.summary = result.json,
+                   .final_csv = {},
+                   .ledger_csv = {},
+                   .trajectory_h5 = {},
+                   .page_bytes = result.page_bytes};
+    const std::filesystem::path folder = result.file.parent_path();
+    const Json& written = result.json.at("files");
+    const auto path_of = [&](const char* name) {
+        const bool is_there = std::find(written.begin(), written.end(), name) != written.end();
+        return is_there ? folder / name : std::filesystem::path();
+    };
+    files.final_csv = path_of("final.csv");
+    files.ledger_csv = path_of("ledger.csv");
+    files.trajectory_h5 = path_of("trajectory.h5");
+    draw_run(files, page);
 }
 
 }  // namespace carom::report

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdio>
 
+#include "results/plan_json.hpp"
 #include "results/text_file.hpp"
 
 namespace carom::tool {
@@ -80,6 +81,18 @@ Json counters_of(const Profile& profile) {
             {"bytes", profile.bytes}};
 }
 
+Json contacts_over_time(const RunOutcome& run) {
+    Json course;
+    for (const char* key : {"time", "touching", "overlap_mean", "overlap_max"}) course[key] = Json::array();
+    for (const ContactCourse::Moment& moment : run.contacts) {
+        course["time"].push_back(moment.time);
+        course["touching"].push_back(moment.overlaps.touching);
+        course["overlap_mean"].push_back(moment.overlaps.mean);
+        course["overlap_max"].push_back(moment.overlaps.max);
+    }
+    return course;
+}
+
 /// Initial and final value, and the one after the first step if there was one.
 template <class Value>
 Json course(const Value& initial, const std::optional<Ledger>& first, const Value& last,
@@ -137,10 +150,12 @@ Json summary_of(const RunOutcome& run) {
                         {"touching", run.overlaps.touching},
                         {"overlap_mean", run.overlaps.mean},
                         {"overlap_max", run.overlaps.max}};
+    json["contacts_over_time"] = contacts_over_time(run);
     json["joints_error"] = {{"mean", 0.0}, {"max", 0.0}};
     json["counters"] = counters_of(run.profile);
     json["quarantined"] = run.quarantined;
     json["state_hash"] = hash_text(run.state_hash);
+    json["plan"] = plan_json(run.plan);
     json["files"] = run.files;
     json["messages"] = run.messages;
     return json;

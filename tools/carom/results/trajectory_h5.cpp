@@ -1,6 +1,7 @@
 #include "results/trajectory_h5.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cstring>
 
 #include "simulation/body_mass.hpp"
@@ -25,6 +26,14 @@ std::size_t frames_a_block(std::size_t bodies, std::size_t element_size, std::in
     const auto expected = static_cast<std::size_t>(std::max<std::int64_t>(1, frame_count));
     return std::clamp<std::size_t>(kBlockBytes / frame_bytes, 1,
                                    std::min<std::size_t>(expected, kTimesAChunk));
+}
+
+/// "#rrggbb" as a number.
+double color_of(const Body& body) {
+    constexpr std::uint32_t kNone = 0xFFFFFFFF;
+    std::uint32_t color = kNone;
+    if (body.color.size() == 7) std::from_chars(body.color.data() + 1, body.color.data() + 7, color, 16);
+    return color;
 }
 
 }  // namespace
@@ -71,16 +80,23 @@ void TrajectoryH5::make_datasets(const Scene& scene) {
     make_dataset("velocity", "m/s", 2, &Block::velocity);
     make_dataset("angle", "rad", 1, &Block::angle);
 
-    std::vector<double> radius, mass;
-    for (const Body& body : scene.bodies) {
-        radius.push_back(radius_of(body));
-        mass.push_back(mass_of(body));
-    }
-    for (const auto& [name, unit, values] : {std::tuple{"radius", "m", &radius}, {"mass", "kg", &mass}}) {
-        const hid_t dataset = file_.make_column(name, *values);
-        file_.set_attribute(dataset, "units", unit);
-        file_.close_dataset(dataset);
-    }
+    make_column("radius", "m", scene, [](const Body& body) { return radius_of(body); });
+    make_column("mass", "kg", scene, [](const Body& body) { return mass_of(body); });
+    make_column("inertia", "kg m2", scene, [](const Body& body) { return inertia_of(body); });
+    if (std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                    [](const Body& body) { return !body.color.empty(); }))
+        make_column("color", "0xRRGGBB, or 0xFFFFFFFF for none", scene,
+                    [](const Body& body) { return color_of(body); });
+}
+
+void TrajectoryH5::make_column(const char* name, const char* unit, const Scene& scene,
+                               double (*value)(const Body&)) {
+    std::vector<double> values;
+    values.reserve(scene.bodies.size());
+    for (const Body& body : scene.bodies) values.push_back(value(body));
+    const hid_t dataset = file_.make_column(name, values);
+    file_.set_attribute(dataset, "units", unit);
+    file_.close_dataset(dataset);
 }
 
 void TrajectoryH5::make_dataset(const char* name, const char* unit, hsize_t components,

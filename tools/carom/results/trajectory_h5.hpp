@@ -51,6 +51,7 @@ class TrajectoryH5 {
     };
 
     void make_datasets(const Scene& scene);
+    void make_column(const char* name, const char* unit, const Scene& scene, double (*value)(const Body&));
     void make_dataset(const char* name, const char* unit, hsize_t components,
                       std::vector<std::byte> Block::*column);
     void hand_over();

@@ -17,13 +17,16 @@ inline double mass_of(const Body& body) {
     return body.mass.value_or(body.material.density * std::numbers::pi * radius * radius);
 }
 
+/// kg m², of a solid disc about its centre.
+inline double inertia_of(const Body& body) {
+    return 0.5 * mass_of(body) * radius_of(body) * radius_of(body);
+}
+
 /// Translation and rotation of one solid disc [J].
 inline double kinetic_energy_of(const Body& body, const BodyState& state) {
     if (body.type == BodyType::static_body) return 0;
-    const double mass = mass_of(body);
-    const double inertia = 0.5 * mass * radius_of(body) * radius_of(body);
-    return 0.5 * mass * (state.velocity.x * state.velocity.x + state.velocity.y * state.velocity.y) +
-           0.5 * inertia * state.angular_velocity * state.angular_velocity;
+    return 0.5 * mass_of(body) * (state.velocity.x * state.velocity.x + state.velocity.y * state.velocity.y) +
+           0.5 * inertia_of(body) * state.angular_velocity * state.angular_velocity;
 }
 
 }  // namespace carom::tool

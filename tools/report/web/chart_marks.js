@@ -102,5 +102,10 @@ carom.chartMarks = (() => {
     },
   };
 
-  return [errorBars, slopeGuides, events];
+  const timeCursor = {
+    id: "timeCursor",
+    afterRender: (chart) => { if (carom.cursor) carom.cursor.place(chart); },
+  };
+
+  return [errorBars, slopeGuides, events, timeCursor];
 })();

@@ -16,6 +16,9 @@ carom.charts = (() => {
     return ends.length ? { suggestedMin: Math.min(...ends), suggestedMax: Math.max(...ends) } : {};
   };
 
+  /** Charts over time begin at the start and end with the data. */
+  const wholeTime = (all) => ({ min: 0, max: Math.max(...all.map((series) => series.x[series.x.length - 1] ?? 0)) || 1 });
+
   const axis = (title, log, extra = {}) => ({
     ...extra,
     type: log ? "logarithmic" : "linear",
@@ -62,8 +65,9 @@ carom.charts = (() => {
       : { mode: description.follows_time ? "index" : "nearest", axis: description.follows_time ? "x" : "xy", intersect: false },
     scales: description.bars
       ? { x: axis(description.y_label, description.log_y, { suggestedMax: limits(description.series).suggestedMax }), y: names }
-      : { x: axis(description.x_label, description.log_x, description.follows_time ? { bounds: "data" } : {}),
-          y: axis(description.y_label, description.log_y, limits(description.series, description.log_y)) },
+      : { x: axis(description.x_label, description.log_x, description.follows_time ? wholeTime(description.series) : {}),
+          y: axis(description.y_label, description.log_y,
+                  { stacked: description.series.some((series) => series.stack), ...limits(description.series, description.log_y) }) },
     plugins: {
       legend: {
         display: description.series.length > 1, position: "bottom",
@@ -99,6 +103,7 @@ carom.charts = (() => {
     const config = { type: description.bars ? "bar" : "line", data, options: options(description), plugins: carom.chartMarks };
     paint(config);
     charts[id] = new Chart(figure.querySelector("canvas"), config);
+    charts[id].followsTime = description.follows_time;
   };
 
   const stacks = (all) => new Set(all.map((series, i) => series.stack || i)).size;

@@ -29,8 +29,8 @@ carom.series = (() => {
       label: series.name, data, showLine: series.line, caromColour: place, caromArea: series.area, inLegend: series.in_legend,
       ...(series.stack && { stack: series.stack }),
       fill: series.area ? (series.stack ? floor(all, index) : "origin") : false,
-      borderDash: series.area ? [] : dashes[place % dashes.length], borderWidth: series.area ? 1 : 2,
-      pointStyle: marks[place % marks.length], pointRadius: series.area || !shown ? 0 : 4, pointHitRadius: 8,
+      borderDash: series.area ? [] : dashes[index % dashes.length], borderWidth: series.area ? 1 : 2,
+      pointStyle: marks[index % marks.length], pointRadius: series.area || !shown ? 0 : 4, pointHitRadius: 8,
     };
   };
 

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "report/run_page.hpp"
+
+namespace carom::report {
+
+/// Adds the player of a run's trajectory to the page, with words on what it leaves out.
+/// @throws ResultError
+void add_player(const RunFiles& files, Page& page);
+
+}  // namespace carom::report
