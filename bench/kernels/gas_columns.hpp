@@ -1,97 +1,38 @@
 #pragma once
 
 #include "broadphase/uniform_grid.hpp"
-#include "isa/select_isa.hpp"
 #include "state/column.hpp"
 
-#include <cmath>
-#include <numbers>
-#include <random>
+#include <cstddef>
 #include <vector>
 
 namespace carom::bench {
 
 inline constexpr double kGasPacking = 0.40;
-inline constexpr float kGasReach = 0.675f;  // m: radius .5 and slack .175
+inline constexpr double kGasReach = 0.675;  // m: radius .5 and slack .175
 
-/// Hard discs of radius .5 in equilibrium, by Monte Carlo. Cells are so small that each holds one centre at
-/// most.
-class GasSampler {
-  public:
-    explicit GasSampler(std::size_t bodies) : x(bodies), y(bodies) {
-        const auto side = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(bodies))));
-        const double spacing = std::sqrt(std::numbers::pi / 4 / kGasPacking);
-        extent_ = spacing * static_cast<double>(side);
-        columns_ = static_cast<std::size_t>(extent_ / kCell) + 5;
-        body_in_.assign(columns_ * columns_, -1);
-        for (std::size_t i = 0; i < bodies; ++i) {
-            x[i] = spacing * (static_cast<double>(i % side) + .5);
-            y[i] = spacing * (static_cast<double>(i / side) + .5);
-            body_in_[cell(x[i], y[i])] = static_cast<std::int32_t>(i);
-        }
-    }
-
-    /// Each body tries to move once by up to `reach` along each axis.
-    void sweep(double reach) {
-        std::uniform_real_distribution<double> shift(-reach, reach);
-        for (std::size_t i = 0; i < x.size(); ++i) {
-            const double new_x = x[i] + shift(random_), new_y = y[i] + shift(random_);
-            if (new_x < 0 || new_x >= extent_ || new_y < 0 || new_y >= extent_ || !is_free(i, new_x, new_y))
-                continue;
-            body_in_[cell(x[i], y[i])] = -1;
-            body_in_[cell(new_x, new_y)] = static_cast<std::int32_t>(i);
-            x[i] = new_x;
-            y[i] = new_y;
-        }
-    }
-
+/// Hard discs of radius .5 in equilibrium by Monte Carlo, rows in the order that a grid gave them some steps
+/// ago: the gas of docs/performance.md at one moment. Made once for each size.
+struct GasPositions {
     std::vector<double> x, y;  // m
-
-  private:
-    static constexpr double kCell = 0.7;  // m, below 1 / sqrt(2)
-
-    std::size_t cell(double at_x, double at_y) const {
-        return (static_cast<std::size_t>(at_y / kCell) + 2) * columns_ +
-               static_cast<std::size_t>(at_x / kCell) + 2;
-    }
-    bool is_free(std::size_t body, double at_x, double at_y) const {
-        const std::size_t centre = cell(at_x, at_y);
-        for (std::size_t line = centre - 2 * columns_; line <= centre + 2 * columns_; line += columns_)
-            for (std::size_t c = line - 2; c <= line + 2; ++c) {
-                if (body_in_[c] < 0 || body_in_[c] == static_cast<std::int32_t>(body)) continue;
-                const auto other = static_cast<std::size_t>(body_in_[c]);
-                if (std::hypot(x[other] - at_x, y[other] - at_y) < 1) return false;
-            }
-        return true;
-    }
-
-    double extent_;
-    std::size_t columns_;
-    std::vector<std::int32_t> body_in_;
-    std::mt19937 random_{7};
 };
+const GasPositions& gas_positions(std::size_t bodies);
 
-/// The gas of docs/performance.md at one moment, its rows in the order that the grid gave them some steps
-/// ago.
+template <class Real>
 struct GasColumns {
-    Column<float> x, y, reach;
-    GridInput<float> input() const { return {x.size(), x.data(), y.data(), reach.data(), nullptr}; }
+    Column<Real> x, y, reach;
+    GridInput<Real> input() const { return {x.size(), x.data(), y.data(), reach.data(), nullptr}; }
 };
 
-inline GasColumns make_gas(std::size_t bodies) {
-    GasSampler sampler(bodies);
-    for (int sweep = 0; sweep < 30; ++sweep) sampler.sweep(.4);
-    GasColumns gas{Column<float>(bodies), Column<float>(bodies), Column<float>(bodies)};
-    const auto take = [&](std::size_t to, std::size_t from) {
-        gas.x[to] = static_cast<float>(sampler.x[from]);
-        gas.y[to] = static_cast<float>(sampler.y[from]);
-        gas.reach[to] = kGasReach;
-    };
-    for (std::size_t i = 0; i < bodies; ++i) take(i, i);
-    UniformGrid<float> grid;
-    grid.build(gas.input(), select_kernels("auto").of<float>(), Executor(1));
-    for (int sweep = 0; sweep < 3; ++sweep) sampler.sweep(.3);
-    for (std::size_t i = 0; i < bodies; ++i) take(i, static_cast<std::size_t>(grid.order()[i]));
+template <class Real>
+GasColumns<Real> make_gas(std::size_t bodies, double reach = kGasReach) {
+    const GasPositions& positions = gas_positions(bodies);
+    GasColumns<Real> gas{Column<Real>(bodies), Column<Real>(bodies), Column<Real>(bodies)};
+    for (std::size_t i = 0; i < bodies; ++i) {
+        gas.x[i] = static_cast<Real>(positions.x[i]);
+        gas.y[i] = static_cast<Real>(positions.y[i]);
+        gas.reach[i] = static_cast<Real>(reach);
+    }
     return gas;
 }
 
