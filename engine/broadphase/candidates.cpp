@@ -20,8 +20,11 @@ constexpr double kOwnMargin = 1.25;
 constexpr std::size_t kBodiesPerStray = 64;
 
 // Rows are sorted by place at the start and then this seldom: bodies drift slowly compared to steps. Columns
-// of fewer bodies fit into the first caches in any order.
+// of fewer bodies fit into the first caches in any order; those of very many leave all caches, and disorder
+// is dearer.
 constexpr std::int64_t kRebuildsBetweenSorts = 32;
+constexpr std::int64_t kRebuildsBetweenSortsOfMany = 12;
+constexpr std::size_t kManyRows = 65536;
 constexpr std::size_t kFewestSortedRows = 1024;
 
 }  // namespace
@@ -68,7 +71,7 @@ bool Candidates<Real>::wants_sorted_rows() const {
 
 template <class Real>
 void Candidates<Real>::note_sorted_rows() {
-    rebuilds_until_sorted_ = kRebuildsBetweenSorts;
+    rebuilds_until_sorted_ = reach_.size() > kManyRows ? kRebuildsBetweenSortsOfMany : kRebuildsBetweenSorts;
     invalidate();
 }
 

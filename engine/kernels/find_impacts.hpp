@@ -3,6 +3,7 @@
 #include "kernels/find_near.hpp"
 #include "kernels/flight_arguments.hpp"
 #include "simd/lanes.hpp"
+#include "simd/prefetch.hpp"
 
 namespace carom {
 namespace {
@@ -16,22 +17,33 @@ auto approaches_within(F dx, F dy, F vx, F vy, F reach, F s) {
     const F a = vx * vx + vy * vy;
     const F b = dx * vx + dy * vy;
     const F c = dx * dx + dy * dy - reach * reach;
-    const F a_s = a * s;
-    const auto inside_at_end = c + (b + b + a_s) * s < zero;
-    const auto inside_on_the_way = (zero - b < a_s) & (a * c < b * b);
+    const F b_at_end = b + a * s;
+    const auto inside_at_end = c + (b + b_at_end) * s < zero;
+    const auto inside_on_the_way = (b_at_end > zero) & (a * c < b * b);
     return (b < zero) & (inside_at_end | inside_on_the_way);
 }
 
+// The bodies b of pairs are read in the order of the plane's next line, which memory does not guess.
+constexpr std::size_t kPairsAhead = 256;
+
 template <bool kUniformRadius, class Real, class Isa>
-std::size_t find_impacts(const FindImpacts<Real>& k, std::size_t first, std::size_t last) {
+std::size_t find_impacts(const FindImpacts<Real>& arguments, std::size_t first, std::size_t last) {
+    const FindImpacts<Real> k = arguments;  // in registers: what is written could be they, for all gcc knows
     using Lanes = simd::Lanes<Real, Isa>;
     using F = typename Lanes::Batch;
+    constexpr std::size_t kRecordsOfLine = 64 / (4 * sizeof(Real));  // of a cache line
     const F s(k.s), slack(k.slack), near(k.near);
     const F uniform_reach(k.uniform_radius + k.uniform_radius);
     std::int32_t lanes[16];
     for (std::size_t n = 0; n < 16; ++n) lanes[n] = static_cast<std::int32_t>(n);
+    const auto next = Lanes::broadcast_row(static_cast<std::int32_t>(Lanes::size));
+    auto numbers =
+        Lanes::rows_sum(Lanes::load_rows(lanes), Lanes::broadcast_row(static_cast<std::int32_t>(first)));
     std::size_t count = 0;
     for (std::size_t p = first; p < last; p += Lanes::size) {
+        const std::size_t soon = p + kPairsAhead < last ? p + kPairsAhead : last - Lanes::size;
+        for (std::size_t n = 0; n < Lanes::size; n += kRecordsOfLine)
+            prefetch(k.motion + 4 * static_cast<std::ptrdiff_t>(k.b[soon + n]));
         const auto a = Lanes::load_rows4(k.motion, k.a + p);
         const auto b = Lanes::load_rows4(k.motion, k.b + p);
         const F dx = b[0] - a[0], dy = b[1] - a[1];
@@ -42,64 +54,61 @@ std::size_t find_impacts(const FindImpacts<Real>& k, std::size_t first, std::siz
         const F near_reach = reach + near;
         const auto found = approaches_within(dx, dy, b[2] - a[2], b[3] - a[3], reach + slack, s) |
                            (dx * dx + dy * dy < near_reach * near_reach);
-        const unsigned bits = simd::bitmask(found);
-        if (bits == 0) continue;
-        const std::size_t before = count;
-        count += Lanes::compress_store(k.found + before, Lanes::load_rows(lanes), bits);
-        for (std::size_t n = before; n < count; ++n) k.found[n] += static_cast<std::int32_t>(p);
+        // Written whether or not there is one: a branch would often be guessed wrongly.
+        count += Lanes::compress_store(k.found + count, numbers, simd::bitmask(found));
+        numbers = Lanes::rows_sum(numbers, next);
     }
     return count;
 }
 
-/// Most lists are not longer; looking at so many rows always takes no branch that depends on the number.
-constexpr std::size_t kUsualNeighbours = 16;
+/// Writes the rows of those bodies of a range that body k.row may meet, itself if slack > 0.
+template <bool kUniformRadius, class L, class Real>
+struct PickMet {
+    using F = typename L::Batch;
 
-/// Of listed rows keeps those that k.row may meet, in order. The list has room for kUsualNeighbours more.
-template <bool kUniformRadius, class Real, class Isa>
-std::size_t keep_impacts_of(const FindImpactsNear<Real>& k, std::int32_t* rows, std::size_t listed) {
-    using Lanes = simd::Lanes<Real, Isa>;
-    using F = typename Lanes::Batch;
-    const Real* own = k.motion + 4 * static_cast<std::ptrdiff_t>(k.row);
-    const F x(own[0]), y(own[1]), vx(own[2]), vy(own[3]);
-    const F from(k.from), duration(k.until - k.from), slack(k.slack);
-    const Real own_radius = kUniformRadius ? k.uniform_radius : k.radius[k.row];
-    std::size_t count = 0;
-    std::size_t end = listed;
-    if constexpr (Lanes::size > 1) {
-        const auto own_row = Lanes::broadcast_row(k.row);  // which never meets itself
-        for (std::size_t n = 0; n < kUsualNeighbours; n += Lanes::size)
-            Lanes::store_rows(rows + listed + n, own_row);
-        if (end < kUsualNeighbours) end = kUsualNeighbours;
+    const SortedBodies<Real>& bodies;
+    const Real* motion;
+    const Real* radius;
+    F x, y, vx, vy, own_reach, from, duration, slack;
+    bool has_slack;
+
+    PickMet(const SortedBodies<Real>& sorted, const FindImpactsNear<Real>& k)
+        : bodies(sorted),
+          motion(k.motion),
+          radius(k.radius),
+          from(L::broadcast(k.from)),
+          duration(L::broadcast(k.until - k.from)),
+          slack(L::broadcast(k.slack)),
+          has_slack(k.slack > 0) {
+        const Real* own = k.motion + 4 * static_cast<std::ptrdiff_t>(k.row);
+        x = L::broadcast(own[0]), y = L::broadcast(own[1]);
+        vx = L::broadcast(own[2]), vy = L::broadcast(own[3]);
+        own_reach = L::broadcast(kUniformRadius ? k.uniform_radius + k.uniform_radius : k.radius[k.row]);
     }
-    for (std::size_t n = 0; n < end; n += Lanes::size) {
-        const auto other = Lanes::load_rows4(k.motion, rows + n);
-        const auto other_rows = Lanes::load_rows(rows + n);
-        F reach(own_radius + own_radius);
-        if constexpr (!kUniformRadius) reach = F(own_radius) + Lanes::gather(k.radius, other_rows);
+
+    /// Of `count` <= L::size places; returns how many it wrote, with room for a batch.
+    std::size_t operator()(std::size_t place, std::size_t count, std::int32_t* out) const {
+        const auto other = L::load_rows4(motion, bodies.row + place);
+        const auto rows = L::load_rows(bodies.row + place);
+        F reach = own_reach;
+        if constexpr (!kUniformRadius) reach = own_reach + L::gather(radius, rows);
         const F relative_x = other[2] - vx, relative_y = other[3] - vy;
         const F dx = other[0] - x + relative_x * from, dy = other[1] - y + relative_y * from;
         const F close = reach + slack;
-        unsigned found = simd::bitmask(approaches_within(dx, dy, relative_x, relative_y, close, duration));
-        if (k.slack > Real(0)) {
-            const unsigned near = simd::bitmask(dx * dx + dy * dy < close * close);
-            found |= n + Lanes::size <= listed ? near : n < listed ? near & ((1u << (listed - n)) - 1u) : 0u;
-        }
-        count += Lanes::compress_store(rows + count, other_rows, found);
+        auto met = approaches_within(dx, dy, relative_x, relative_y, close, duration);
+        if (has_slack) met = met | (dx * dx + dy * dy < close * close);
+        return L::compress_store(out, rows, simd::bitmask(met) & ((1u << count) - 1u));
     }
-    return count;
-}
+};
 
-/// Which of the cells' bodies are near is not asked: nearly all are, and reading where they were costs as
-/// many cache lines as reading where they are.
+/// Who was near when the grid was built is not asked first: nearly all bodies of the cells were, and reading
+/// where they were costs as many cache lines as reading where they are.
 /// @return how many rows were found, or kNoRoom
 template <bool kUniformRadius, class Real, class Isa>
 std::size_t find_impacts_near(const GridLevel<Real>& level, const FindImpactsNear<Real>& k) {
     using L = simd::ShortLanes<Real, Isa>;
-    if (k.capacity < kUsualNeighbours) return kNoRoom;
-    const FindNear<Real> around{k.x, k.y, k.reach, k.found, k.capacity - kUsualNeighbours};
-    const std::size_t listed = pick_around<L>(level, around, PickAll<L, Real>{level.bodies});
-    if (listed == kNoRoom) return kNoRoom;
-    return keep_impacts_of<kUniformRadius, Real, Isa>(k, k.found, listed);
+    const PickMet<kUniformRadius, L, Real> pick(level.bodies, k);
+    return pick_around<L>(level, FindNear<Real>{k.x, k.y, k.reach, k.found, k.capacity}, pick);
 }
 
 }  // namespace

@@ -34,17 +34,6 @@ struct PickNear {
     }
 };
 
-/// Writes the rows of all bodies of a range.
-template <class L, class Real>
-struct PickAll {
-    const SortedBodies<Real>& bodies;
-
-    std::size_t operator()(std::size_t place, std::size_t count, std::int32_t* out) const {
-        L::store_rows(out, L::load_rows(bodies.row + place));
-        return count;
-    }
-};
-
 /// Picks from places [first, last) to out + count; returns the new count. The usual range fits one batch, so
 /// that the loop is not entered; an empty range costs the same.
 template <class L, class Pick>

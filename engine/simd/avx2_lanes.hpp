@@ -59,6 +59,7 @@ struct Lanes<float, xsimd::avx2> : BatchLanes<float, xsimd::avx2> {
     static void store_rows(std::int32_t* to, Rows rows) {
         _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), rows);
     }
+    static Rows rows_sum(Rows a, Rows b) { return _mm256_add_epi32(a, b); }
 
     static Rows rows_difference(Rows a, Rows b) { return _mm256_sub_epi32(a, b); }
     static Rows rows_min(Rows a, Rows b) { return _mm256_min_epi32(a, b); }
@@ -123,6 +124,7 @@ struct Lanes<double, xsimd::avx2> : BatchLanes<double, xsimd::avx2> {
     static void store_rows(std::int32_t* to, Rows rows) {
         _mm_storeu_si128(reinterpret_cast<__m128i*>(to), rows);
     }
+    static Rows rows_sum(Rows a, Rows b) { return _mm_add_epi32(a, b); }
 
     static Batch gather(const double* column, Rows rows) {
         return Batch::Raw(_mm256_i32gather_pd(column, rows, sizeof(double)));

@@ -22,6 +22,7 @@ struct Lanes<float, xsimd::avx512bw> : BatchLanes<float, xsimd::avx512bw> {
     static Rows broadcast_row(std::int32_t row) { return _mm512_set1_epi32(row); }
     static Rows load_rows(const std::int32_t* from) { return _mm512_loadu_si512(from); }
     static void store_rows(std::int32_t* to, Rows rows) { _mm512_storeu_si512(to, rows); }
+    static Rows rows_sum(Rows a, Rows b) { return _mm512_add_epi32(a, b); }
 
     static Rows rows_difference(Rows a, Rows b) { return _mm512_sub_epi32(a, b); }
     static Rows rows_min(Rows a, Rows b) { return _mm512_min_epi32(a, b); }
@@ -125,6 +126,7 @@ struct Lanes<double, xsimd::avx512bw> : BatchLanes<double, xsimd::avx512bw> {
     static void store_rows(std::int32_t* to, Rows rows) {
         _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), rows);
     }
+    static Rows rows_sum(Rows a, Rows b) { return _mm256_add_epi32(a, b); }
 
     static Batch gather(const double* column, Rows rows) {
         return Batch::Raw(_mm512_i32gather_pd(rows, column, sizeof(double)));

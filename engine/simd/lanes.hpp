@@ -11,6 +11,7 @@
 ///   Batch4               four batches, [0] ... [3]
 ///   broadcast(value), load(p), load_unaligned(p), store(p, batch), store_unaligned(p, batch)
 ///   broadcast_row(row), load_rows(p), store_rows(p, rows)         unaligned
+///   rows_sum(a, b)                                                of row numbers
 ///   gather(column, rows)                                          column[row] a lane
 ///   compress_store(out, rows, bits)   the lanes whose bit is set, in order, to out; returns how many.
 ///                                     Writes a whole batch: out needs room for `size` more numbers

@@ -102,6 +102,7 @@ struct ScalarLanes {
     static Rows broadcast_row(std::int32_t row) { return row; }
     static Rows load_rows(const std::int32_t* from) { return *from; }
     static void store_rows(std::int32_t* to, Rows rows) { *to = rows; }
+    static Rows rows_sum(Rows a, Rows b) { return a + b; }
 
     static Batch gather(const Real* column, Rows rows) { return column[rows]; }
 

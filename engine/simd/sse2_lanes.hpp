@@ -26,6 +26,7 @@ struct Lanes<float, xsimd::sse2> : BatchLanes<float, xsimd::sse2> {
     static void store_rows(std::int32_t* to, Rows rows) {
         _mm_storeu_si128(reinterpret_cast<__m128i*>(to), rows);
     }
+    static Rows rows_sum(Rows a, Rows b) { return _mm_add_epi32(a, b); }
 
     static Rows rows_difference(Rows a, Rows b) { return _mm_sub_epi32(a, b); }
     static Rows rows_min(Rows a, Rows b) {
@@ -86,6 +87,7 @@ struct Lanes<double, xsimd::sse2> : BatchLanes<double, xsimd::sse2> {
     static void store_rows(std::int32_t* to, Rows rows) {
         _mm_storel_epi64(reinterpret_cast<__m128i*>(to), rows);
     }
+    static Rows rows_sum(Rows a, Rows b) { return _mm_add_epi32(a, b); }
 
     static Batch gather(const double* column, Rows rows) {
         const std::int32_t first = _mm_cvtsi128_si32(rows);

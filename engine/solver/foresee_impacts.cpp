@@ -2,7 +2,6 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/impact_time.hpp"
 #include "solver/impulse.hpp"
 
 // When and with whom: the part of the impulse solver that looks ahead.
@@ -17,12 +16,36 @@ constexpr std::size_t kFewestNeighbours = 256;  // room for, doubled as needed
 
 }  // namespace
 
+template <class Real>
+FoundMeeting ImpulseSolver<Real>::examine(Meeting m) const {
+    FoundMeeting found{m};
+    if (flights.rest_speed > 0) return found;
+    const double slop = kSlopFraction * flights.smaller_radius(m);
+    if (m.with_wall()) {
+        found.overlaps = flights.encounter(m, 0).separation < -slop;
+    } else {  // needs no root
+        const Vec2 d = flights.flight(m.b).position - flights.flight(m.a).position;
+        const double overlapping = flights.reach(m) - slop;
+        found.overlaps = length_squared(d) < overlapping * overlapping;
+    }
+    found.impact = impact_time(m, 0);
+    if (found.impact != kNever)
+        found.tile =
+            static_cast<std::uint32_t>(tiles_.tile_of(candidates_->grid(), flights.flight(m.a).position));
+    return found;
+}
+
+/// When the bodies of a meeting next touch, from clock `from` on.
+template <class Real>
+double ImpulseSolver<Real>::impact_time(Meeting m, double from) const {
+    const Flight fa = flights.flight(m.a);
+    return m.with_wall() ? time_at_wall(m.a, fa, m.b, from) : time_of_pair(m, fa, flights.flight(m.b), from);
+}
+
 /// Puts the next impact of a meeting, if there is one from clock `from` on, into the queue.
 template <class Real>
 void ImpulseSolver<Real>::foresee(Meeting m, double from) {
-    const Flight fa = flights.flight(m.a);
-    const double s =
-        m.with_wall() ? time_at_wall(m.a, fa, m.b, from) : time_of_pair(m, fa, flights.flight(m.b), from);
+    const double s = impact_time(m, from);
     if (s != kNever) queue(m, from, s);
 }
 
@@ -55,18 +78,23 @@ void ImpulseSolver<Real>::queue(Meeting m, double from, double s) {
         keep_resting(m, 0);  // too gentle to bounce from here on
         return;
     }
+    push(m, s, tiles_.tile_of(candidates_->grid(), flights.flight(m.a).position));
+}
+
+template <class Real>
+void ImpulseSolver<Real>::push(Meeting m, double s, std::size_t tile) {
     queue_.push({s, m, deflections_[static_cast<std::size_t>(m.a)],
                  m.with_wall() ? 0 : deflections_[static_cast<std::size_t>(m.b)]},
-                tiles_.tile_of(candidates_->grid(), flights.flight(m.a).position));
+                tile);
 }
 
 /// Foresees what a body can hit after it was deflected at clock `from`.
 template <class Real>
-void ImpulseSolver<Real>::foresee_all_of(std::int32_t row, double from, const Candidates<Real>& candidates) {
+void ImpulseSolver<Real>::foresee_all_of(std::int32_t row, double from) {
     if (flights.walls) foresee_walls(row, from);
     const Vec2 end = position_at(flights.flight(row), flights.end.s, flights.end.q);
-    overshoot_ = std::max(overshoot_, candidates.overshoot_of(row, flights.radius(row), end));
-    foresee_near(row, from, candidates);
+    overshoot_ = std::max(overshoot_, candidates_->overshoot_of(row, flights.radius(row), end));
+    foresee_near(row, from);
 }
 
 template <class Real>
@@ -91,7 +119,7 @@ void ImpulseSolver<Real>::foresee_walls(std::int32_t row, double from) {
 
 /// Foresees what other bodies a body can hit from clock `from` on.
 template <class Real>
-void ImpulseSolver<Real>::foresee_near(std::int32_t row, double from, const Candidates<Real>& candidates) {
+void ImpulseSolver<Real>::foresee_near(std::int32_t row, double from) {
     const Flight f = flights.flight(row);
     const Vec2 now = position_at(f, from, flight_q(from, flights.drag()));
     const Vec2 way = position_at(f, flights.end.s, flights.end.q) - now;
@@ -117,10 +145,10 @@ void ImpulseSolver<Real>::foresee_near(std::int32_t row, double from, const Cand
                             nullptr,
                             0};
     std::size_t found = 0;
-    for (std::size_t level = 0; level < candidates.grid().level_count(); ++level) {
+    for (std::size_t level = 0; level < candidates_->grid().level_count(); ++level) {
         const auto find_in_level = [&] {
             k.found = near_.data() + found, k.capacity = near_.size() - found;
-            return kernel(candidates.grid().level(level), k);
+            return kernel(candidates_->grid().level(level), k);
         };
         std::size_t more = find_in_level();
         while (more == kNoRoom) {

@@ -43,58 +43,96 @@ ImpulseSolver<Real>::ImpulseSolver() {
 }
 
 template <class Real>
-void ImpulseSolver<Real>::settle_contacts(std::span<const Meeting> meetings, const Handles& handles,
-                                          const Candidates<Real>& candidates, double slack,
-                                          const KernelTable<Real>& kernels) {
-    slack_ = slack, kernels_ = &kernels;
-    const double dt = flights.end.t;
+void ImpulseSolver<Real>::begin_substep(const Candidates<Real>& candidates, double slack,
+                                        const KernelTable<Real>& kernels) {
+    candidates_ = &candidates, slack_ = slack, kernels_ = &kernels;
     const double gravity = std::sqrt(length_squared(flights.common_acceleration));
     flights.rest_speed = kRestFraction * gravity * flights.end.s;
     deflections_.resize(std::max(deflections_.size(), flights.bodies->count));
     budget_ = kMostImpacts + kMostImpactsPerBody * flights.bodies->count;
-    overlaps_.clear(), held_.clear();
     tiles_ = Tiles(candidates.grid(), flights.bodies->count);
-    candidates_ = &candidates;
-    queue_.start(flights.end.s, meetings.size(), tiles_.count());
-    at_rest_.clear();
+}
 
-    if (gravity > 0) collect_persisting(handles);
-    const auto prefetch_ahead = [&](std::size_t i) {
-        if (i + kMeetingsAhead < meetings.size()) prefetch_meeting(meetings[i + kMeetingsAhead]);
-    };
-    for (std::size_t i = 0; i < meetings.size(); ++i) {
-        prefetch_ahead(i);
-        sort_out(meetings[i]);
-    }
-    if (!overlaps_.empty())
-        counters.overlaps_corrected += separate_overlaps(flights, overlaps_, dt, separation_targets_);
-    drop_duplicates_at_rest();
+template <class Real>
+void ImpulseSolver<Real>::settle_contacts(std::span<const FoundMeeting> found, const Handles& handles) {
+    overlaps_.clear(), held_.clear(), at_rest_.clear();
+    queue_.start(flights.end.s, found.size(), tiles_.count());
+    overshoot_ = candidates_->overshoot();
+    if (flights.rest_speed > 0)
+        settle_with_rest(found, handles);
+    else
+        take_examined(found);
     counters.resting_contacts = static_cast<std::int64_t>(at_rest_.size());
+    for (const std::int32_t row : candidates_->strays()) foresee_near(row, 0);
+}
+
+/// Where nothing can rest, meetings were examined when their motion was in the cache.
+template <class Real>
+void ImpulseSolver<Real>::take_examined(std::span<const FoundMeeting> found) {
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        if (i + kMeetingsAhead < found.size()) {
+            const Meeting soon = found[i + kMeetingsAhead].meeting;
+            prefetch(&deflections_[static_cast<std::size_t>(soon.a)]);
+            if (!soon.with_wall()) prefetch(&deflections_[static_cast<std::size_t>(soon.b)]);
+        }
+        const FoundMeeting& each = found[i];
+        if (each.overlaps) overlaps_.push_back(each.meeting);
+        if (each.impact != kNever) push(each.meeting, each.impact, each.tile);
+    }
+    if (overlaps_.empty()) return;
+    separate();
+    foresee_pushed();
+}
+
+/// What was foreseen for bodies that were pushed apart since is void.
+template <class Real>
+void ImpulseSolver<Real>::foresee_pushed() {
+    moved_.clear();
+    for (const Meeting m : overlaps_) {
+        moved_.push_back(m.a);
+        if (!m.with_wall()) moved_.push_back(m.b);
+    }
+    std::sort(moved_.begin(), moved_.end());
+    moved_.erase(std::unique(moved_.begin(), moved_.end()), moved_.end());
+    for (const std::int32_t row : moved_) ++deflections_[static_cast<std::size_t>(row)];
+    for (const std::int32_t row : moved_) foresee_all_of(row, 0);
+}
+
+/// Overlaps are pushed apart and contacts at rest held before anything is foreseen.
+template <class Real>
+void ImpulseSolver<Real>::settle_with_rest(std::span<const FoundMeeting> found, const Handles& handles) {
+    collect_persisting(handles);
+    const auto prefetch_ahead = [&](std::size_t i) {
+        if (i + kMeetingsAhead < found.size()) prefetch_meeting(found[i + kMeetingsAhead].meeting);
+    };
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        prefetch_ahead(i);
+        sort_out(found[i].meeting);
+    }
+    if (!overlaps_.empty()) separate();
+    drop_duplicates_at_rest();
     if (!at_rest_.empty()) {
         resting_.hold(flights, at_rest_, held_);
         for (const PressedMeeting& p : at_rest_) keep_resting(p.meeting, p.force);
     }
-    for (std::size_t i = 0; i < meetings.size(); ++i) {
+    for (std::size_t i = 0; i < found.size(); ++i) {
         prefetch_ahead(i);
-        foresee(meetings[i], 0);
+        foresee(found[i].meeting, 0);
     }
-    overshoot_ = candidates.overshoot();
-    for (const std::int32_t row : candidates.strays()) foresee_near(row, 0, candidates);
+}
+
+template <class Real>
+void ImpulseSolver<Real>::separate() {
+    counters.overlaps_corrected += separate_overlaps(flights, overlaps_, flights.end.t, separation_targets_);
 }
 
 /// Lists a meeting that overlaps or rests at the start of the substep.
 template <class Real>
 void ImpulseSolver<Real>::sort_out(Meeting m) {
     const double radius = flights.smaller_radius(m);
-    if (!m.with_wall() && !(flights.rest_speed > 0)) {  // the usual case needs no root
-        const Vec2 d = flights.flight(m.b).position - flights.flight(m.a).position;
-        const double overlapping = flights.reach(m) - kSlopFraction * radius;
-        if (length_squared(d) < overlapping * overlapping) overlaps_.push_back(m);
-        return;
-    }
     const Encounter e = flights.encounter(m, 0);
     if (e.separation < -kSlopFraction * radius) overlaps_.push_back(m);
-    const bool is_slow = std::fabs(e.normal_velocity) <= flights.rest_speed && flights.rest_speed > 0;
+    const bool is_slow = std::fabs(e.normal_velocity) <= flights.rest_speed;
     if (is_slow && e.separation <= std::fmin(kTouchFraction * radius, rest_height(m)))
         at_rest_.push_back({m, 0});
 }

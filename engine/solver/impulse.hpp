@@ -7,6 +7,7 @@
 #include "broadphase/candidates.hpp"
 #include "solver/flights.hpp"
 #include "solver/impact_queue.hpp"
+#include "solver/impact_time.hpp"
 #include "solver/resting_contacts.hpp"
 #include "solver/simultaneous_impacts.hpp"
 #include "solver/tiles.hpp"
@@ -22,6 +23,15 @@ struct ImpulseCounters {
     std::int64_t resting_contacts = 0;
     std::int64_t overlaps_corrected = 0;
     std::int64_t unresolved_impacts = 0;
+};
+
+/// A meeting that the kernels found, as it looks at the start of the substep. If contacts can rest, only the
+/// meeting itself is filled in.
+struct FoundMeeting {
+    Meeting meeting;
+    std::uint32_t tile = 0;  ///< of the impact queue, where it happens
+    bool overlaps = false;   ///< by more than the slop
+    double impact = kNever;  ///< s, clock of the impact if nothing deflects one of the bodies before
 };
 
 /// Solver `impulse`: every impact of a substep at its own time, in the order of time.
@@ -42,13 +52,19 @@ class ImpulseSolver {
     Flights<Real> flights;
     ImpulseCounters counters;
 
+    /// To be called when candidates and flights of a substep are there, before the rest.
+    /// @param slack  m, see FindImpacts::slack
+    void begin_substep(const Candidates<Real>& candidates, double slack, const KernelTable<Real>& kernels);
+
+    /// Looks at a meeting that the kernels found. Reads only, so that chunks can ask on several threads.
+    FoundMeeting examine(Meeting meeting) const;
+
     /// Sorts the meetings the kernels found into overlaps, contacts at rest and possible impacts, deals with
     /// the first two and foresees the third. Every meeting is listed once.
-    void settle_contacts(std::span<const Meeting> meetings, const Handles& handles,
-                         const Candidates<Real>& candidates, double slack, const KernelTable<Real>& kernels);
+    void settle_contacts(std::span<const FoundMeeting> found, const Handles& handles);
 
     /// Carries out every impact until the end of the substep.
-    void resolve_impacts(const Candidates<Real>& candidates);
+    void resolve_impacts();
 
     /// Rows held by contacts at rest this substep, each once: their flight is not the common one.
     const std::vector<std::int32_t>& held_rows() const { return held_; }
@@ -62,17 +78,23 @@ class ImpulseSolver {
     void collect_persisting(const Handles& handles);
     void drop_duplicates_at_rest();
     void keep_resting(Meeting m, double force);
+    void take_examined(std::span<const FoundMeeting> found);
+    void foresee_pushed();
+    void settle_with_rest(std::span<const FoundMeeting> found, const Handles& handles);
+    void separate();
     void sort_out(Meeting m);
+    double impact_time(Meeting m, double from) const;
     void foresee(Meeting meeting, double from);
     double time_at_wall(std::int32_t row, const Flight& f, std::int32_t side, double from) const;
     double time_of_pair(Meeting m, const Flight& fa, const Flight& fb, double from) const;
     void queue(Meeting m, double from, double s);
+    void push(Meeting m, double s, std::size_t tile);
     void prefetch_meeting(Meeting m) const;
     void prefetch_margins(Meeting m) const;
     void prefetch_tile(std::size_t tile) const;
     void foresee_walls(std::int32_t row, double from);
-    void foresee_near(std::int32_t row, double from, const Candidates<Real>& candidates);
-    void foresee_all_of(std::int32_t row, double from, const Candidates<Real>& candidates);
+    void foresee_near(std::int32_t row, double from);
+    void foresee_all_of(std::int32_t row, double from);
     void take_simultaneous(const Impact& first);
     void carry_out(const Impact& impact);
     void carry_out_together();

@@ -137,7 +137,7 @@ void ImpulseSolver<Real>::carry_out_together() {
 }
 
 template <class Real>
-void ImpulseSolver<Real>::resolve_impacts(const Candidates<Real>& candidates) {
+void ImpulseSolver<Real>::resolve_impacts() {
     const auto on_tile = [&](std::size_t tile) { prefetch_tile(tile); };
     while (const Impact* next = queue_.next(on_tile)) {
         const Impact first = *next;
@@ -154,7 +154,7 @@ void ImpulseSolver<Real>::resolve_impacts(const Candidates<Real>& candidates) {
             carry_out(first);
         else
             carry_out_together();
-        for (const std::int32_t row : moved_) foresee_all_of(row, first.s, candidates);
+        for (const std::int32_t row : moved_) foresee_all_of(row, first.s);
     }
 }
 

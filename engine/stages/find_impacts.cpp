@@ -39,9 +39,45 @@ void list_wall_meetings(Simulation<Real>& sim, double near) {
                 std::fabs(dot(Flights<Real>::wall_normal(side), f.acceleration)) * flights.end.q;
             const double nearest =
                 std::fmin(flights.wall_clearance(side, f.position), flights.wall_clearance(side, end));
-            if (nearest - fall - near < flights.radius(row)) sim.meetings.push_back({row, side});
+            if (nearest - fall - near < flights.radius(row))
+                sim.meetings.push_back(sim.solver.examine({row, side}));
         }
     });
+}
+
+/// Of pairs [first, last) those that may touch, examined while what the kernel has read is in the cache.
+template <class Real>
+void append_meetings(const Simulation<Real>& sim, const FindImpacts<Real>& all, std::size_t first,
+                     std::size_t last, std::vector<FoundMeeting>& meetings) {
+    std::int32_t found[kRowsPerChunk + kRowPadding];
+    FindImpacts<Real> k = all;
+    k.found = found;
+    const auto kernel = all.radius ? sim.kernels->find_impacts : sim.kernels->find_impacts_uniform_radius;
+    const std::size_t count = kernel(k, first, padded(last));
+    for (std::size_t n = 0; n < count; ++n) {
+        const auto p = static_cast<std::size_t>(found[n]);
+        if (p >= last) return;  // padding
+        const std::int32_t a = all.a[p], b = all.b[p];
+        meetings.push_back(sim.solver.examine(a < b ? Meeting{a, b} : Meeting{b, a}));
+    }
+}
+
+template <class Real>
+void list_pair_meetings(Simulation<Real>& sim, const FindImpacts<Real>& all) {
+    const std::size_t pairs = sim.candidates.pair_count();
+    const bool is_parallel = sim.executor.is_parallel(pairs);
+    const std::size_t chunks = (pairs + kRowsPerChunk - 1) / kRowsPerChunk;
+    if (is_parallel && sim.chunk_meetings.size() < chunks) sim.chunk_meetings.resize(chunks);
+    sim.executor.for_each_chunk(
+        pairs, kRowsPerChunk, [&](std::size_t chunk, std::size_t first, std::size_t last) {
+            std::vector<FoundMeeting>& meetings = is_parallel ? sim.chunk_meetings[chunk] : sim.meetings;
+            if (is_parallel) meetings.clear();
+            append_meetings(sim, all, first, last, meetings);
+        });
+    for (std::size_t chunk = 0; is_parallel && chunk < chunks; ++chunk) {
+        const std::vector<FoundMeeting>& found = sim.chunk_meetings[chunk];
+        sim.meetings.insert(sim.meetings.end(), found.begin(), found.end());
+    }
 }
 
 }  // namespace
@@ -49,30 +85,17 @@ void list_wall_meetings(Simulation<Real>& sim, double near) {
 template <class Real>
 void find_impacts(Simulation<Real>& sim) {
     const Bodies<Real>& bodies = sim.world.bodies;
-    const double near = near_of(sim);
+    const double near = near_of(sim), slack = slack_of(sim);
+    sim.solver.begin_substep(sim.candidates, slack, *sim.kernels);
     FindImpacts<Real> all{};
     all.motion = sim.solver.flights.motion.data();
     all.a = sim.candidates.pair_a(), all.b = sim.candidates.pair_b();
     all.radius = bodies.radius.data(), all.uniform_radius = bodies.radius.uniform_value();
     all.s = static_cast<Real>(sim.solver.flights.end.s);
-    sim.slack = slack_of(sim);
-    all.slack = static_cast<Real>(sim.slack);
+    all.slack = static_cast<Real>(slack);
     all.near = static_cast<Real>(near);
-    const auto kernel = all.radius ? sim.kernels->find_impacts : sim.kernels->find_impacts_uniform_radius;
-    const std::size_t pairs = sim.candidates.pair_count();
-    sim.found_pairs.prepare(pairs, kRowsPerChunk);
-    sim.executor.for_each_chunk(pairs, kRowsPerChunk,
-                                [&](std::size_t chunk, std::size_t first, std::size_t last) {
-                                    FindImpacts<Real> k = all;
-                                    k.found = sim.found_pairs.part(chunk);
-                                    sim.found_pairs.set_count(chunk, kernel(k, first, padded(last)));
-                                });
     sim.meetings.clear();
-    sim.found_pairs.for_each_below(pairs, [&](std::int32_t pair) {
-        const auto p = static_cast<std::size_t>(pair);
-        const std::int32_t a = all.a[p], b = all.b[p];
-        sim.meetings.push_back(a < b ? Meeting{a, b} : Meeting{b, a});
-    });
+    list_pair_meetings(sim, all);
     if (sim.world.walls) list_wall_meetings(sim, std::fmax(near, 0));
 }
 

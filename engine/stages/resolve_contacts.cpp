@@ -4,12 +4,12 @@ namespace carom {
 
 template <class Real>
 void settle_contacts(Simulation<Real>& sim) {
-    sim.solver.settle_contacts(sim.meetings, sim.world.handles, sim.candidates, sim.slack, *sim.kernels);
+    sim.solver.settle_contacts(sim.meetings, sim.world.handles);
 }
 
 template <class Real>
 void resolve_impacts(Simulation<Real>& sim) {
-    sim.solver.resolve_impacts(sim.candidates);
+    sim.solver.resolve_impacts();
 }
 
 template void settle_contacts(Simulation<float>&);

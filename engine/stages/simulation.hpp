@@ -56,12 +56,12 @@ struct Simulation {
     // Of the present substep.
     double h = 0;                       ///< s
     double fastest = 0;                 ///< m/s, at the start, of all bodies
-    double slack = 0;                   ///< m, how far accelerations bring paths nearer than straight lines
     std::vector<double> chunk_fastest;  ///< m²/s², by chunk
     std::vector<std::int32_t> displaced;
-    ChunkedList wall_rows, displaced_rows, lost_rows, found_pairs;
-    std::vector<Meeting> meetings;      ///< that the solver has to look at
-    std::vector<Real> immovable_spins;  ///< rad/s, kept over the turn
+    ChunkedList wall_rows, displaced_rows, lost_rows;
+    std::vector<FoundMeeting> meetings;                     ///< that the solver has to look at
+    std::vector<std::vector<FoundMeeting>> chunk_meetings;  ///< where chunks run on several threads
+    std::vector<Real> immovable_spins;                      ///< rad/s, kept over the turn
 
     std::int64_t step_count = 0;
 
