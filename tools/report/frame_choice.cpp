@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace carom::report {
 namespace {
@@ -23,6 +24,17 @@ std::vector<std::size_t> evenly_chosen(std::size_t size, std::size_t count) {
     count = std::clamp<std::size_t>(count, 1, size);
     for (std::size_t i = 0; i + 1 < count; ++i) chosen.push_back(i * (size - 1) / (count - 1));
     chosen.push_back(size - 1);
+    return chosen;
+}
+
+std::vector<std::size_t> randomly_chosen(std::size_t size, std::size_t count) {
+    std::vector<std::size_t> chosen;
+    count = std::min(count, size);
+    std::minstd_rand random(1);  // its numbers are the same everywhere
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t begin = i * size / count, end = (i + 1) * size / count;
+        chosen.push_back(begin + random() % (end - begin));
+    }
     return chosen;
 }
 
@@ -48,7 +60,7 @@ FrameChoice choose_frames(std::size_t frame_count, std::size_t body_count, bool 
     }
 
     choice.frames = evenly_chosen(frame_count, frames);
-    choice.bodies = evenly_chosen(body_count, bodies);
+    choice.bodies = randomly_chosen(body_count, bodies);
     if (!choice.velocity)
         choice.words.push_back(
             "Velocities are left out to keep this page small, so there are no arrows and no flashes.");
@@ -58,7 +70,7 @@ FrameChoice choose_frames(std::size_t frame_count, std::size_t body_count, bool 
     if (choice.bodies.size() < body_count)
         choice.words.push_back(
             "The player shows a sample of " + of(choice.bodies.size(), body_count) +
-            " bodies, evenly chosen, so there are gaps that the run did not have; trajectory.h5 has all.");
+            " bodies, chosen at random, so there are gaps that the run did not have; trajectory.h5 has all.");
     return choice;
 }
 

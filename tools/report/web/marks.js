@@ -4,7 +4,7 @@ carom.marks = (() => {
   const arrowSeconds = 0.15; // an arrow is the way a body goes in that time ...
   const longestArrow = 0.12; // ... but the fastest is so much of the picture's width
   const smallestMark = 4; // pixels of radius
-  const mostFlashes = 1500;
+  const mostFlashes = 1500, smallestFlash = 1.5; // pixels
   const flashFrames = 5; // a flash fades over so many frames, where bodies are few
   const fewBodies = 3000;
   const weakest = 0.05; // of the scene's speed: below, an impact is not seen
@@ -97,7 +97,8 @@ carom.marks = (() => {
       if (strength < weakest || ++drawn > mostFlashes) return;
       pen.globalAlpha = fade * Math.min(1, 0.25 + strength);
       pen.beginPath();
-      pen.arc(px - (r * jumpX) / jump, py + (r * jumpY) / jump, size * (0.5 + 1.5 * strength), 0, 2 * Math.PI);
+      const width = Math.max(Math.min(size * (0.5 + 1.5 * strength), r), smallestFlash);
+      pen.arc(px - (r * jumpX) / jump, py + (r * jumpY) / jump, width, 0, 2 * Math.PI);
       pen.fill();
     });
   };
