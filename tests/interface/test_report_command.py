@@ -31,6 +31,7 @@ class ReportCommandTest(ProgramTest):
         done = self.carom("report", "out", "--out", "missing/page.html", expect=3)
         self.assertIn("missing/page.html", done.stderr)
         self.assertIn("No such file", done.stderr)
+        self.assertNotIn("removed", done.stderr)
 
 
 if __name__ == "__main__":

@@ -113,6 +113,7 @@ class SeedPageTest(ProgramTest):
         check("momentum", "momentum x", "px")
         check("momentum", "momentum y", "py")
         check("angular-momentum", "angular momentum", "L")
+        check("wall-impulse", "impulse", "wall_impulse")
         check("unexplained", "unexplained", "unexplained")
         for cause in ("gravity", "drag", "restitution"):  # gains and losses are areas of their own
             parts = [series["y"] for series in shown["causes"] if series["name"] == cause]
@@ -138,7 +139,7 @@ class SeedPageTest(ProgramTest):
         self.run_js('const s = document.getElementById("slider"); s.value = 250; s.dispatchEvent(new Event("input"))')
         self.assertEqual(self.frame(), 250)
         self.assertIn("4.000 s", self.run_js('return document.getElementById("clock").textContent'))
-        self.assertEqual(len(self.cursors()), 7)
+        self.assertEqual(len(self.cursors()), 8)
         for time in self.cursors():
             self.assertAlmostEqual(time, 4, delta=0.02)
         self.run_js("""

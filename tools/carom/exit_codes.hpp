@@ -25,4 +25,11 @@ class WriteError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// A page, picture or video could not be written; the results it was to be made of are there. Ends the
+/// program with `kInternalError`.
+class OutputError : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
 }  // namespace carom::tool

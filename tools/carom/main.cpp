@@ -60,6 +60,8 @@ int main(int argc, char** argv) {
     } catch (const WriteError& error) {
         return complain(joined(error.what(), ". The results are incomplete and were removed.").c_str(),
                         kInternalError);
+    } catch (const OutputError& error) {
+        return complain(error.what(), kInternalError);
     } catch (const std::bad_alloc&) {
         return complain("out of memory", kInternalError);
     } catch (const std::exception& error) {

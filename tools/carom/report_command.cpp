@@ -36,6 +36,8 @@ int report(const Report& asked) {
         write_page(out, report::page_of(asked.files, asked.page_bytes));
     } catch (const report::ResultError& error) {
         throw UsageError(error.what());
+    } catch (const WriteError& error) {
+        throw OutputError(error.what());
     }
     std::printf("Report in %s\n", out.c_str());
     return kDone;

@@ -7,6 +7,7 @@
 #include "format.hpp"
 #include "interrupt.hpp"
 #include "option_values.hpp"
+#include "pictures.hpp"
 #include "run_scene.hpp"
 #include "scene_reader.hpp"
 #include "summary_table.hpp"
@@ -19,6 +20,7 @@ struct Run {
     std::optional<std::string> out;
     RunSettings settings;
     RunChoices choices;
+    PictureChoices pictures;
 };
 
 void print_results(const Run& asked, const Scene& scene, const Simulation& simulation,
@@ -34,6 +36,7 @@ void print_results(const Run& asked, const Scene& scene, const Simulation& simul
 }
 
 int run(Run& asked) {
+    check_pictures(asked.pictures, asked.choices.no_trajectory);
     Scene scene = read_scene(asked.scene);
     apply_settings(asked.settings, scene);
     if (scene.name.empty()) scene.name = std::filesystem::path(asked.scene).stem().string();
@@ -44,6 +47,7 @@ int run(Run& asked) {
     ResultFolder folder(*asked.out);
     catch_interrupts();
     const RunOutcome outcome = run_scene(scene, *simulation, folder, asked.choices);
+    write_pictures(asked.pictures, folder.path() / "trajectory.h5");
     if (!asked.choices.quiet) print_results(asked, scene, *simulation, outcome);
     for (const std::string& message : outcome.messages) std::fprintf(stderr, "carom: %s\n", message.c_str());
     return outcome.quarantined.empty() ? kDone : kDoubtful;
@@ -58,6 +62,7 @@ void add_run_command(CLI::App& program, Action& action) {
     command->add_option("--out", asked->out, "Folder for the results (default: out/<scene name>)")
         ->type_name("DIR");
     add_settings_options(*command, asked->settings);
+    add_picture_options(*command, asked->pictures);
     command->add_flag("--no-report", asked->choices.no_report, "Do not write report.html");
     add_page_size_option(*command, asked->choices.page_bytes);
     command->add_flag("--no-trajectory", asked->choices.no_trajectory, "Do not write trajectory.h5");

@@ -76,6 +76,15 @@ void add_momentum(const NumberTable& ledger, Page& page) {
     page.chart(std::move(angular));
 }
 
+void add_wall_impulse(const NumberTable& ledger, Page& page) {
+    const std::vector<double>& impulse = ledger.at("wall_impulse");
+    if (impulse.empty() || impulse.back() == 0) return;
+    Chart chart = time_chart("wall-impulse", "Impulse on the walls", "sum of sizes since the start (N s)");
+    chart.series = {over_time(ledger.at("time"), impulse, "impulse", 4)};
+    chart.note = "Its slope, divided by the walls' length, is the pressure.";
+    page.chart(std::move(chart));
+}
+
 /// A cause that gives at times and takes at others is two areas of one colour, one on each side of zero.
 void add_areas(const std::vector<double>& time, const std::vector<double>& work, const Cause& cause,
                Chart& chart) {
@@ -121,6 +130,7 @@ std::vector<double> numbers(const Json& values) {
 void add_ledger_charts(const NumberTable& ledger, Page& page) {
     add_energy(ledger, page);
     add_momentum(ledger, page);
+    add_wall_impulse(ledger, page);
     add_causes(ledger, page);
 }
 

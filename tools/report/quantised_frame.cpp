@@ -14,8 +14,9 @@ constexpr double kMiddleBegin = 0.02, kMiddleEnd = 0.98;  // the part of all bod
 constexpr double kLargestSigned = 32767;
 constexpr double kTurn = 2 * std::numbers::pi;  // rad
 
-/// The range that one component of all positions is drawn in.
-Scale range_of(std::span<const float> position, std::size_t component) {
+}  // namespace
+
+Scale drawn_range(std::span<const float> position, std::size_t component) {
     std::vector<float> values;
     for (std::size_t i = component; i < position.size(); i += 2)
         if (std::isfinite(position[i])) values.push_back(position[i]);
@@ -36,6 +37,8 @@ Scale range_of(std::span<const float> position, std::size_t component) {
     return {.base = low, .step = (high - low) / kSteps};
 }
 
+namespace {
+
 std::uint16_t place(double value, const Scale& scale) {
     const double bits = scale.step > 0 ? std::round((value - scale.base) / scale.step) : 0;
     if (!(std::isfinite(value) && bits >= 0 && bits <= kSteps)) return kNowhere;
@@ -44,8 +47,8 @@ std::uint16_t place(double value, const Scale& scale) {
 
 void add_positions(std::span<const float> position, QuantisedFrame& frame) {
     const std::size_t bodies = position.size() / 2;
-    frame.x = range_of(position, 0);
-    frame.y = range_of(position, 1);
+    frame.x = drawn_range(position, 0);
+    frame.y = drawn_range(position, 1);
     frame.bits.resize(2 * bodies);
     for (std::size_t i = 0; i < bodies; ++i) {
         std::uint16_t x = place(position[2 * i], frame.x), y = place(position[2 * i + 1], frame.y);

@@ -27,6 +27,10 @@ struct QuantisedFrame {
     std::vector<std::uint16_t> bits;
 };
 
+/// The range in which one component (0: x, 1: y) of all positions [bodies, 2] is drawn, without those too far
+/// off.
+Scale drawn_range(std::span<const float> position, std::size_t component);
+
 /// Positions to 1/65534 of the width of all, which no screen shows. Single bodies farther off than 16 times
 /// the others' extent would make that coarse; they are lost instead.
 /// @param position, velocity  [bodies, 2]; velocity and angle [bodies] may be empty.
