@@ -16,6 +16,8 @@ using Action = std::function<int()>;
 void add_run_command(CLI::App& program, Action& action);
 void add_explain_command(CLI::App& program, Action& action);
 void add_check_command(CLI::App& program, Action& action);
+void add_profile_command(CLI::App& program, Action& action);
+void add_scaling_command(CLI::App& program, Action& action);
 void add_report_command(CLI::App& program, Action& action);
 
 /// Version, instruction sets, threads, xsimd: the answer to --version.

@@ -31,6 +31,8 @@ int run_program(int argc, char** argv) {
     add_run_command(program, action);
     add_explain_command(program, action);
     add_check_command(program, action);
+    add_profile_command(program, action);
+    add_scaling_command(program, action);
     add_report_command(program, action);
     try {
         program.parse(argc, argv);

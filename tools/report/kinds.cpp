@@ -1,9 +1,11 @@
 #include "report/kinds.hpp"
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace carom::report {
 namespace {
@@ -12,11 +14,18 @@ namespace fs = std::filesystem;
 
 struct Kind {
     std::string_view name;
-    void (*draw)(const Result&, Page&);
+    void (*draw)(const Result&, Page&);                                  ///< one after the other, or null:
+    void (*draw_together)(const std::vector<Result>&, Page&) = nullptr;  ///< side by side
 };
 
 constexpr std::array kKinds{
     Kind{"run", &draw_run},
+    Kind{"scaling", nullptr, &draw_scaling},
+    Kind{"kernels", nullptr, &draw_kernels},
+    Kind{"stages", nullptr, &draw_stages},
+    Kind{"scenes", nullptr, &draw_scenes},
+    Kind{"peers", nullptr, &draw_peers},
+    Kind{"profile", nullptr, &draw_profile},
 };
 
 std::string known_kinds() {
@@ -48,27 +57,44 @@ Result read_result(const fs::path& path, std::size_t page_bytes) {
     return result;
 }
 
-void draw(const Result& result, Page& page) {
+const Kind& kind_of(const Result& result) {
     const auto kind = result.json.is_object() ? result.json.find("kind") : result.json.end();
     if (kind == result.json.end() || !kind->is_string())
         refuse(result.file, "has no \"kind\" at its top level; expected one of " + known_kinds());
-    for (const Kind& known : kKinds) {
-        if (known.name != kind->get_ref<const std::string&>()) continue;
-        try {
-            return known.draw(result, page);
-        } catch (const Json::exception& error) {
-            refuse(result.file, std::string("is not as its kind should be: ") + error.what());
-        }
-    }
+    for (const Kind& known : kKinds)
+        if (known.name == kind->get_ref<const std::string&>()) return known;
     refuse(result.file, "has the kind " + kind->dump(-1, ' ', true, Json::error_handler_t::replace) +
                             ", which cannot be drawn; expected one of " + known_kinds());
+}
+
+/// Draws what is one kind.
+void draw(const Kind& kind, const std::vector<Result>& results, Page& page) {
+    const fs::path* file = &results.front().file;
+    try {
+        if (kind.draw_together) return kind.draw_together(results, page);
+        for (const Result& result : results) {
+            file = &result.file;
+            kind.draw(result, page);
+        }
+    } catch (const Json::exception& error) {
+        refuse(*file, std::string("is not as its kind should be: ") + error.what());
+    }
 }
 
 }  // namespace
 
 Page page_of(const std::vector<fs::path>& files, std::size_t page_bytes) {
     Page page("Carom");
-    for (const fs::path& file : files) draw(read_result(file, page_bytes), page);
+    std::vector<std::pair<const Kind*, std::vector<Result>>> by_kind;  // in the order they were named
+    for (const fs::path& file : files) {
+        Result result = read_result(file, page_bytes);
+        const Kind* const kind = &kind_of(result);
+        const auto is_same = [kind](const auto& each) { return each.first == kind; };
+        auto place = std::find_if(by_kind.begin(), by_kind.end(), is_same);
+        if (place == by_kind.end()) place = by_kind.insert(by_kind.end(), {kind, {}});
+        place->second.push_back(std::move(result));
+    }
+    for (const auto& [kind, results] : by_kind) draw(*kind, results, page);
     return page;
 }
 

@@ -25,8 +25,16 @@ struct Result {
 /// @throws ResultError
 void draw_run(const Result& result, Page& page);
 
-/// The page of some result files, one after the other, each drawn as its kind is. A folder stands for the
-/// summary.json in it. No part that can be thinned takes more than `page_bytes`.
+/// Results of measurements of one kind, at least one: several are compared side by side, in one chart.
+void draw_scaling(const std::vector<Result>& results, Page& page);
+void draw_kernels(const std::vector<Result>& results, Page& page);
+void draw_stages(const std::vector<Result>& results, Page& page);
+void draw_scenes(const std::vector<Result>& results, Page& page);
+void draw_peers(const std::vector<Result>& results, Page& page);
+void draw_profile(const std::vector<Result>& results, Page& page);
+
+/// The page of some result files, in the order of their kinds, each drawn as its kind is. A folder stands for
+/// the summary.json in it. No part that can be thinned takes more than `page_bytes`.
 /// @throws ResultError, also while the page is written
 Page page_of(const std::vector<std::filesystem::path>& files, std::size_t page_bytes = kDefaultPageBytes);
 

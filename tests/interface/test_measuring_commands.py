@@ -1,0 +1,92 @@
+"""carom profile and carom scaling: what they print and write, and that carom report draws it."""
+import json
+import unittest
+
+from program import ProgramTest, gas
+
+
+class ProfileTest(ProgramTest):
+    def profile(self, scene, *arguments):
+        path = self.write_scene(scene)
+        self.carom("profile", path, "--threads", "1", "--out", "profile.json", *arguments)
+        return json.loads((self.folder / "profile.json").read_text())
+
+    def test_stages_add_up_to_the_step_and_say_what_limits_them(self):
+        profile = self.profile(gas(30, steps=60))
+        self.assertEqual(profile["kind"], "profile")
+        self.assertEqual(profile["bodies"], 900)
+        shares = [stage["share"] for stage in profile["stages"]]
+        self.assertAlmostEqual(sum(shares), 1, places=6)
+        seconds = sum(stage["seconds_per_step"] for stage in profile["stages"])
+        self.assertLess(seconds, 1.05 * profile["seconds_per_step"])
+        for stage in profile["stages"]:
+            self.assertRegex(stage["limit"], "^(memory|arithmetic|branching|too )", stage["name"])
+
+    def test_items_are_what_the_stage_works_through(self):
+        stages = {stage["name"]: stage for stage in self.profile(gas(30, steps=60))["stages"]}
+        self.assertEqual(stages["begin_flight"]["items"], 900)
+        self.assertEqual(stages["end_flight"]["items"], 900)
+        begin = stages["begin_flight"]
+        self.assertAlmostEqual(begin["ns_per_item"], 1e9 * begin["seconds_per_step"] / 900, delta=1e-6 * begin["ns_per_item"])
+
+    def test_scalar_kernels_are_not_compared_with_themselves(self):
+        profile = self.profile(gas(10, steps=20), "--isa", "scalar")
+        self.assertTrue(all("times_scalar" not in stage for stage in profile["stages"]))
+
+    def test_measuring_takes_below_one_per_cent_of_a_step_of_2500_bodies(self):
+        self.assertLess(self.profile(gas(50, steps=100))["measuring_share"], 0.01)
+
+    def test_the_trace_has_every_step_with_its_stages_inside(self):
+        self.profile(gas(10, steps=25), "--trace", "trace.json")
+        events = json.loads((self.folder / "trace.json").read_text())["traceEvents"]
+        steps = [event for event in events if event["name"] == "step"]
+        self.assertEqual(len(steps), 20)  # the first five are not measured
+        stages = [event for event in events if event["ph"] == "X" and event["name"] != "step"]
+        for step in steps:
+            inside = [e for e in stages if step["ts"] - 1e-6 <= e["ts"] and e["ts"] + e["dur"] <= step["ts"] + step["dur"] + 1e-6]
+            self.assertAlmostEqual(sum(e["dur"] for e in inside), step["dur"], places=3)
+        self.assertEqual(len([event for event in stages if event["name"] == "end_flight"]), 20)
+
+    def test_the_naive_loop_is_one_stage(self):
+        profile = self.profile(gas(3, solver="pairwise", steps=20))
+        self.assertEqual([stage["name"] for stage in profile["stages"]], ["pairwise step"])
+
+    def test_a_scene_without_steps_is_refused(self):
+        done = self.carom("profile", self.write_scene(gas(3)), "--steps", "0", expect=2)
+        self.assertIn("takes no steps", done.stderr)
+
+    def test_json_on_standard_output_is_the_result_file(self):
+        path = self.write_scene(gas(5, steps=20))
+        done = self.carom("profile", path, "--json", "--threads", "1", "--out", "profile.json")
+        self.assertEqual(done.stdout, (self.folder / "profile.json").read_text())
+
+    def test_two_profiles_are_drawn_side_by_side(self):
+        self.profile(gas(5, steps=20))
+        self.carom("report", "profile.json", "profile.json", "--out", "page.html")
+        page = (self.folder / "page.html").read_text()
+        self.assertIn("end_flight (A)", page)
+        self.assertIn("end_flight (B)", page)
+
+
+class ScalingTest(ProgramTest):
+    def test_sweep_writes_data_and_a_page(self):
+        done = self.carom("scaling", "--max-bodies", "300", "--rounds", "3", "--out", "sweep")
+        self.assertEqual(self.files_in("sweep"), {"scaling.json", "scaling.html"})
+        scaling = json.loads((self.folder / "sweep/scaling.json").read_text())
+        self.assertEqual(sorted({row["bodies"] for row in scaling["rows"]}), [10, 30, 100, 300])
+        methods = {row["method"] for row in scaling["rows"]}
+        self.assertLessEqual({"naive", "all pairs", "grid scalar"}, methods)
+        naive = [row for row in scaling["rows"] if row["method"] == "naive"]
+        self.assertEqual([row["pairs_per_body"] for row in naive], [(row["bodies"] - 1) / 2 for row in naive])
+        self.assertIn("grid scalar is faster than naive", done.stdout)
+        self.assertIn("Time against the number of bodies", (self.folder / "sweep/scaling.html").read_text())
+
+    def test_wrong_numbers_are_refused_and_nothing_is_written(self):
+        for arguments in (("--max-bodies", "5"), ("--max-bodies", "many"), ("--rounds", "0")):
+            done = self.carom("scaling", *arguments, expect=2)
+            self.assertIn(arguments[0], done.stderr)
+        self.assertEqual(self.everything(), [])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,199 @@
+#include "profiling/profile_run.hpp"
+
+#include <algorithm>
+
+#include "exit_codes.hpp"
+#include "format.hpp"
+#include "interrupt.hpp"
+#include "measure/ceilings.hpp"
+#include "measure/clocks.hpp"
+#include "measure/limits.hpp"
+#include "measure/machine.hpp"
+#include "measure/stage_work.hpp"
+#include "progress_bar.hpp"
+
+namespace carom::tool {
+namespace {
+
+using measure::Json;
+
+// The first steps find the first pairs, sort and allocate: they are not those of a run in its stride.
+constexpr std::int64_t kStepsBefore = 5;
+constexpr std::int64_t kStepsOfATurn = 10;
+constexpr double kSecondsOfACeiling = 0.02;
+
+/// The two simulations after the same steps, and their profiles before and after.
+struct Turns {
+    Profile before, after;                // as asked
+    Profile scalar_before, scalar_after;  // with scalar kernels; empty if that is what was asked for
+    Plan plan;
+    double seconds = 0;  // of the steps, by the clock on the wall
+};
+
+/// @return seconds of the steps alone
+double take_steps(Simulation& simulation, double dt, std::int64_t count, Trace* trace) {
+    if (!trace) {
+        const double start = measure::wall_seconds();
+        for (std::int64_t i = 0; i < count; ++i) simulation.step(dt);
+        return measure::wall_seconds() - start;
+    }
+    double seconds = 0;
+    for (std::int64_t i = 0; i < count; ++i) {
+        const Profile before = simulation.profile();
+        seconds += take_steps(simulation, dt, 1, nullptr);
+        trace->add_step(before, simulation.profile());
+    }
+    return seconds;
+}
+
+Turns take_turns(const Scene& scene, const MachineSettings& machine, Trace* trace) {
+    const auto simulation = make_simulation(scene, machine);
+    Turns turns;
+    turns.plan = simulation->plan();
+    MachineSettings plain = machine;
+    plain.isa = "scalar";
+    const auto scalar = turns.plan.isa == "scalar" ? nullptr : make_simulation(scene, plain);
+
+    const std::int64_t steps = scene.step.count, before = std::min(kStepsBefore, steps - 1);
+    take_steps(*simulation, scene.step.dt, before, nullptr);
+    if (scalar) take_steps(*scalar, scene.step.dt, before, nullptr);
+    turns.before = simulation->profile();
+    if (scalar) turns.scalar_before = scalar->profile();
+    ProgressBar bar(steps, true);
+    for (std::int64_t done = before; done < steps && !is_interrupted();) {
+        const std::int64_t count = std::min(kStepsOfATurn, steps - done);
+        turns.seconds += take_steps(*simulation, scene.step.dt, count, trace);
+        if (scalar) take_steps(*scalar, scene.step.dt, count, nullptr);
+        bar.update(done += count);
+    }
+    turns.after = simulation->profile();
+    if (scalar) turns.scalar_after = scalar->profile();
+    return turns;
+}
+
+std::string kernel_of(const Plan& plan, std::string_view stage) {
+    for (const StageReport& report : plan.stages)
+        if (report.name == stage) return report.kernel;
+    return {};
+}
+
+/// One stage: its time, its work, and what limits it.
+Json stage_json(std::size_t index, const Turns& turns, const measure::ProfiledSteps& steps,
+                double all_seconds, const measure::Ceilings& ceilings, double clock_reading) {
+    const StageTime &before = turns.before.stages[index], &after = turns.after.stages[index];
+    const double seconds = (after.seconds - before.seconds) / steps.steps();
+    const double calls = static_cast<double>(after.calls - before.calls) / steps.steps();
+    Json json{{"name", after.name},
+              {"kernel", kernel_of(turns.plan, after.name)},
+              {"calls_per_step", calls},
+              {"seconds_per_step", seconds},
+              {"share", seconds / all_seconds}};
+    measure::StageFacts facts{
+        .bodies = steps.bodies, .seconds_per_call = seconds / calls, .seconds_of_a_reading = clock_reading};
+    if (const auto work = measure::work_of_stage(after.name, steps); work && work->items > 0) {
+        const measure::CopyBandwidth& level =
+            ceilings.copy_of(static_cast<std::size_t>(work->items * work->work.bytes));
+        const measure::ArithmeticPeak& peak = ceilings.peak_of(turns.plan.isa);
+        const double rate = work->items / seconds;
+        const measure::RoofShare share =
+            measure::roof_share(work->work, rate, level.bytes_per_second,
+                                steps.real_bytes > 4 ? peak.double_per_second : peak.single_per_second);
+        facts.roof_share = share.share;
+        facts.roof_is_memory = share.is_memory;
+        facts.level = level.level;
+        json["item"] = work->item;
+        json["items"] = work->items;
+        json["ns_per_item"] = 1e9 / rate;
+        json["bytes"] = work->items * work->work.bytes;
+        json["bytes_per_second"] = rate * work->work.bytes;
+        json["roof_share"] = share.share;
+        json["roof"] = share.is_memory ? level.level : "arithmetic";
+    }
+    if (!turns.scalar_after.stages.empty() && seconds > 0) {
+        const double scalar =
+            turns.scalar_after.stages[index].seconds - turns.scalar_before.stages[index].seconds;
+        facts.times_scalar = scalar / steps.steps() / seconds;
+        json["times_scalar"] = *facts.times_scalar;
+    }
+    json["limit"] = measure::limit_of(facts);
+    return json;
+}
+
+}  // namespace
+
+Json profile_scene(const Scene& scene, const MachineSettings& machine, Trace* trace) {
+    if (scene.step.count < 1)
+        throw UsageError("profile: the scene takes no steps; ask for some with --steps");
+    const Turns turns = take_turns(scene, machine, trace);
+    const measure::Ceilings ceilings = measure::measure_ceilings(kSecondsOfACeiling);
+    const double clock_reading = measure::seconds_of_a_clock_reading();
+    const measure::ProfiledSteps steps{.before = turns.before,
+                                       .after = turns.after,
+                                       .bodies = static_cast<double>(scene.bodies.size()),
+                                       .real_bytes = turns.plan.precision == "double" ? 8.0 : 4.0};
+    Json json = measure::result_header("profile");
+    json["scene"] = scene.name;
+    json["bodies"] = scene.bodies.size();
+    json["steps"] = turns.after.steps - turns.before.steps;
+    json["solver"] = turns.plan.solver;
+    json["substeps"] = turns.plan.substeps;
+    json["precision"] = turns.plan.precision;
+    json["isa"] = turns.plan.isa;
+    json["threads"] = turns.plan.threads;
+    json["ceilings"] = measure::ceilings_json(ceilings);
+    double all = 0, readings = 0;
+    for (std::size_t i = 0; i < turns.after.stages.size(); ++i) {
+        all += (turns.after.stages[i].seconds - turns.before.stages[i].seconds) / steps.steps();
+        readings +=
+            static_cast<double>(turns.after.stages[i].calls - turns.before.stages[i].calls) / steps.steps();
+    }
+    json["seconds_per_step"] = turns.seconds / steps.steps();
+    json["measuring_share"] = (readings + 1) * clock_reading / all;
+    json["stages"] = Json::array();
+    for (std::size_t i = 0; i < turns.after.stages.size(); ++i)
+        if (turns.after.stages[i].calls > turns.before.stages[i].calls)
+            json["stages"].push_back(stage_json(i, turns, steps, all, ceilings, clock_reading));
+    return json;
+}
+
+std::string profile_text(const Json& profile) {
+    const auto whole = [&](const char* key) {
+        return static_cast<long long>(profile.at(key).get<std::int64_t>());
+    };
+    const auto word = [&](const char* key) { return profile.at(key).get<std::string>(); };
+    std::string text = format(
+        "%s: %lld bodies, %lld steps, %.4g us a step\n  solver %s, %lld substep%s, %s precision, "
+        "%s, %lld thread%s; timing the stages takes %.2f %% of a step\n\n",
+        word("scene").c_str(), whole("bodies"), whole("steps"),
+        1e6 * profile.at("seconds_per_step").get<double>(), word("solver").c_str(), whole("substeps"),
+        whole("substeps") == 1 ? "" : "s", word("precision").c_str(), word("isa").c_str(), whole("threads"),
+        whole("threads") == 1 ? "" : "s", 100 * profile.at("measuring_share").get<double>());
+    text += format("  %-18s %10s %6s %10s %9s %8s %8s %9s  %s\n", "stage", "us a step", "share", "items",
+                   "ns/item", "KB", "roof", "x scalar", "limited by");
+    for (const Json& stage : profile.at("stages")) {
+        const auto number = [&](const char* pattern_free_key, double scale, int significant) {
+            return stage.contains(pattern_free_key)
+                       ? format("%.*g", significant, scale * stage.at(pattern_free_key).get<double>())
+                       : std::string("-");
+        };
+        const std::string roof =
+            stage.contains("roof_share") ? joined(number("roof_share", 100, 2), " %") : "-";
+        text +=
+            format("  %-18s %10s %4.0f %% %10s %9s %8s %8s %9s  %s\n",
+                   stage.at("name").get<std::string>().c_str(), number("seconds_per_step", 1e6, 4).c_str(),
+                   100 * stage.at("share").get<double>(), number("items", 1, 6).c_str(),
+                   number("ns_per_item", 1, 3).c_str(), number("bytes", 1e-3, 4).c_str(), roof.c_str(),
+                   number("times_scalar", 1, 3).c_str(), stage.at("limit").get<std::string>().c_str());
+    }
+    std::string items;
+    for (const Json& stage : profile.at("stages"))
+        if (stage.contains("item"))
+            items += joined(items.empty() ? "\n  items: " : ", ", stage.at("name").get<std::string>(), ": ",
+                            stage.at("item").get<std::string>());
+    return joined(
+        text, items,
+        "\n  roof: share of this core's bandwidth or arithmetic, whichever is nearer; x scalar: faster "
+        "than with scalar kernels\n");
+}
+
+}  // namespace carom::tool

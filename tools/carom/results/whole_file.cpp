@@ -1,0 +1,30 @@
+#include "results/whole_file.hpp"
+
+#include "exit_codes.hpp"
+#include "format.hpp"
+#include "results/text_file.hpp"
+
+namespace carom::tool {
+
+namespace fs = std::filesystem;
+
+void write_whole_file(const fs::path& path, std::string_view text) {
+    const fs::path temporary = joined(path.string(), ".part");
+    std::error_code error;
+    try {
+        TextFile file(temporary);
+        file.write(text);
+        file.close();
+        fs::rename(temporary, path, error);
+        if (error) throw WriteError(joined(path.string(), ": ", error.message()));
+    } catch (...) {
+        fs::remove(temporary, error);
+        throw;
+    }
+}
+
+std::string as_text(const measure::Json& json) {
+    return json.dump(1, ' ', false, measure::Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace carom::tool

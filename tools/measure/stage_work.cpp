@@ -1,0 +1,60 @@
+#include "measure/stage_work.hpp"
+
+#include <array>
+
+namespace carom::measure {
+namespace {
+
+using Count = double (*)(const ProfiledSteps&);
+using Bytes = double (*)(double real);
+
+struct StageModel {
+    std::string_view stage;
+    std::string_view item;
+    Count items;  // a step
+    Bytes bytes;  // an item, for numbers of so many bytes
+    double operations;
+};
+
+double all_bodies(const ProfiledSteps& s) {
+    return s.bodies;
+}
+double rebuilt_bodies(const ProfiledSteps& s) {
+    return s.bodies * static_cast<double>(s.after.rebuilds - s.before.rebuilds) / s.steps();
+}
+double candidate_pairs(const ProfiledSteps& s) {
+    return static_cast<double>(s.after.candidate_pairs);
+}
+double impacts(const ProfiledSteps& s) {
+    return static_cast<double>(s.after.impacts - s.before.impacts) / s.steps();
+}
+
+constexpr std::array kModels{
+    // x, y, vx, vy, where pairs were found, reach; a record of four
+    StageModel{"begin_flight", "body", &all_bodies, [](double real) { return 11 * real; }, 43},
+    // positions kept, cells, counting and placing, search with about two pairs a body
+    StageModel{"update_candidates", "body whose pairs were found", &rebuilt_bodies,
+               [](double real) { return 15 * real + 52; }, 40},
+    // two rows, and one record that the pair before did not have
+    StageModel{"find_impacts", "candidate pair", &candidate_pairs, [](double real) { return 4 * real + 8; },
+               29},
+    // the records of both, and of about nine neighbours of each with their rows; each is tested in 28
+    // operations
+    StageModel{"resolve_impacts", "impact", &impacts,
+               [](double real) { return 2 * (4 * real + 9 * (4 * real + 4)); }, 2 * 9 * 28 + 60},
+    StageModel{"keep_books", "body", &all_bodies, [](double real) { return 5 * real; }, 20},
+    StageModel{"advance_rotation", "body", &all_bodies, [](double real) { return 4 * real; }, 3},
+    StageModel{"end_flight", "body", &all_bodies, [](double real) { return 8 * real; }, 10},
+};
+
+}  // namespace
+
+std::optional<StageWork> work_of_stage(std::string_view stage, const ProfiledSteps& steps) {
+    for (const StageModel& model : kModels)
+        if (model.stage == stage)
+            return StageWork{
+                model.item, model.items(steps), {model.bytes(steps.real_bytes), model.operations}};
+    return std::nullopt;
+}
+
+}  // namespace carom::measure
