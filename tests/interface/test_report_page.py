@@ -142,14 +142,30 @@ class SeedPageTest(ProgramTest):
         self.assertEqual(len(self.cursors()), 8)
         for time in self.cursors():
             self.assertAlmostEqual(time, 4, delta=0.02)
-        self.run_js("""
-            const chart = carom.charts.momentum, box = chart.canvas.getBoundingClientRect();
-            const at = { clientX: box.left + chart.scales.x.getPixelForValue(6.4), clientY: box.top + 100, bubbles: true };
-            for (const type of ["pointerdown", "pointerup"]) chart.canvas.dispatchEvent(new PointerEvent(type, at));""")
+        self.press_in_momentum_chart(6.4)
         self.assertAlmostEqual(self.frame(), 400, delta=1)
         self.assertEqual(int(self.run_js('return document.getElementById("slider").value')), self.frame())
         for time in self.cursors():
             self.assertAlmostEqual(time, 6.4, delta=0.04)
+
+    def test_charts_keep_their_lines_and_obey_after_a_change_of_theme(self):
+        self.run_js("carom.player.seekFrame(250)")
+        colour = self.run_js("return carom.charts.energy.data.datasets[0].borderColor")
+        self.browser.set_dark(True)
+        self.addCleanup(self.browser.set_dark, False)
+        self.browser.settle()
+        self.assertNotEqual(self.run_js("return carom.charts.energy.data.datasets[0].borderColor"), colour)
+        self.assertEqual(len(self.cursors()), 8)
+        for time in self.cursors():
+            self.assertAlmostEqual(time, 4, delta=0.02)
+        self.press_in_momentum_chart(1.6)
+        self.assertAlmostEqual(self.frame(), 100, delta=1)
+
+    def press_in_momentum_chart(self, time):
+        self.run_js("""
+            const chart = carom.charts.momentum, box = chart.canvas.getBoundingClientRect();
+            const at = { clientX: box.left + chart.scales.x.getPixelForValue(arguments[0]), clientY: box.top + 100, bubbles: true };
+            for (const type of ["pointerdown", "pointerup"]) chart.canvas.dispatchEvent(new PointerEvent(type, at));""", time)
 
     def test_it_plays_in_real_time_pauses_and_obeys_the_keyboard(self):
         from selenium.webdriver.common.keys import Keys

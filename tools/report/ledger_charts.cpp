@@ -122,7 +122,9 @@ void add_causes(const NumberTable& ledger, Page& page) {
 }
 
 std::vector<double> numbers(const Json& values) {
-    return values.get<std::vector<double>>();
+    std::vector<double> numbers;
+    for (const Json& value : values) numbers.push_back(number_of(value));
+    return numbers;
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "report/markup.hpp"
 
+#include <limits>
+
 namespace carom::report {
 namespace {
 
@@ -54,6 +56,10 @@ std::string as_script_data(const Json& json) {
                 data += c;
         }
     return data;
+}
+
+double number_of(const Json& json) {
+    return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
 
 }  // namespace carom::report

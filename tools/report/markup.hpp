@@ -15,4 +15,7 @@ std::string as_html(std::string_view text);
 /// JSON that may stand inside a <script> element: nothing in it ends the element or starts a comment.
 std::string as_script_data(const Json& json);
 
+/// The number, or NaN where the file has null: JSON knows no other way to write what is not finite.
+double number_of(const Json& json);
+
 }  // namespace carom::report

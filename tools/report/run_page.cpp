@@ -27,9 +27,9 @@ void warn_of_books(const Json& summary, Page& page) {
     if (!summary.contains("energy_by_cause") || summary.at("solver") == "pairwise") return;
     double moved = 0;
     for (const auto& [cause, work] : summary.at("energy_by_cause").items())
-        if (cause != "unexplained") moved = std::max(moved, std::abs(work.get<double>()));
-    moved = std::max(moved, summary.at("energy").at("initial").at("kinetic").get<double>());
-    const double rest = std::abs(summary.at("energy_by_cause").at("unexplained").get<double>());
+        if (cause != "unexplained") moved = std::max(moved, std::abs(number_of(work)));
+    moved = std::max(moved, number_of(summary.at("energy").at("initial").at("kinetic")));
+    const double rest = std::abs(number_of(summary.at("energy_by_cause").at("unexplained")));
     if (rest > kBooksClose * moved)
         page.warning("The books do not close: " + percent(rest / moved) +
                      " of the energy that moved is explained by no cause. A shorter step or more substeps "
@@ -50,8 +50,8 @@ void add_introduction(const Json& summary, Page& page) {
     char text[200];
     std::snprintf(text, sizeof text, "%lld bodies, %lld steps of %.6g s: %.6g s simulated in %.4g s. ",
                   summary.at("bodies").get<long long>(), summary.at("steps").get<long long>(),
-                  summary.at("dt").get<double>(), summary.at("time").get<double>(),
-                  summary.at("wall").at("total_s").get<double>());
+                  number_of(summary.at("dt")), number_of(summary.at("time")),
+                  number_of(summary.at("wall").at("total_s")));
     page.paragraph(text + std::string("Solver ") + summary.at("solver").get<std::string>() + ", " +
                    summary.at("precision").get<std::string>() + " precision.");
 }
@@ -60,7 +60,7 @@ void add_stage_times(const Json& summary, Page& page) {
     Series seconds{.name = "time"};
     for (const Json& stage : summary.at("stages"))
         seconds.points.push_back(
-            {.y = 1e3 * stage.at("seconds").get<double>(), .label = stage.at("name").get<std::string>()});
+            {.y = 1e3 * number_of(stage.at("seconds")), .label = stage.at("name").get<std::string>()});
     if (seconds.points.empty()) return;
     page.chart({.id = "stages",
                 .title = "Time by stage",

@@ -47,15 +47,15 @@ void add_settings(const Json& summary, Page& page) {
     };
     add("bodies", plain(summary.at("bodies")));
     add("steps", plain(summary.at("steps")));
-    add("step length", rounded(summary.at("dt")) + " s");
-    add("time simulated", rounded(summary.at("time")) + " s");
+    add("step length", rounded(number_of(summary.at("dt"))) + " s");
+    add("time simulated", rounded(number_of(summary.at("time"))) + " s");
     for (const char* key : {"solver", "substeps", "iterations", "precision"})
         add(key, plain(summary.at(key)));
     add("instruction set", plain(summary.at("isa")));
     add("threads", plain(summary.at("threads")));
-    add("time taken", rounded(1e3 * summary.at("wall").at("total_s").get<double>()) + " ms");
-    add("a step", rounded(summary.at("wall").at("ms_per_step")) + " ms");
-    add("a body and step", rounded(summary.at("wall").at("ns_per_body_step")) + " ns");
+    add("time taken", rounded(1e3 * number_of(summary.at("wall").at("total_s"))) + " ms");
+    add("a step", rounded(number_of(summary.at("wall").at("ms_per_step"))) + " ms");
+    add("a body and step", rounded(number_of(summary.at("wall").at("ns_per_body_step"))) + " ns");
     add("hash of the final state", plain(summary.at("state_hash")));
     add("version of Carom", plain(summary.at("version")));
     page.table(table);
@@ -71,23 +71,21 @@ void add_course(const Json& summary, Page& page) {
     };
     for (const char* kind : {"kinetic", "rotational", "potential", "total"})
         add(kind + std::string(" energy (J)"), summary.at("energy"),
-            [kind](const Json& energy) { return energy.at(kind).get<double>(); });
+            [kind](const Json& energy) { return number_of(energy.at(kind)); });
     for (const auto& [name, axis] : {std::pair{"momentum x (kg m/s)", 0}, {"momentum y (kg m/s)", 1}})
-        add(name, summary.at("momentum"), [axis = axis](const Json& p) { return p.at(axis).get<double>(); });
+        add(name, summary.at("momentum"), [axis = axis](const Json& p) { return number_of(p.at(axis)); });
     add("angular momentum (kg m\u00b2/s)", summary.at("angular_momentum"),
-        [](const Json& p) { return p.get<double>(); });
+        [](const Json& p) { return number_of(p); });
     page.table(table);
 }
 
 void add_accuracy(const Json& summary, Page& page) {
     Table table{.caption = "Accuracy", .headers = {"figure", "value", "unit"}};
     const Json& contacts = summary.at("contacts");
-    const auto overlap = [&contacts](const char* key) {
-        return rounded(100 * contacts.at(key).get<double>());
-    };
+    const auto overlap = [&contacts](const char* key) { return rounded(100 * number_of(contacts.at(key))); };
     if (summary.contains("energy_by_cause"))
-        table.rows.push_back(
-            {"energy that no cause explains", rounded(summary.at("energy_by_cause").at("unexplained")), "J"});
+        table.rows.push_back({"energy that no cause explains",
+                              rounded(number_of(summary.at("energy_by_cause").at("unexplained"))), "J"});
     table.rows.push_back({"touching contacts at the end", plain(contacts.at("touching")), ""});
     table.rows.push_back({"their mean overlap", overlap("overlap_mean"), "% of the smaller radius"});
     table.rows.push_back({"their largest overlap", overlap("overlap_max"), "% of the smaller radius"});

@@ -133,6 +133,39 @@ TEST_SUITE("report/kinds") {
         CHECK(refusal("{\"kind\": \"run\"}").find("is not as its kind should be") != std::string::npos);
     }
 
+    TEST_CASE("a run whose numbers are not finite is drawn all the same") {
+        const Json none = nullptr,
+                   energy{{"kinetic", none}, {"rotational", none}, {"potential", none}, {"total", none}};
+        const Json run{
+            {"kind", "run"},
+            {"scene", "lost"},
+            {"bodies", 1},
+            {"steps", 1},
+            {"dt", 1},
+            {"time", none},
+            {"solver", "impulse"},
+            {"substeps", 1},
+            {"iterations", 1},
+            {"precision", "float"},
+            {"isa", "scalar"},
+            {"threads", 1},
+            {"stages", Json::array()},
+            {"version", "0"},
+            {"state_hash", "0"},
+            {"wall", {{"total_s", none}, {"ms_per_step", none}, {"ns_per_body_step", none}}},
+            {"energy", {{"initial", energy}, {"final", energy}}},
+            {"energy_by_cause", {{"gravity", none}, {"unexplained", none}}},
+            {"momentum", {{"initial", {none, none}}, {"final", {none, none}}}},
+            {"angular_momentum", {{"initial", none}, {"final", none}}},
+            {"contacts", {{"touching", 0}, {"overlap_mean", none}, {"overlap_max", none}}},
+            {"contacts_over_time",
+             {{"time", {none}}, {"touching", {0}}, {"overlap_mean", {none}}, {"overlap_max", {none}}}},
+            {"counters", {{"impacts", 0}, {"wall_impacts", 0}, {"unresolved_impacts", 0}}},
+            {"files", Json::array()},
+            {"messages", {"1 of 1 bodies were disabled"}}};
+        CHECK(refusal(run.dump()) == "nothing was refused");
+    }
+
     TEST_CASE("a folder that no run finished in is refused") {
         CHECK_THROWS_WITH_AS(carom::report::page_of({"/nonexistent/run.json"}),
                              "/nonexistent/run.json: cannot be read", carom::report::ResultError);

@@ -89,8 +89,9 @@ carom.player = carom.frames && (() => {
     "+": () => zoom(1.25), "=": () => zoom(1.25), "-": () => zoom(0.8), 0: fit,
   };
   document.addEventListener("keydown", (event) => {
-    const own = event.target.closest("button, select, input, a, .scroll");
-    if (own || event.ctrlKey || event.altKey || event.metaKey || !keys[event.key]) return;
+    // Space and arrows belong to a control that does something with them itself.
+    const own = event.key === " " ? "button, select, a, input:not([type=range])" : "select, input, .scroll";
+    if (event.target.closest(own) || event.ctrlKey || event.altKey || event.metaKey || !keys[event.key]) return;
     event.preventDefault();
     keys[event.key]();
   });
