@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kSteps = kNowhere - 1;  // between the outermost positions
 constexpr double kFarthest = 16;         // of the middle's extent: beyond, single bodies are not shown
-constexpr double kMiddleBegin = 0.02, kMiddleEnd = 0.98;  // the part of all bodies that is the middle
+constexpr double kMiddleBegin = 0.02,
+                 kMiddleEnd = 0.98;  // the part of all bodies that is the middle; of few it is all
 constexpr double kLargestSigned = 32767;
 constexpr double kTurn = 2 * std::numbers::pi;  // rad
 
@@ -21,15 +22,16 @@ Scale drawn_range(std::span<const float> position, std::size_t component) {
     for (std::size_t i = component; i < position.size(); i += 2)
         if (std::isfinite(position[i])) values.push_back(position[i]);
     if (values.empty()) return {};
-    const auto at = [&values](double part) {
-        const auto place =
-            values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+    const auto last = static_cast<double>(values.size() - 1);
+    const auto at = [&values](double rank) {
+        const auto place = values.begin() + static_cast<std::ptrdiff_t>(rank);
         std::nth_element(values.begin(), place, values.end());
         return static_cast<double>(*place);
     };
     const auto [least, most] = std::minmax_element(values.begin(), values.end());
     double low = *least, high = *most;
-    const double begin = at(kMiddleBegin), end = at(kMiddleEnd), middle = end - begin;
+    const double begin = at(std::floor(kMiddleBegin * last)), end = at(std::ceil(kMiddleEnd * last)),
+                 middle = end - begin;
     if (middle > 0 && high - low > kFarthest * middle) {
         low = std::max(low, begin - kFarthest / 2 * middle);
         high = std::min(high, end + kFarthest / 2 * middle);

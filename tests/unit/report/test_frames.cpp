@@ -123,6 +123,13 @@ TEST_SUITE("report/quantised_frame") {
         CHECK(std::abs(frame.x.base + frame.x.step * frame.bits[7] - 7) < 0.01);
     }
 
+    TEST_CASE("of few bodies none is lost, however they lie") {
+        const std::vector<float> position{0, 0, 1e-3f, 0, 500, 7};
+        const QuantisedFrame frame = quantise(position, {}, {});
+        CHECK(frame.lost == 0);
+        CHECK(std::abs(frame.x.base + frame.x.step * frame.bits[2] - 500) < 0.01);
+    }
+
     TEST_CASE("bodies at one place stay there") {
         const std::vector<float> position(20, 3.5f), still(20, 0.0f);
         const QuantisedFrame frame = quantise(position, still, {});

@@ -56,7 +56,7 @@ carom.player = carom.frames && (() => {
 
   const decimals = (() => {
     const step = last > 0 ? (times[last] - times[0]) / last : 1;
-    return Math.min(6, Math.max(2, 1 - Math.floor(Math.log10(step || 1))));
+    return Math.min(6, Math.max(2, 1 - Math.floor(Math.log10(step || 1) + 1e-6)));
   })();
 
   const step = (by) => { setPlaying(false); seekFrame(index + by); };
