@@ -25,13 +25,13 @@ auto approaches_within(F dx, F dy, F vx, F vy, F reach, F s) {
 
 // The bodies b of pairs are read in the order of the plane's next line, which memory does not guess.
 constexpr std::size_t kPairsAhead = 256;
+constexpr std::size_t kPairsOfLine = 4;  // at least so many share a cache line
 
 template <bool kUniformRadius, class Real, class Isa>
 std::size_t find_impacts(const FindImpacts<Real>& arguments, std::size_t first, std::size_t last) {
     const FindImpacts<Real> k = arguments;  // in registers: what is written could be they, for all gcc knows
     using Lanes = simd::Lanes<Real, Isa>;
     using F = typename Lanes::Batch;
-    constexpr std::size_t kRecordsOfLine = 64 / (4 * sizeof(Real));  // of a cache line
     const F s(k.s), slack(k.slack), near(k.near);
     const F uniform_reach(k.uniform_radius + k.uniform_radius);
     std::int32_t lanes[16];
@@ -42,17 +42,15 @@ std::size_t find_impacts(const FindImpacts<Real>& arguments, std::size_t first, 
     std::size_t count = 0;
     for (std::size_t p = first; p < last; p += Lanes::size) {
         const std::size_t soon = p + kPairsAhead < last ? p + kPairsAhead : last - Lanes::size;
-        for (std::size_t n = 0; n < Lanes::size; n += kRecordsOfLine)
+        for (std::size_t n = 0; n < Lanes::size; n += kPairsOfLine)
             prefetch(k.motion + 4 * static_cast<std::ptrdiff_t>(k.b[soon + n]));
-        const auto a = Lanes::load_rows4(k.motion, k.a + p);
-        const auto b = Lanes::load_rows4(k.motion, k.b + p);
-        const F dx = b[0] - a[0], dy = b[1] - a[1];
+        const auto relative = Lanes::load_differences4(k.motion, k.b + p, k.a + p);
+        const F dx = relative[0], dy = relative[1];
         F reach = uniform_reach;
         if constexpr (!kUniformRadius)
-            reach = Lanes::gather(k.radius, Lanes::load_rows(k.a + p)) +
-                    Lanes::gather(k.radius, Lanes::load_rows(k.b + p));
+            reach = Lanes::gather_at(k.radius, k.a + p) + Lanes::gather_at(k.radius, k.b + p);
         const F near_reach = reach + near;
-        const auto found = approaches_within(dx, dy, b[2] - a[2], b[3] - a[3], reach + slack, s) |
+        const auto found = approaches_within(dx, dy, relative[2], relative[3], reach + slack, s) |
                            (dx * dx + dy * dy < near_reach * near_reach);
         // Written whether or not there is one: a branch would often be guessed wrongly.
         count += Lanes::compress_store(k.found + count, numbers, simd::bitmask(found));
@@ -91,7 +89,7 @@ struct PickMet {
         const auto other = L::load_rows4(motion, bodies.row + place);
         const auto rows = L::load_rows(bodies.row + place);
         F reach = own_reach;
-        if constexpr (!kUniformRadius) reach = own_reach + L::gather(radius, rows);
+        if constexpr (!kUniformRadius) reach = own_reach + L::gather_at(radius, bodies.row + place);
         const F relative_x = other[2] - vx, relative_y = other[3] - vy;
         const F dx = other[0] - x + relative_x * from, dy = other[1] - y + relative_y * from;
         const F close = reach + slack;

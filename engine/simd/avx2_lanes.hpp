@@ -76,18 +76,28 @@ struct Lanes<float, xsimd::avx2> : BatchLanes<float, xsimd::avx2> {
         return Batch::Raw(_mm256_i32gather_ps(column, rows, sizeof(float)));
     }
 
+    static Batch gather_at(const float* column, const std::int32_t* rows) {
+        const auto pair = [&](int i) {
+            return _mm_insert_ps(_mm_load_ss(column + rows[i]), _mm_load_ss(column + rows[i + 1]), 0x10);
+        };
+        const __m128 low = _mm_movelh_ps(pair(0), pair(2)), high = _mm_movelh_ps(pair(4), pair(6));
+        return Batch::Raw(_mm256_insertf128_ps(_mm256_castps128_ps256(low), high, 1));
+    }
+
     static std::size_t compress_store(std::int32_t* out, Rows values, unsigned bits) {
         store_rows(out, _mm256_permutevar8x32_epi32(values, compress_order8(bits)));
         return static_cast<std::size_t>(__builtin_popcount(bits));
     }
 
     static Batch4 load_rows4(const float* packed, const std::int32_t* rows) {
-        const auto two = [&](int low, int high) {
-            const __m128 first = _mm_loadu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[low]));
-            const __m128 second = _mm_loadu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[high]));
-            return _mm256_insertf128_ps(_mm256_castps128_ps256(first), second, 1);
+        return transposed(two_records(packed, rows, 0), two_records(packed, rows, 1),
+                          two_records(packed, rows, 2), two_records(packed, rows, 3));
+    }
+    static Batch4 load_differences4(const float* packed, const std::int32_t* of, const std::int32_t* from) {
+        const auto difference = [&](int i) {
+            return _mm256_sub_ps(two_records(packed, of, i), two_records(packed, from, i));
         };
-        return transposed(two(0, 4), two(1, 5), two(2, 6), two(3, 7));
+        return transposed(difference(0), difference(1), difference(2), difference(3));
     }
     static void store_rows4(float* packed, const std::int32_t* rows, const Batch4& values) {
         const Batch4 records = transposed(values[0].raw, values[1].raw, values[2].raw, values[3].raw);
@@ -100,6 +110,12 @@ struct Lanes<float, xsimd::avx2> : BatchLanes<float, xsimd::avx2> {
     }
 
   private:
+    /// The records of rows i and i + 4.
+    static __m256 two_records(const float* packed, const std::int32_t* rows, int i) {
+        const __m128 first = _mm_loadu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[i]));
+        const __m128 second = _mm_loadu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[i + 4]));
+        return _mm256_insertf128_ps(_mm256_castps128_ps256(first), second, 1);
+    }
     /// 4 x 4 in each 128-bit half.
     static Batch4 transposed(__m256 a, __m256 b, __m256 c, __m256 d) {
         const __m256d ab_low = _mm256_castps_pd(_mm256_unpacklo_ps(a, b));
@@ -130,6 +146,13 @@ struct Lanes<double, xsimd::avx2> : BatchLanes<double, xsimd::avx2> {
         return Batch::Raw(_mm256_i32gather_pd(column, rows, sizeof(double)));
     }
 
+    static Batch gather_at(const double* column, const std::int32_t* rows) {
+        const auto pair = [&](int i) {
+            return _mm_loadh_pd(_mm_load_sd(column + rows[i]), column + rows[i + 1]);
+        };
+        return Batch::Raw(_mm256_insertf128_pd(_mm256_castpd128_pd256(pair(0)), pair(2), 1));
+    }
+
     static std::size_t compress_store(std::int32_t* out, Rows values, unsigned bits) {
         const __m128 compressed = _mm_permutevar_ps(_mm_castsi128_ps(values), compress_order4(bits));
         store_rows(out, _mm_castps_si128(compressed));
@@ -141,6 +164,13 @@ struct Lanes<double, xsimd::avx2> : BatchLanes<double, xsimd::avx2> {
             return _mm256_loadu_pd(packed + 4 * static_cast<std::ptrdiff_t>(rows[i]));
         };
         return transposed(record(0), record(1), record(2), record(3));
+    }
+    static Batch4 load_differences4(const double* packed, const std::int32_t* of, const std::int32_t* from) {
+        const auto difference = [&](int i) {
+            return _mm256_sub_pd(_mm256_loadu_pd(packed + 4 * static_cast<std::ptrdiff_t>(of[i])),
+                                 _mm256_loadu_pd(packed + 4 * static_cast<std::ptrdiff_t>(from[i])));
+        };
+        return transposed(difference(0), difference(1), difference(2), difference(3));
     }
     static void store_rows4(double* packed, const std::int32_t* rows, const Batch4& values) {
         const Batch4 records = transposed(values[0].raw, values[1].raw, values[2].raw, values[3].raw);

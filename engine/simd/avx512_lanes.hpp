@@ -39,6 +39,11 @@ struct Lanes<float, xsimd::avx512bw> : BatchLanes<float, xsimd::avx512bw> {
         _mm_storeu_si128(reinterpret_cast<__m128i*>(to), all);
     }
 
+    static Batch gather_at(const float* column, const std::int32_t* rows) {
+        using Half = Lanes<float, xsimd::avx2>;
+        const __m512 low = _mm512_castps256_ps512(Half::gather_at(column, rows).raw);
+        return Batch::Raw(_mm512_insertf32x8(low, Half::gather_at(column, rows + 8).raw, 1));
+    }
     static Batch gather(const float* column, Rows rows) {
         return Batch::Raw(_mm512_i32gather_ps(rows, column, sizeof(float)));
     }
@@ -78,16 +83,14 @@ struct Lanes<float, xsimd::avx512bw> : BatchLanes<float, xsimd::avx512bw> {
     }
 
     static Batch4 load_rows4(const float* packed, const std::int32_t* rows) {
-        const auto record = [&](int i) {
-            return _mm_loadu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[i]));
+        return transposed(four_records(packed, rows, 0), four_records(packed, rows, 1),
+                          four_records(packed, rows, 2), four_records(packed, rows, 3));
+    }
+    static Batch4 load_differences4(const float* packed, const std::int32_t* of, const std::int32_t* from) {
+        const auto difference = [&](int i) {
+            return _mm512_sub_ps(four_records(packed, of, i), four_records(packed, from, i));
         };
-        const auto four = [&](int i) {
-            __m512 records = _mm512_castps128_ps512(record(i));
-            records = _mm512_insertf32x4(records, record(i + 4), 1);
-            records = _mm512_insertf32x4(records, record(i + 8), 2);
-            return _mm512_insertf32x4(records, record(i + 12), 3);
-        };
-        return transposed(four(0), four(1), four(2), four(3));
+        return transposed(difference(0), difference(1), difference(2), difference(3));
     }
     static void store_rows4(float* packed, const std::int32_t* rows, const Batch4& values) {
         const Batch4 records = transposed(values[0].raw, values[1].raw, values[2].raw, values[3].raw);
@@ -99,6 +102,16 @@ struct Lanes<float, xsimd::avx512bw> : BatchLanes<float, xsimd::avx512bw> {
     }
 
   private:
+    /// The records of rows i, i + 4, i + 8 and i + 12.
+    static __m512 four_records(const float* packed, const std::int32_t* rows, int i) {
+        const auto record = [&](int lane) {
+            return _mm_loadu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[lane]));
+        };
+        __m512 records = _mm512_castps128_ps512(record(i));
+        records = _mm512_insertf32x4(records, record(i + 4), 1);
+        records = _mm512_insertf32x4(records, record(i + 8), 2);
+        return _mm512_insertf32x4(records, record(i + 12), 3);
+    }
     /// 4 x 4 in each 128-bit quarter.
     static Batch4 transposed(__m512 a, __m512 b, __m512 c, __m512 d) {
         const __m512d ab_low = _mm512_castps_pd(_mm512_unpacklo_ps(a, b));
@@ -128,6 +141,11 @@ struct Lanes<double, xsimd::avx512bw> : BatchLanes<double, xsimd::avx512bw> {
     }
     static Rows rows_sum(Rows a, Rows b) { return _mm256_add_epi32(a, b); }
 
+    static Batch gather_at(const double* column, const std::int32_t* rows) {
+        using Half = Lanes<double, xsimd::avx2>;
+        const __m512d low = _mm512_castpd256_pd512(Half::gather_at(column, rows).raw);
+        return Batch::Raw(_mm512_insertf64x4(low, Half::gather_at(column, rows + 4).raw, 1));
+    }
     static Batch gather(const double* column, Rows rows) {
         return Batch::Raw(_mm512_i32gather_pd(rows, column, sizeof(double)));
     }
@@ -138,12 +156,14 @@ struct Lanes<double, xsimd::avx512bw> : BatchLanes<double, xsimd::avx512bw> {
     }
 
     static Batch4 load_rows4(const double* packed, const std::int32_t* rows) {
-        const auto two = [&](int i) {
-            const __m256d low = _mm256_loadu_pd(packed + 4 * static_cast<std::ptrdiff_t>(rows[i]));
-            const __m256d high = _mm256_loadu_pd(packed + 4 * static_cast<std::ptrdiff_t>(rows[i + 4]));
-            return _mm512_insertf64x4(_mm512_castpd256_pd512(low), high, 1);
+        return transposed(two_records(packed, rows, 0), two_records(packed, rows, 1),
+                          two_records(packed, rows, 2), two_records(packed, rows, 3));
+    }
+    static Batch4 load_differences4(const double* packed, const std::int32_t* of, const std::int32_t* from) {
+        const auto difference = [&](int i) {
+            return _mm512_sub_pd(two_records(packed, of, i), two_records(packed, from, i));
         };
-        return transposed(two(0), two(1), two(2), two(3));
+        return transposed(difference(0), difference(1), difference(2), difference(3));
     }
     static void store_rows4(double* packed, const std::int32_t* rows, const Batch4& values) {
         const Batch4 records = transposed(values[0].raw, values[1].raw, values[2].raw, values[3].raw);
@@ -164,6 +184,12 @@ struct Lanes<double, xsimd::avx512bw> : BatchLanes<double, xsimd::avx512bw> {
     }
 
   private:
+    /// The records of rows i and i + 4.
+    static __m512d two_records(const double* packed, const std::int32_t* rows, int i) {
+        const __m256d low = _mm256_loadu_pd(packed + 4 * static_cast<std::ptrdiff_t>(rows[i]));
+        const __m256d high = _mm256_loadu_pd(packed + 4 * static_cast<std::ptrdiff_t>(rows[i + 4]));
+        return _mm512_insertf64x4(_mm512_castpd256_pd512(low), high, 1);
+    }
     /// 4 x 4 in each 256-bit half.
     static Batch4 transposed(__m512d a, __m512d b, __m512d c, __m512d d) {
         const __m512d ab_even = _mm512_unpacklo_pd(a, b), ab_odd = _mm512_unpackhi_pd(a, b);

@@ -13,9 +13,11 @@
 ///   broadcast_row(row), load_rows(p), store_rows(p, rows)         unaligned
 ///   rows_sum(a, b)                                                of row numbers
 ///   gather(column, rows)                                          column[row] a lane
+///   gather_at(column, rows*)                                      the same; quicker where rows are in memory
 ///   compress_store(out, rows, bits)   the lanes whose bit is set, in order, to out; returns how many.
 ///                                     Writes a whole batch: out needs room for `size` more numbers
 ///   load_rows4(packed, rows*)         records of four Reals -> four batches, e.g. (vx, vy, spin, spare)
+///   load_differences4(packed, of*, from*)   records of rows `of` less those of rows `from`, likewise
 ///   store_rows4(packed, rows*, Batch4)  the same back; of equal rows the last lane wins
 ///
 /// On a Batch: + - * / += -= *=, unary -, < <= > >= ==. As free functions in carom::simd, for scalars too:

@@ -105,6 +105,7 @@ struct ScalarLanes {
     static Rows rows_sum(Rows a, Rows b) { return a + b; }
 
     static Batch gather(const Real* column, Rows rows) { return column[rows]; }
+    static Batch gather_at(const Real* column, const std::int32_t* rows) { return column[*rows]; }
 
     static std::size_t compress_store(std::int32_t* out, Rows values, unsigned bits) {
         *out = values;
@@ -114,6 +115,11 @@ struct ScalarLanes {
     static Batch4 load_rows4(const Real* packed, const std::int32_t* rows) {
         const Real* record = packed + 4 * static_cast<std::ptrdiff_t>(*rows);
         return {{record[0], record[1], record[2], record[3]}};
+    }
+    static Batch4 load_differences4(const Real* packed, const std::int32_t* of, const std::int32_t* from) {
+        const Real* a = packed + 4 * static_cast<std::ptrdiff_t>(*from);
+        const Real* b = packed + 4 * static_cast<std::ptrdiff_t>(*of);
+        return {{b[0] - a[0], b[1] - a[1], b[2] - a[2], b[3] - a[3]}};
     }
     static void store_rows4(Real* packed, const std::int32_t* rows, const Batch4& values) {
         Real* record = packed + 4 * static_cast<std::ptrdiff_t>(*rows);

@@ -40,6 +40,9 @@ struct Lanes<float, xsimd::sse2> : BatchLanes<float, xsimd::sse2> {
         store_rows(to, rows_min(_mm_unpacklo_epi64(ab, cd), _mm_unpackhi_epi64(ab, cd)));
     }
 
+    static Batch gather_at(const float* column, const std::int32_t* rows) {
+        return gather(column, load_rows(rows));
+    }
     static Batch gather(const float* column, Rows rows) {
         alignas(16) std::int32_t row[size];
         _mm_store_si128(reinterpret_cast<__m128i*>(row), rows);
@@ -59,12 +62,17 @@ struct Lanes<float, xsimd::sse2> : BatchLanes<float, xsimd::sse2> {
     }
 
     static Batch4 load_rows4(const float* packed, const std::int32_t* rows) {
-        __m128 r0 = _mm_loadu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[0]));
-        __m128 r1 = _mm_loadu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[1]));
-        __m128 r2 = _mm_loadu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[2]));
-        __m128 r3 = _mm_loadu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[3]));
-        _MM_TRANSPOSE4_PS(r0, r1, r2, r3);
-        return {{Batch::Raw(r0), Batch::Raw(r1), Batch::Raw(r2), Batch::Raw(r3)}};
+        const auto record = [&](int i) {
+            return _mm_loadu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[i]));
+        };
+        return transposed(record(0), record(1), record(2), record(3));
+    }
+    static Batch4 load_differences4(const float* packed, const std::int32_t* of, const std::int32_t* from) {
+        const auto difference = [&](int i) {
+            return _mm_sub_ps(_mm_loadu_ps(packed + 4 * static_cast<std::ptrdiff_t>(of[i])),
+                              _mm_loadu_ps(packed + 4 * static_cast<std::ptrdiff_t>(from[i])));
+        };
+        return transposed(difference(0), difference(1), difference(2), difference(3));
     }
     static void store_rows4(float* packed, const std::int32_t* rows, const Batch4& values) {
         __m128 r0 = values[0].raw, r1 = values[1].raw, r2 = values[2].raw, r3 = values[3].raw;
@@ -73,6 +81,12 @@ struct Lanes<float, xsimd::sse2> : BatchLanes<float, xsimd::sse2> {
         _mm_storeu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[1]), r1);
         _mm_storeu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[2]), r2);
         _mm_storeu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[3]), r3);
+    }
+
+  private:
+    static Batch4 transposed(__m128 a, __m128 b, __m128 c, __m128 d) {
+        _MM_TRANSPOSE4_PS(a, b, c, d);
+        return {{Batch::Raw(a), Batch::Raw(b), Batch::Raw(c), Batch::Raw(d)}};
     }
 };
 
@@ -89,6 +103,9 @@ struct Lanes<double, xsimd::sse2> : BatchLanes<double, xsimd::sse2> {
     }
     static Rows rows_sum(Rows a, Rows b) { return _mm_add_epi32(a, b); }
 
+    static Batch gather_at(const double* column, const std::int32_t* rows) {
+        return gather(column, load_rows(rows));
+    }
     static Batch gather(const double* column, Rows rows) {
         const std::int32_t first = _mm_cvtsi128_si32(rows);
         const std::int32_t second = _mm_cvtsi128_si32(_mm_shuffle_epi32(rows, 1));
@@ -103,12 +120,17 @@ struct Lanes<double, xsimd::sse2> : BatchLanes<double, xsimd::sse2> {
     }
 
     static Batch4 load_rows4(const double* packed, const std::int32_t* rows) {
-        const double* a = packed + 4 * static_cast<std::ptrdiff_t>(rows[0]);
-        const double* b = packed + 4 * static_cast<std::ptrdiff_t>(rows[1]);
-        const __m128d a01 = _mm_loadu_pd(a), a23 = _mm_loadu_pd(a + 2);
-        const __m128d b01 = _mm_loadu_pd(b), b23 = _mm_loadu_pd(b + 2);
-        return {{Batch::Raw(_mm_unpacklo_pd(a01, b01)), Batch::Raw(_mm_unpackhi_pd(a01, b01)),
-                 Batch::Raw(_mm_unpacklo_pd(a23, b23)), Batch::Raw(_mm_unpackhi_pd(a23, b23))}};
+        const auto half = [&](int i, int first) {
+            return _mm_loadu_pd(packed + 4 * static_cast<std::ptrdiff_t>(rows[i]) + first);
+        };
+        return transposed(half(0, 0), half(0, 2), half(1, 0), half(1, 2));
+    }
+    static Batch4 load_differences4(const double* packed, const std::int32_t* of, const std::int32_t* from) {
+        const auto half = [&](int i, int first) {
+            return _mm_sub_pd(_mm_loadu_pd(packed + 4 * static_cast<std::ptrdiff_t>(of[i]) + first),
+                              _mm_loadu_pd(packed + 4 * static_cast<std::ptrdiff_t>(from[i]) + first));
+        };
+        return transposed(half(0, 0), half(0, 2), half(1, 0), half(1, 2));
     }
     static void store_rows4(double* packed, const std::int32_t* rows, const Batch4& values) {
         double* a = packed + 4 * static_cast<std::ptrdiff_t>(rows[0]);
@@ -130,6 +152,12 @@ struct Lanes<double, xsimd::sse2> : BatchLanes<double, xsimd::sse2> {
         const __m128d toward_zero = _mm_cvtepi32_pd(_mm_cvttpd_epi32(value.raw));
         const __m128d too_large = _mm_cmpgt_pd(toward_zero, value.raw);
         return Batch::Raw(_mm_sub_pd(toward_zero, _mm_and_pd(too_large, _mm_set1_pd(1.0))));
+    }
+
+  private:
+    static Batch4 transposed(__m128d a01, __m128d a23, __m128d b01, __m128d b23) {
+        return {{Batch::Raw(_mm_unpacklo_pd(a01, b01)), Batch::Raw(_mm_unpackhi_pd(a01, b01)),
+                 Batch::Raw(_mm_unpacklo_pd(a23, b23)), Batch::Raw(_mm_unpackhi_pd(a23, b23))}};
     }
 };
 

@@ -70,8 +70,9 @@ inline double accelerated_impact_time(const Flight& relative, double reach, cons
     return s;
 }
 
-/// First time within the window at which a body's clearance to a wall, c + v s + a q(s), falls to zero, or
-/// the window's start if it is already there and approaching. Newton from the side on which it cannot
+/// First time within the window at which a body's clearance to a wall, c + v s + a q(s), falls to zero. The
+/// window's start if it is already there and approaching, or if it is inside and pulled back before it gets
+/// out: the solver then sees a contact too gentle to bounce. Newton from the side on which it cannot
 /// overshoot.
 inline double wall_impact_time(double c, double v, double a, const Window& window) {
     const auto clearance = [&](double s) { return c + v * s + a * flight_q(s, window.drag); };

@@ -24,9 +24,13 @@ struct LaneProbe {
                         unsigned* out);  // [kComparisons][lanes groups]
     void (*unaligned_copy)(const Real* from, std::size_t count, Real* to);
     void (*gather)(const Real* column, const std::int32_t* rows, std::size_t count, Real* out);
+    void (*gather_at)(const Real* column, const std::int32_t* rows, std::size_t count, Real* out);
     std::size_t (*compress)(const std::int32_t* values, unsigned bits, std::int32_t* out);  // one batch
     void (*rows4)(const Real* packed, const std::int32_t* rows, std::size_t count, Real* out,
                   Real* packed_out);  // out[4][count], and scattered back to packed_out
+    void (*differences4)(const Real* packed, const std::int32_t* of, const std::int32_t* from,
+                         std::size_t count, Real* out);  // out[4][count]
+    void (*row_sums)(const std::int32_t* a, const std::int32_t* b, std::size_t count, std::int32_t* sums);
     void (*floor)(const float* values, std::size_t count, double* floors, std::int32_t* rows);
 };
 

@@ -65,6 +65,12 @@ void probe_gather(const Real* column, const std::int32_t* rows, std::size_t coun
 }
 
 template <class Real, class Isa>
+void probe_gather_at(const Real* column, const std::int32_t* rows, std::size_t count, Real* out) {
+    using L = simd::Lanes<Real, Isa>;
+    for (std::size_t i = 0; i < count; i += L::size) L::store(out + i, L::gather_at(column, rows + i));
+}
+
+template <class Real, class Isa>
 std::size_t probe_compress(const std::int32_t* values, unsigned bits, std::int32_t* out) {
     using L = simd::Lanes<Real, Isa>;
     L::store_rows(out, L::broadcast_row(-1));
@@ -80,6 +86,23 @@ void probe_rows4(const Real* packed, const std::int32_t* rows, std::size_t count
         for (std::size_t k = 0; k < 4; ++k) L::store(out + k * count + i, four[k]);
         L::store_rows4(packed_out, rows + i, four);
     }
+}
+
+template <class Real, class Isa>
+void probe_differences4(const Real* packed, const std::int32_t* of, const std::int32_t* from,
+                        std::size_t count, Real* out) {
+    using L = simd::Lanes<Real, Isa>;
+    for (std::size_t i = 0; i < count; i += L::size) {
+        const typename L::Batch4 four = L::load_differences4(packed, of + i, from + i);
+        for (std::size_t k = 0; k < 4; ++k) L::store(out + k * count + i, four[k]);
+    }
+}
+
+template <class Real, class Isa>
+void probe_row_sums(const std::int32_t* a, const std::int32_t* b, std::size_t count, std::int32_t* sums) {
+    using L = simd::Lanes<Real, Isa>;
+    for (std::size_t i = 0; i < count; i += L::size)
+        L::store_rows(sums + i, L::rows_sum(L::load_rows(a + i), L::load_rows(b + i)));
 }
 
 template <class Isa>
@@ -118,10 +141,17 @@ std::size_t probe_marked_pairs(std::int32_t* to_a, std::int32_t* to_b, const std
 
 template <class Real, class Isa>
 constexpr LaneProbe<Real> make_lane_probe() {
-    return {simd::Lanes<Real, Isa>::size,  &probe_arithmetic<Real, Isa>,
-            &probe_comparisons<Real, Isa>, &probe_unaligned_copy<Real, Isa>,
-            &probe_gather<Real, Isa>,      &probe_compress<Real, Isa>,
-            &probe_rows4<Real, Isa>,       &probe_floor<Isa>};
+    return {simd::Lanes<Real, Isa>::size,
+            &probe_arithmetic<Real, Isa>,
+            &probe_comparisons<Real, Isa>,
+            &probe_unaligned_copy<Real, Isa>,
+            &probe_gather<Real, Isa>,
+            &probe_gather_at<Real, Isa>,
+            &probe_compress<Real, Isa>,
+            &probe_rows4<Real, Isa>,
+            &probe_differences4<Real, Isa>,
+            &probe_row_sums<Real, Isa>,
+            &probe_floor<Isa>};
 }
 
 template <class Isa>

@@ -182,6 +182,9 @@ TEST_SUITE("simd/lanes") {
             Column<Real> actual(rows.size());
             probe_of<Real>(*probes).gather(column.data(), rows.data(), rows.size(), actual.data());
             CHECK(same_bits(expected, actual));
+            Column<Real> at(rows.size());
+            probe_of<Real>(*probes).gather_at(column.data(), rows.data(), rows.size(), at.data());
+            CHECK(same_bits(expected, at));
         }
     }
 
@@ -228,6 +231,27 @@ TEST_SUITE("simd/lanes") {
         }
     }
 
+    TEST_CASE_TEMPLATE("load_differences4 subtracts record from record", Real, float, double) {
+        constexpr std::size_t kRecords = 100, kRows = 64;
+        std::mt19937 random(19);
+        Column<Real> packed(4 * kRecords), expected(4 * kRows);
+        for (Real& value : packed) value = static_cast<Real>(random()) * Real(1e-7);
+        Column<std::int32_t> of(kRows), from(kRows);
+        for (std::size_t i = 0; i < kRows; ++i) {
+            of[i] = static_cast<std::int32_t>(random() % kRecords);
+            from[i] = static_cast<std::int32_t>(random() % kRecords);
+            for (std::size_t k = 0; k < 4; ++k)
+                expected[k * kRows + i] = packed[4 * static_cast<std::size_t>(of[i]) + k] -
+                                          packed[4 * static_cast<std::size_t>(from[i]) + k];
+        }
+        for (const LaneProbes* probes : runnable_lane_probes()) {
+            CAPTURE(probes->isa);
+            Column<Real> actual(expected.size());
+            probe_of<Real>(*probes).differences4(packed.data(), of.data(), from.data(), kRows, actual.data());
+            CHECK(same_bits(expected, actual));
+        }
+    }
+
     TEST_CASE("floor goes toward minus infinity, whole numbers and negative ones included") {
         Column<float> values(512);
         std::mt19937 random(9);
@@ -251,7 +275,7 @@ TEST_SUITE("simd/lanes") {
     }
 
     TEST_CASE("row numbers are subtracted and compared lane by lane, negative ones included") {
-        Column<std::int32_t> a(256), b(256), difference(256), min(256);
+        Column<std::int32_t> a(256), b(256), difference(256), min(256), sums(256);
         std::mt19937 random(13);
         for (std::size_t i = 0; i < a.size(); ++i) {
             a[i] = static_cast<std::int32_t>(random() % 2'000'001) - 1'000'000;
@@ -259,6 +283,13 @@ TEST_SUITE("simd/lanes") {
         }
         for (const LaneProbes* probes : runnable_lane_probes()) {
             CAPTURE(probes->isa);
+            for (const auto row_sums :
+                 {probes->single_precision.row_sums, probes->double_precision.row_sums}) {
+                row_sums(a.data(), b.data(), a.size(), sums.data());
+                bool all_sums = true;
+                for (std::size_t i = 0; i < a.size(); ++i) all_sums = all_sums && sums[i] == a[i] + b[i];
+                CHECK(all_sums);
+            }
             probes->rows.rows(a.data(), b.data(), a.size(), difference.data(), min.data());
             bool all_equal = true;
             for (std::size_t i = 0; i < a.size(); ++i)
