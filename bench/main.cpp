@@ -36,6 +36,7 @@ parts: kernels stages scenes scaling peers (default: all)
   --scene NAME   peers: only this scene (gas, pile, packed, tumbler)
   --bodies N     peers: with so many bodies
   --out DIR      folder of the result files (default: out/bench)
+  --keep         the folder is bench/results/<date>-<machine>, for docs/performance.md
 `)";
 
 struct Choices {
@@ -104,7 +105,7 @@ std::vector<PeerTask> peer_tasks(const Choices& choices) {
 Json run_peers_part(const Choices& choices) {
     measure::ContestOptions options;
     options.rounds = choices.quick ? 7 : 15;
-    options.seconds_of_a_turn = choices.quick ? 0.02 : 0.1;
+    options.seconds_of_a_turn = choices.quick ? 0.003 : 0.01;
     Json json =
         run_peers(peer_tasks(choices), options, [](const std::string& what) { say("peers: " + what); });
     std::fputs(peers_text(json).c_str(), stdout);
@@ -130,7 +131,7 @@ const std::array<Part, 5>& parts() {
 void write(const fs::path& path, const Json& json) {
     const fs::path unfinished = path.string() + ".part";
     std::ofstream file(unfinished);
-    file << json.dump(1) << '\n';
+    file << measure::result_text(json);
     file.close();
     if (!file) throw std::runtime_error(path.string() + ": cannot be written");
     fs::rename(unfinished, path);
@@ -144,6 +145,10 @@ std::int64_t whole_number(const std::string& option, const std::string& text) {
     } catch (const std::logic_error&) {
     }
     throw WrongUse(measure::joined(option, ": ", text, " is no whole number from 1 to 100000000"));
+}
+
+std::string kept_folder() {
+    return measure::joined(measure::today(), "-", measure::machine_label(measure::machine_properties()));
 }
 
 Choices read_choices(const std::vector<std::string>& arguments) {
@@ -161,6 +166,8 @@ Choices read_choices(const std::vector<std::string>& arguments) {
             choices.scene = value();
         else if (argument == "--bodies")
             choices.bodies = whole_number(argument, value());
+        else if (argument == "--keep")
+            choices.out = fs::path("bench/results") / kept_folder();
         else if (argument == "--out")
             choices.out = value();
         else if (std::any_of(parts().begin(), parts().end(), is_part))

@@ -2,6 +2,10 @@
 
 #include <carom/errors.hpp>
 
+#include <algorithm>
+#include <cmath>
+
+#include "measure/clocks.hpp"
 #include "measure/gas.hpp"
 #include "measure/machine.hpp"
 #include "measure/statistics.hpp"
@@ -18,9 +22,7 @@ using measure::Json;
 using measure::kStep;
 
 constexpr double kNano = 1e9;
-// Energy of a gas is compared after so many steps, as in docs/performance.md; large gases end earlier.
-constexpr std::int64_t kGasSteps = 600;
-constexpr std::int64_t kMostBodiesFlownOn = 10'000;
+constexpr int kFewestStepsOfATurn = 6, kMostStepsOfATurn = 300;
 
 /// An engine with a scene made in it, or the reason why it has none.
 struct Entrant {
@@ -28,6 +30,7 @@ struct Entrant {
     std::unique_ptr<Peer> peer;
     std::string reason;
     std::int64_t steps = 0;
+    double settle_seconds = 0;    // a step, while it settled
     std::vector<double> seconds;  // a step, by round
 
     void step() { peer->step(kStep), ++steps; }
@@ -36,8 +39,12 @@ struct Entrant {
 std::vector<Entrant> enter(const BenchScene& scene, const std::function<void(const std::string&)>& progress) {
     std::vector<Entrant> entrants;
     for (PeerEngine& engine : peer_engines()) {
-        Entrant entrant{
-            .engine = std::move(engine), .peer = nullptr, .reason = {}, .steps = 0, .seconds = {}};
+        Entrant entrant{.engine = std::move(engine),
+                        .peer = nullptr,
+                        .reason = {},
+                        .steps = 0,
+                        .settle_seconds = 0,
+                        .seconds = {}};
         const auto bodies = static_cast<std::int64_t>(scene.scene.bodies.size());
         if (bodies > entrant.engine.most_bodies) {
             entrant.reason = format("is not run with more than %s bodies",
@@ -52,14 +59,18 @@ std::vector<Entrant> enter(const BenchScene& scene, const std::function<void(con
         if (entrant.peer) {
             progress(joined(scene.name, ", ", measure::grouped(bodies), " bodies: ", entrant.engine.name,
                             " settles"));
+            const double start = measure::thread_seconds();
             for (int i = 0; i < scene.settle_steps; ++i) entrant.step();
+            entrant.settle_seconds = (measure::thread_seconds() - start) / scene.settle_steps;
         }
         entrants.push_back(std::move(entrant));
     }
     return entrants;
 }
 
-void take_turns(std::vector<Entrant>& entrants, const measure::ContestOptions& options) {
+/// All take the same number of steps, so that energy and overlap are those of one moment: as many as make the
+/// first one's turn, which is ours, long enough.
+void take_turns(std::vector<Entrant>& entrants, measure::ContestOptions options) {
     std::vector<measure::Contestant> contestants;
     std::vector<Entrant*> running;
     for (Entrant& entrant : entrants)
@@ -67,6 +78,11 @@ void take_turns(std::vector<Entrant>& entrants, const measure::ContestOptions& o
             contestants.push_back({entrant.engine.name, [&entrant] { entrant.step(); }});
             running.push_back(&entrant);
         }
+    if (running.empty()) return;
+    const double wanted = options.seconds_of_a_turn / running.front()->settle_seconds;
+    options.fewest_steps = static_cast<int>(
+        std::clamp(std::ceil(wanted), double{kFewestStepsOfATurn}, double{kMostStepsOfATurn}));
+    options.seconds_of_a_turn = 0;
     auto seconds = measure::run_contest(contestants, options);
     for (std::size_t i = 0; i < running.size(); ++i) running[i]->seconds = std::move(seconds[i]);
 }
@@ -111,8 +127,6 @@ Json run_task(const PeerTask& task, const measure::ContestOptions& options,
     for (Entrant& entrant : entrants) {
         Json row{{"engine", entrant.engine.name}, {"settings", entrant.engine.settings}};
         if (entrant.peer) {
-            const bool flies_on = task.scene == "gas" && task.bodies <= kMostBodiesFlownOn;
-            while (flies_on && entrant.steps < kGasSteps) entrant.step();
             std::vector<double> each;
             for (const double seconds : entrant.seconds)
                 each.push_back(kNano * seconds / static_cast<double>(task.bodies));

@@ -33,8 +33,8 @@ int profile(const ProfileWish& asked) {
     Trace trace;
     const measure::Json json = profile_scene(scene, asked.settings.machine, asked.trace ? &trace : nullptr);
     if (asked.trace) write_whole_file(*asked.trace, trace.text(scene.name));
-    if (asked.out) write_whole_file(*asked.out, as_text(json));
-    const std::string text = asked.json ? as_text(json) : profile_text(json);
+    if (asked.out) write_whole_file(*asked.out, measure::result_text(json));
+    const std::string text = asked.json ? measure::result_text(json) : profile_text(json);
     std::fwrite(text.data(), 1, text.size(), stdout);
     if (asked.trace && trace.steps() == Trace::kMostSteps)
         std::fprintf(stderr, "carom: the trace ends after %lld steps\n",

@@ -51,7 +51,7 @@ int scaling(const ScalingWish& asked) {
     if (rows.empty()) return kDone;  // ended before anything was measured
     const measure::Json json = measure::scaling_json(rows);
     const fs::path data = asked.out / "scaling.json", page = asked.out / "scaling.html";
-    write_whole_file(data, as_text(json));
+    write_whole_file(data, measure::result_text(json));
     write_page(page, report::page_of({data}));
     const std::string text = joined(measure::scaling_text(json), "\nResults in ", asked.out.string(),
                                     ": scaling.json scaling.html\n");

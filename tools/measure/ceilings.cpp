@@ -2,14 +2,13 @@
 
 #include <carom/world.hpp>
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
 
 #include "measure/arithmetic_peak.hpp"
 #include "measure/clocks.hpp"
+#include "measure/machine.hpp"
 #include "measure/text.hpp"
 
 namespace carom::measure {
@@ -18,9 +17,9 @@ namespace {
 constexpr int kTries = 5;
 constexpr std::size_t kKibibyte = 1024;
 
-std::size_t cache_or(int name, std::size_t otherwise) {
-    const long bytes = sysconf(name);
-    return bytes > 0 ? static_cast<std::size_t>(bytes) : otherwise;
+std::size_t cache_or(int level, std::size_t otherwise) {
+    const std::size_t bytes = cache_bytes(level);
+    return bytes > 0 ? bytes : otherwise;
 }
 
 /// Bytes a second of memcpy between two arrays that have `bytes` together.
@@ -61,9 +60,9 @@ const ArithmeticPeak& Ceilings::peak_of(const std::string& isa) const {
 }
 
 Ceilings measure_ceilings(double seconds) {
-    const std::size_t l1 = cache_or(_SC_LEVEL1_DCACHE_SIZE, 32 * kKibibyte);
-    const std::size_t l2 = cache_or(_SC_LEVEL2_CACHE_SIZE, 512 * kKibibyte);
-    const std::size_t l3 = cache_or(_SC_LEVEL3_CACHE_SIZE, 8 * kKibibyte * kKibibyte);
+    const std::size_t l1 = cache_or(1, 32 * kKibibyte);
+    const std::size_t l2 = cache_or(2, 512 * kKibibyte);
+    const std::size_t l3 = cache_or(3, 8 * kKibibyte * kKibibyte);
     Ceilings ceilings;
     const auto add = [&](const char* level, std::size_t bytes) {
         ceilings.copy.push_back({level, bytes, copy_bandwidth(bytes, seconds)});

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cctype>
+#include <cstdlib>
 #include <ctime>
 #include <fstream>
 
@@ -26,9 +27,12 @@ std::string cpuinfo(const std::string& key) {
     return {};
 }
 
-std::int64_t cache_bytes(int name) {
-    const long bytes = sysconf(name);
-    return bytes > 0 ? bytes : 0;
+/// What a file of the kernel's description of a cache says, or nothing.
+std::string cache_entry(int index, const char* entry) {
+    std::ifstream file(format("/sys/devices/system/cpu/cpu0/cache/index%d/%s", index, entry));
+    std::string text;
+    std::getline(file, text);
+    return text;
 }
 
 /// Lower-case letters and digits; everything else becomes one dash.
@@ -47,6 +51,19 @@ std::string as_label(const std::string& text) {
 
 }  // namespace
 
+std::size_t cache_bytes(int level) {
+    constexpr int kMostCaches = 8;
+    for (int index = 0; index < kMostCaches; ++index) {
+        if (cache_entry(index, "level") != std::to_string(level) ||
+            cache_entry(index, "type") == "Instruction")
+            continue;
+        const std::string size = cache_entry(index, "size");  // "32768K"
+        const auto number = static_cast<std::size_t>(std::strtoull(size.c_str(), nullptr, 10));
+        return number << (size.ends_with("K") ? 10 : size.ends_with("M") ? 20 : 0);
+    }
+    return 0;
+}
+
 Json machine_properties() {
     const BuildInfo build = build_info();
     utsname system{};
@@ -58,9 +75,9 @@ Json machine_properties() {
             {"architecture", system.machine},
             {"cores", sysconf(_SC_NPROCESSORS_ONLN)},
             {"memory_bytes", static_cast<std::int64_t>(pages) * page},
-            {"l1_bytes", cache_bytes(_SC_LEVEL1_DCACHE_SIZE)},
-            {"l2_bytes", cache_bytes(_SC_LEVEL2_CACHE_SIZE)},
-            {"l3_bytes", cache_bytes(_SC_LEVEL3_CACHE_SIZE)},
+            {"l1_bytes", cache_bytes(1)},
+            {"l2_bytes", cache_bytes(2)},
+            {"l3_bytes", cache_bytes(3)},
             {"system", system.sysname},
             {"compiler", build.compiler},
             {"isa", build.runnable},

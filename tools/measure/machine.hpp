@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "measure/json.hpp"
 
 namespace carom::measure {
+
+/// Size of the first core's data cache of that level, 1 to 3 [bytes]; 0 if the system does not say.
+std::size_t cache_bytes(int level);
 
 /// What figures depend on: processor, cores, caches, memory, operating system, compiler, version of the
 /// library. Properties of a machine, no names of machines.

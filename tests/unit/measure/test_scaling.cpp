@@ -145,6 +145,18 @@ TEST_SUITE("measure/ceilings") {
     }
 }
 
+TEST_SUITE("measure/json") {
+    TEST_CASE("a result file's text reads back as what it was, an element of its rows on each line") {
+        const Json result = scaling_json(made_up_rows());
+        const std::string text = result_text(result);
+        CHECK(Json::parse(text) == result);
+        CHECK(text.find("\n  {\"method\":\"grid scalar\",\"bodies\":30") != std::string::npos);
+        CHECK(Json::parse(result_text(Json::object())) == Json::object());
+        CHECK(Json::parse(result_text({{"rows", Json::array()}, {"a\"b", 1}})) ==
+              Json{{"rows", Json::array()}, {"a\"b", 1}});
+    }
+}
+
 TEST_SUITE("measure/machine") {
     TEST_CASE("a machine's label is the name of a folder") {
         const Json properties{{"processor", "Some CPU (R) @ 2.50GHz"},

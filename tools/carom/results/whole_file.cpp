@@ -23,8 +23,4 @@ void write_whole_file(const fs::path& path, std::string_view text) {
     }
 }
 
-std::string as_text(const measure::Json& json) {
-    return json.dump(1, ' ', false, measure::Json::error_handler_t::replace) + "\n";
-}
-
 }  // namespace carom::tool

@@ -1,18 +1,12 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 #include <string_view>
-
-#include "measure/json.hpp"
 
 namespace carom::tool {
 
 /// Writes the text under a temporary name beside its own (`trace.json.part`), then renames it.
 /// @throws WriteError with the system's reason; nothing is left then.
 void write_whole_file(const std::filesystem::path& path, std::string_view text);
-
-/// JSON as a result file holds it.
-std::string as_text(const measure::Json& json);
 
 }  // namespace carom::tool
