@@ -8,8 +8,8 @@
 namespace carom {
 
 inline constexpr std::size_t kRowsPerChunk = 2048;  // 8 KiB a float column
-inline constexpr std::size_t kSmallestParallelRows =
-    32768;  // below, waking threads costs about what it gains
+// From here on the cheapest loop of a step gains by a second thread: docs/decisions/0007-when-threads-pay.md.
+inline constexpr std::size_t kSmallestParallelRows = 16384;
 
 /// Runs chunks of rows, on several threads if there are any and the rows are many. Chunks depend on the rows
 /// alone, never on the threads: work that writes by chunk gives the same result for any number of them.
