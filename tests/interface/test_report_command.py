@@ -1,5 +1,8 @@
 """`carom report`: what it draws, where to, and what it refuses."""
+import json
 import unittest
+
+import h5py
 
 from program import SEED, ProgramTest
 
@@ -25,6 +28,33 @@ class ReportCommandTest(ProgramTest):
             done = self.carom("report", *arguments, expect=2)
             self.assertIn(message, done.stderr)
             self.assertEqual(self.everything(), before)
+
+    def test_result_files_that_were_damaged_are_refused_by_name(self):
+        def damage_csv(folder):
+            (folder / "final.csv").unlink()
+
+        def damage_trajectory(folder):
+            (folder / "trajectory.h5").write_bytes((folder / "trajectory.h5").read_bytes()[:3000])
+
+        def shorten_column(folder):
+            with h5py.File(folder / "trajectory.h5", "r+") as file:
+                del file["radius"]
+                file["radius"] = [0.5]
+
+        def damage_summary(folder):
+            summary = json.loads((folder / "summary.json").read_text())
+            summary["files"] = "all"
+            del summary["energy"]["final"]["kinetic"]
+            (folder / "summary.json").write_text(json.dumps(summary))
+
+        for damage, name in ((damage_csv, "final.csv"), (damage_trajectory, "trajectory.h5"), (shorten_column, "trajectory.h5"),
+                             (damage_summary, "summary.json")):
+            self.run_scene(SEED, "--steps", 5)
+            (self.folder / "out/report.html").unlink()
+            damage(self.folder / "out")
+            done = self.carom("report", "out", expect=2)
+            self.assertIn("out/" + name, done.stderr)
+            self.assertEqual([path for path in self.everything() if "report.html" in path], [])
 
     def test_a_page_that_cannot_be_written_is_an_error_with_its_reason(self):
         self.run_scene(SEED, "--steps", 2)

@@ -62,10 +62,10 @@ std::string H5Reader::text(const char* attribute) const {
     return value;
 }
 
-std::vector<double> H5Reader::column(const char* dataset) const {
+std::vector<double> H5Reader::column(const char* dataset, std::size_t size) const {
     const hid_t id = check(H5Dopen2(file_, dataset, H5P_DEFAULT)), space = check(H5Dget_space(id));
-    const hssize_t size = H5Sget_simple_extent_npoints(space);
-    std::vector<double> values(static_cast<std::size_t>(size > 0 ? size : 0));
+    if (H5Sget_simple_extent_npoints(space) != static_cast<hssize_t>(size)) check(H5I_INVALID_HID);
+    std::vector<double> values(size);
     if (!values.empty()) check(H5Dread(id, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
     H5Sclose(space);
     H5Dclose(id);

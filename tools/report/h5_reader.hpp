@@ -27,8 +27,10 @@ class H5Reader {
 
     /// A text attribute of the root; empty if there is none.
     std::string text(const char* attribute) const;
-    /// A dataset of one dimension, whole.
-    std::vector<double> column(const char* dataset) const;
+    /// A dataset of one dimension, whole: `size` values, or it is an error.
+    std::vector<double> column(const char* dataset, std::size_t size) const;
+    std::vector<double> body_column(const char* dataset) const { return column(dataset, bodies_); }
+    std::vector<double> times() const { return column("time", frames_); }
     /// All components of one frame of a dataset, in body order. `values` has the size of a frame.
     void read_frame(const char* dataset, std::size_t frame, std::span<float> values);
 

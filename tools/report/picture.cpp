@@ -48,8 +48,8 @@ struct Picture::Surface {
 
 Picture::Picture(const std::filesystem::path& trajectory_h5, int width)
     : trajectory_(trajectory_h5),
-      time_(trajectory_.column("time")),
-      radius_(trajectory_.column("radius")),
+      time_(trajectory_.times()),
+      radius_(trajectory_.body_column("radius")),
       settings_(Json::parse(trajectory_.text("settings"), nullptr, false)),
       trail_(settings_.is_object() ? settings_.value("trail", std::size_t{0}) : 0),
       width_(width) {
@@ -90,7 +90,7 @@ Picture::Box Picture::world() const {
 
 void Picture::choose_colours() {
     std::vector<double> colours;
-    if (trajectory_.has("color")) colours = trajectory_.column("color");
+    if (trajectory_.has("color")) colours = trajectory_.body_column("color");
     const std::size_t bodies = trajectory_.body_count();
     for (std::size_t body = 0; body < bodies; ++body) {
         const bool own = body < colours.size() && colours[body] != kNoColour;

@@ -50,7 +50,7 @@ class FrameWriter {
         const std::size_t numbers = 2 + (choice_.velocity ? 2 : 0) + (choice_.angle ? 1 : 0);
         const std::size_t frame_bytes = std::max<std::size_t>(1, numbers * 2 * choice_.bodies.size());
         const std::size_t frames_a_block = std::max<std::size_t>(1, kBytesABlock / frame_bytes);
-        const std::vector<double> time = trajectory_.column("time");
+        const std::vector<double> time = trajectory_.times();
         std::vector<std::uint16_t> block;
         std::string text;
         for (std::size_t i = 0; i < choice_.frames.size(); ++i) {
@@ -116,7 +116,7 @@ Json colours(const H5Reader& trajectory, const FrameChoice& choice) {
     std::vector<std::uint32_t> palette;
     std::unordered_map<std::uint32_t, std::uint16_t> number{{kNoColour, 0}};
     std::vector<std::uint16_t> index;
-    for (const double value : chosen(trajectory.column("color"), choice.bodies)) {
+    for (const double value : chosen(trajectory.body_column("color"), choice.bodies)) {
         const auto colour = static_cast<std::uint32_t>(value);
         if (palette.size() < kMostColours && number.try_emplace(colour, palette.size() + 1).second)
             palette.push_back(colour);
@@ -144,8 +144,8 @@ Json description(const H5Reader& trajectory, const RunFiles& files, const FrameC
               {"all_bodies", trajectory.body_count()},
               {"velocity", choice.velocity},
               {"angle", choice.angle},
-              {"radius", base64_of<float>(as_float(chosen(trajectory.column("radius"), choice.bodies)))},
-              {"mass", base64_of<float>(as_float(chosen(trajectory.column("mass"), choice.bodies)))},
+              {"radius", base64_of<float>(as_float(chosen(trajectory.body_column("radius"), choice.bodies)))},
+              {"mass", base64_of<float>(as_float(chosen(trajectory.body_column("mass"), choice.bodies)))},
               {"colour", colours(trajectory, choice)},
               {"names", names(files, choice)}};
     if (choice.bodies.size() < trajectory.body_count()) json["body"] = choice.bodies;

@@ -103,8 +103,8 @@ struct Inertias {
     explicit Inertias(const RunFiles& files) {
         if (files.trajectory_h5.empty()) return;
         const H5Reader trajectory(files.trajectory_h5);
-        mass = trajectory.column("mass");
-        if (trajectory.has("inertia")) inertia = trajectory.column("inertia");
+        mass = trajectory.body_column("mass");
+        if (trajectory.has("inertia")) inertia = trajectory.body_column("inertia");
     }
 
     std::string kinetic_energy(std::size_t body, double vx, double vy, double omega) const {
