@@ -15,6 +15,8 @@ class ReportCommandTest(ProgramTest):
         page = (self.folder / "page.html").read_text()
         self.assertIn("<title>seed</title>", page)
         self.assertNotIn("page.html.part", self.everything())
+        two = self.carom("report", "out", "out/summary.json", "--out", "two.html", expect=2)
+        self.assertIn("out/summary.json: is a second run", two.stderr)
 
     def test_what_cannot_be_drawn_is_refused_and_nothing_is_written(self):
         (self.folder / "other.json").write_text('{"kind": "soup"}')

@@ -84,7 +84,6 @@ void draw(const Kind& kind, const std::vector<Result>& results, Page& page) {
 }  // namespace
 
 Page page_of(const std::vector<fs::path>& files, std::size_t page_bytes) {
-    Page page("Carom");
     std::vector<std::pair<const Kind*, std::vector<Result>>> by_kind;  // in the order they were named
     for (const fs::path& file : files) {
         Result result = read_result(file, page_bytes);
@@ -94,7 +93,16 @@ Page page_of(const std::vector<fs::path>& files, std::size_t page_bytes) {
         if (place == by_kind.end()) place = by_kind.insert(by_kind.end(), {kind, {}});
         place->second.push_back(std::move(result));
     }
-    for (const auto& [kind, results] : by_kind) draw(*kind, results, page);
+    Page page("Results");
+    for (const auto& [kind, results] : by_kind) {
+        if (kind->name == "run" && results.size() > 1)
+            refuse(results[1].file,
+                   "is a second run; a page has one player, so draw each run as a page of its own");
+        Page section{std::string(kind->name)};
+        draw(*kind, results, section);
+        if (by_kind.size() == 1) return section;
+        page.append(std::move(section), std::string(kind->name) + "-");
+    }
     return page;
 }
 

@@ -75,8 +75,7 @@ void Page::warning(const std::string& text) {
 }
 
 void Page::chart(Chart chart) {
-    parts_.push_back({.write = [chart = std::move(chart)](std::ostream& out) { write_chart(out, chart); },
-                      .is_chart = true});
+    parts_.push_back({.write = {}, .chart = std::move(chart)});
 }
 
 void Page::table(const Table& table) {
@@ -87,6 +86,15 @@ void Page::block(std::function<void(std::ostream&)> write) {
     parts_.push_back({.write = std::move(write)});
 }
 
+void Page::append(Page section, const std::string& prefix) {
+    heading(section.title_);
+    for (const std::string& text : section.warnings_) warnings_.push_back(section.title_ + ": " + text);
+    for (Part& part : section.parts_) {
+        if (part.chart) part.chart->id = prefix + part.chart->id;
+        parts_.push_back(std::move(part));
+    }
+}
+
 void Page::write(std::ostream& out) const {
     out << kHead << "<title>" << as_html(title_) << "</title>\n";
     write_assets(out, true);
@@ -95,9 +103,13 @@ void Page::write(std::ostream& out) const {
         out << "<p class=\"warning\" role=\"alert\">" << as_html(text) << "</p>\n";
     bool in_charts = false;
     for (const Part& part : parts_) {
-        if (part.is_chart != in_charts) out << (in_charts ? "</div>\n" : "<div class=\"charts\">\n");
-        in_charts = part.is_chart;
-        part.write(out);
+        const bool is_chart = part.chart.has_value();
+        if (is_chart != in_charts) out << (in_charts ? "</div>\n" : "<div class=\"charts\">\n");
+        in_charts = is_chart;
+        if (is_chart)
+            write_chart(out, *part.chart);
+        else
+            part.write(out);
     }
     if (in_charts) out << "</div>\n";
     out << "</main>\n";

@@ -3,6 +3,7 @@
 #include <functional>
 #include <iosfwd>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -85,6 +86,9 @@ class Page {
     /// there.
     void block(std::function<void(std::ostream&)> write);
 
+    /// All of another page under its title as a heading. Charts keep their ids, with `prefix` before them.
+    void append(Page section, const std::string& prefix);
+
     const std::string& title() const { return title_; }
     void set_title(std::string title) { title_ = std::move(title); }
 
@@ -99,7 +103,7 @@ class Page {
     std::vector<std::string> warnings_;
     struct Part {
         std::function<void(std::ostream&)> write;
-        bool is_chart = false;  ///< neighbours stand side by side
+        std::optional<Chart> chart{};  ///< in place of the above; neighbours stand side by side
     };
     std::vector<Part> parts_;
 };

@@ -109,6 +109,25 @@ TEST_SUITE("report/page") {
     }
 }
 
+TEST_SUITE("report/page") {
+    TEST_CASE(
+        "a page appended to another keeps its parts, and its charts stay apart from those with the same id") {
+        Page first("First"), second("Second"), both("Results");
+        for (Page* page : {&first, &second}) {
+            page->chart({.id = "a", .title = page->title()});
+            page->paragraph("of " + page->title());
+        }
+        second.warning("mind");
+        both.append(first, "x-");
+        both.append(second, "y-");
+        const std::string html = both.html();
+        CHECK(html.find("id=\"chart-x-a\"") < html.find("of First"));
+        CHECK(html.find("<h2>Second</h2>") < html.find("id=\"chart-y-a\""));
+        CHECK(html.find("id=\"data-y-a\"") != std::string::npos);
+        CHECK(html.find("Second: mind") < html.find("<h2>First</h2>"));
+    }
+}
+
 TEST_SUITE("report/kinds") {
     std::string refusal(const std::string& content) {
         const std::filesystem::path file = std::filesystem::temp_directory_path() / "carom-test-result.json";
