@@ -18,6 +18,7 @@ enum class StageName : std::uint8_t {
     keep_books,
     advance_rotation,
     end_flight,
+    run_events,
 };
 
 /// What a stage touches; `carom explain` and docs/how-a-step-works.md print it.
@@ -37,6 +38,7 @@ inline constexpr std::array kStages{
     StageInfo{"keep_books", "motion, angular velocity", "books"},
     StageInfo{"advance_rotation", "angular velocity", "angle, angular velocity"},
     StageInfo{"end_flight", "motion, accelerations", "position, velocity"},
+    StageInfo{"run_events", "all columns", "position, velocity, angle, angular velocity, books"},
 };
 
 constexpr const StageInfo& info_of(StageName stage) {

@@ -27,6 +27,7 @@ void step(Simulation<Real>& sim, double dt, StageTimes& times) {
         run(StageName::keep_books, plan.keep_books);
         run(StageName::advance_rotation, plan.advance_rotation);
         run(StageName::end_flight, plan.end_flight);
+        run(StageName::run_events, plan.run_events);
     }
     sim.world.time += dt;
     ++sim.step_count;

@@ -79,10 +79,15 @@ CalledEffects call_effects(const Scene& scene, const EffectOverrides& overrides)
         bounces = "the walls have a restitution above zero";
     on.restitution = decide(reports, "restitution", either(overrides.restitution, own.restitution), bounces,
                             "every restitution is zero");
-    on.rotation = decide(reports, "rotation", either(overrides.rotation, own.rotation),
-                         first_body(
-                             scene, [](const Body& b) { return b.angular_velocity != 0 || b.angle != 0; },
-                             " has an angle or a spin"),
+    std::string rubs = first_body(
+        scene, [](const Body& b) { return b.material.friction > 0; }, " has friction");
+    on.friction = decide(reports, "friction", either(overrides.friction, own.friction), rubs,
+                         "every friction coefficient is zero");
+    std::string turns = first_body(
+        scene, [](const Body& b) { return b.angular_velocity != 0 || b.angle != 0; },
+        " has an angle or a spin");
+    if (turns.empty() && on.friction) turns = "friction turns bodies";
+    on.rotation = decide(reports, "rotation", either(overrides.rotation, own.rotation), turns,
                          "no body has an angle or a spin, and nothing can give one");
     on.angular_drag = decide(reports, "angular drag", {},
                              on.rotation && scene.drag.angular > 0
@@ -91,7 +96,6 @@ CalledEffects call_effects(const Scene& scene, const EffectOverrides& overrides)
                              scene.drag.angular > 0 ? "nothing turns" : "angular drag is zero");
     decide(reports, "continuous collision", {}, "solver impulse finds the time of every impact", "");
     on.ledger = decide(reports, "ledger", either(overrides.ledger, own.ledger), "", "not asked for");
-    decide(reports, "friction", {}, "", "every friction coefficient is zero");
     decide(reports, "joints", {}, "", "the scene has no joints");
     decide(reports, "sleeping", {}, "", "not asked for");
     return called;
@@ -107,6 +111,10 @@ StepPlan<Real> make_step_plan(const Simulation<Real>& sim, double dt) {
     plan.substeps =
         std::max(sim.substeps, static_cast<int>(std::ceil(dt * largest_drag / kLargestDragTimesStep)));
     const bool can_meet = world.bodies.count > 1 || world.effects.walls;
+    if (sim.method == Solver::event) {
+        plan.run_events = run_events<Real>;
+        return plan;
+    }
     plan.begin_flight = begin_flight<Real>;
     plan.end_flight = end_flight<Real>;
     if (can_meet) {
@@ -124,9 +132,8 @@ StepPlan<Real> make_step_plan(const Simulation<Real>& sim, double dt) {
 template <class Real>
 Plan describe_plan(Simulation<Real>& sim, const CalledEffects& called) {
     Plan plan;
-    plan.solver = "impulse";
-    plan.solver_reason =
-        "every shape is a disc and nothing has friction: each impact is resolved at its own time";
+    plan.solver = std::string(name_of(sim.method));
+    plan.solver_reason = called.solver_reason;
     plan.substeps = sim.substeps;
     plan.precision = sizeof(Real) == sizeof(float) ? "float" : "double";
     plan.isa = std::string(sim.kernels->isa);
@@ -151,6 +158,7 @@ Plan describe_plan(Simulation<Real>& sim, const CalledEffects& called) {
     list(stages.keep_books, StageName::keep_books, "");
     list(stages.advance_rotation, StageName::advance_rotation, plan.isa);
     list(stages.end_flight, StageName::end_flight, plan.isa);
+    list(stages.run_events, StageName::run_events, "scalar, in double precision");
 
     sim.world.bodies.for_each_column([&](const char* name, const char* unit, auto& column) {
         plan.columns.push_back({name, unit, sizeof(column[0])});

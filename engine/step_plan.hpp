@@ -19,12 +19,14 @@ struct StepPlan {
     Stage keep_books = nullptr;
     Stage advance_rotation = nullptr;
     Stage end_flight = nullptr;
+    Stage run_events = nullptr;
 };
 
 /// Which effects a scene calls for, its overrides applied, each with the reason.
 struct CalledEffects {
     Effects effects;
     std::vector<EffectReport> reports;
+    std::string solver_reason;  ///< why the world has its solver
 };
 CalledEffects call_effects(const Scene& scene, const EffectOverrides& overrides);
 

@@ -5,8 +5,10 @@
 #include <string>
 
 #include "isa/select_isa.hpp"
+#include "scene/choose_solver.hpp"
 #include "scene/validation.hpp"
 #include "stages/measure.hpp"
+#include "stages/stages.hpp"
 #include "step.hpp"
 
 namespace carom {
@@ -36,9 +38,10 @@ class StateHash {
     std::uint64_t hash_ = 0xCBF29CE484222325u;
 };
 
+/// `solver` is never automatic here.
 Accuracy accuracy_of(const Scene& scene, const WorldOptions& options) {
     Accuracy accuracy = scene.accuracy;
-    if (options.solver) accuracy.solver = *options.solver;
+    accuracy.solver = choose_solver(scene, options.solver.value_or(accuracy.solver)).solver;
     if (options.substeps) accuracy.substeps = options.substeps;
     if (options.iterations) accuracy.iterations = options.iterations;
     return accuracy;
@@ -51,6 +54,7 @@ void check_options(const Scene& scene, const WorldOptions& options) {
         throw Error(ErrorCode::inconsistent,
                     "World: solver \"pairwise\" is the naive reference engine, class carom::Pairwise "
                     "(<carom/pairwise.hpp>), not a solver of World. Use \"auto\" or \"impulse\" here.");
+    raise_if("World", find_solver_problem(scene, accuracy.solver));
     validate_effects(scene, scene.effects, "World");
     validate_effects(scene, options.effects, "World: option effects");
     constexpr int kMostThreads = 1024;
@@ -91,6 +95,19 @@ struct BasicWorld<Real>::Implementation {
         sim.forget_derived_state();
     }
 
+    /// Solver `event` refuses bodies that overlap: then undo() takes the change back.
+    template <class Undo>
+    void undo_if_refused(std::string_view where, const Undo& undo) {
+        if (sim.method != Solver::event) return;
+        try {
+            load_events(sim, where);
+        } catch (const Error&) {
+            undo();
+            sim.forget_derived_state();
+            throw;
+        }
+    }
+
     std::vector<BodyId> quarantined() const {
         std::vector<BodyId> ids;
         const WorldState<Real>& state = sim.world;
@@ -112,8 +129,11 @@ BasicWorld<Real>::BasicWorld(const Scene& scene, const WorldOptions& options) {
     Simulation<Real>& sim = implementation_->sim;
     sim.kernels = &select_kernels(options.isa).template of<Real>();
     sim.executor = Executor(options.threads, options.parallel_for);
-    sim.substeps = accuracy.substeps.value_or(1);
+    sim.method = accuracy.solver;
+    sim.substeps = accuracy.substeps.value_or(default_substeps(sim.method));
     implementation_->called = call_effects(scene, options.effects);
+    implementation_->called.solver_reason =
+        choose_solver(scene, options.solver.value_or(scene.accuracy.solver)).reason;
 
     WorldState<Real>& world = sim.world;
     world.effects = implementation_->called.effects;
@@ -124,6 +144,7 @@ BasicWorld<Real>::BasicWorld(const Scene& scene, const WorldOptions& options) {
     world.books.is_open = world.effects.ledger;
     world.bodies.has_rotation = world.effects.rotation;
     for (const Body& body : scene.bodies) world.append(body);
+    if (sim.method == Solver::event) load_events(sim, "World");
 }
 
 template <class Real>
@@ -172,6 +193,8 @@ BodyState BasicWorld<Real>::state(BodyId body) const {
 template <class Real>
 BodyId BasicWorld<Real>::add(const Body& body) {
     validate_body(body, "World::add");
+    raise_if("World::add",
+             find_solver_problem({"the body has", "", -1, ""}, body, implementation_->sim.method));
     if (implementation_->world().walls) validate_inside(body, *implementation_->world().walls, "World::add");
     if (body_count() >= kLargestBodyCount)
         throw Error(ErrorCode::too_large, "World::add: the world has " + std::to_string(body_count()) +
@@ -179,6 +202,8 @@ BodyId BasicWorld<Real>::add(const Body& body) {
     if (body.angular_velocity != 0 || body.angle != 0) implementation_->turn_rotation_on();
     const BodyId id = implementation_->world().append(body);
     implementation_->sim.forget_derived_state();
+    implementation_->undo_if_refused("World::add",
+                                     [&] { implementation_->world().remove(body_count() - 1); });
     return id;
 }
 
@@ -193,9 +218,12 @@ void BasicWorld<Real>::set_position(BodyId body, Vec2 position) {
     const std::size_t row = implementation_->row_of(body, "World::set_position");
     validate_position(position, "World::set_position");
     Bodies<Real>& b = implementation_->bodies();
-    implementation_->change_row(row, [&] {
-        b.position_x[row] = static_cast<Real>(position.x), b.position_y[row] = static_cast<Real>(position.y);
-    });
+    const auto move_to = [&](Real x, Real y) {
+        implementation_->change_row(row, [&] { b.position_x[row] = x, b.position_y[row] = y; });
+    };
+    const Real x = b.position_x[row], y = b.position_y[row];
+    move_to(static_cast<Real>(position.x), static_cast<Real>(position.y));
+    implementation_->undo_if_refused("World::set_position", [&] { move_to(x, y); });
 }
 
 template <class Real>
@@ -238,7 +266,7 @@ Ledger BasicWorld<Real>::ledger() const {
 
     EnergyByCause& energy = ledger.energy_by_cause;
     energy.gravity = start.energy.potential - now.energy.potential;
-    energy.drag = books.drag, energy.restitution = books.restitution;
+    energy.drag = books.drag, energy.restitution = books.restitution, energy.friction = books.friction;
     energy.correction = books.correction, energy.drive = books.drive;
     energy.unexplained = (now.energy.kinetic + now.energy.rotational) -
                          (start.energy.kinetic + start.energy.rotational) - energy.sum();
@@ -262,9 +290,11 @@ Profile BasicWorld<Real>::profile() const {
     profile.steps = sim.step_count;
     profile.rebuilds = sim.candidates.rebuild_count();
     profile.candidate_pairs = static_cast<std::int64_t>(sim.candidates.pair_count());
-    profile.impacts = counters.impacts;
-    profile.wall_impacts = counters.wall_impacts;
-    profile.simultaneous_impacts = counters.simultaneous_impacts;
+    const EventCounters& events = sim.events.counters();  // of one of the two there are none
+    profile.pair_tests = events.pair_tests;
+    profile.impacts = counters.impacts + events.impacts;
+    profile.wall_impacts = counters.wall_impacts + events.wall_impacts;
+    profile.simultaneous_impacts = counters.simultaneous_impacts + events.simultaneous_impacts;
     profile.resting_contacts = counters.resting_contacts;
     profile.overlaps_corrected = counters.overlaps_corrected;
     profile.unresolved_impacts = counters.unresolved_impacts;

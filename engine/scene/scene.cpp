@@ -1,5 +1,6 @@
 #include <carom/scene.hpp>
 
+#include "scene/choose_solver.hpp"
 #include "scene/limits.hpp"
 #include "scene/mass.hpp"
 #include "scene/validation.hpp"
@@ -57,7 +58,8 @@ std::optional<Problem> Scene::find_problem() const {
     }
     if (auto found = find_spread_problem(spread)) return found;
     if (auto found = find_duplicate_name(bodies)) return found;
-    return find_effects_problem(*this, effects);
+    if (auto found = find_effects_problem(*this, effects)) return found;
+    return find_solver_problem(*this, choose_solver(*this, accuracy.solver).solver);
 }
 
 void Scene::validate() const {

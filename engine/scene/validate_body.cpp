@@ -8,9 +8,6 @@
 namespace carom {
 namespace {
 
-constexpr std::string_view kFrictionComes =
-    "friction is not built yet: it comes with the solver \"soft\". Set it to 0.";
-
 std::optional<Problem> find_velocity_problem(const Item& item, Vec2 velocity) {
     if (auto found = check(item, "/velocity/0", velocity.x, kVelocityX)) return found;
     if (auto found = check(item, "/velocity/1", velocity.y, kVelocityY)) return found;
@@ -94,14 +91,7 @@ std::optional<Problem> find_material_problem(const Item& item, std::string_view 
         return check(item, in("/restitution"), material.restitution, kRestitution);
     if (material.friction == 0 && material.rolling_resistance == 0) return std::nullopt;
     if (auto found = check(item, in("/friction"), material.friction, kFriction)) return found;
-    if (auto found = check(item, in("/rolling_resistance"), material.rolling_resistance, kRollingResistance))
-        return found;
-    if (material.friction > 0)
-        return problem(ErrorCode::not_built_yet, item, in("/friction"), "friction ", material.friction, "; ",
-                       kFrictionComes);
-    return problem(ErrorCode::not_built_yet, item, in("/rolling_resistance"), "rolling resistance ",
-                   material.rolling_resistance,
-                   "; rolling resistance is not built yet: it comes with the solver \"soft\". Set it to 0.");
+    return check(item, in("/rolling_resistance"), material.rolling_resistance, kRollingResistance);
 }
 
 std::optional<Problem> find_problem(const Material& material) {

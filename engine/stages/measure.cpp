@@ -69,8 +69,9 @@ OverlapReport measure_overlaps(Simulation<Real>& sim) {
 template <class Real>
 std::size_t bytes_of(Simulation<Real>& sim) {
     std::size_t bytes = sizeof(sim) + sim.world.handles.bytes() + sim.candidates.bytes() +
-                        sim.solver.bytes() + sim.wall_rows.bytes() + sim.displaced_rows.bytes() +
-                        sim.lost_rows.bytes() + sim.meetings.capacity() * sizeof(FoundMeeting) +
+                        sim.solver.bytes() + sim.events.bytes() + sim.wall_rows.bytes() +
+                        sim.displaced_rows.bytes() + sim.lost_rows.bytes() +
+                        sim.meetings.capacity() * sizeof(FoundMeeting) +
                         sim.world.immovable_rows.capacity() * sizeof(std::int32_t);
     for (const auto& meetings : sim.chunk_meetings) bytes += meetings.capacity() * sizeof(FoundMeeting);
     sim.world.bodies.for_each_column([&](auto, auto, auto& column) { bytes += column.bytes(); });

@@ -1,12 +1,14 @@
 #pragma once
 
-#include <chrono>
+#include <carom/accuracy.hpp>
+
 #include <cstdint>
 #include <vector>
 
 #include "broadphase/candidates.hpp"
 #include "isa/kernel_table.hpp"
 #include "parallel/executor.hpp"
+#include "solver/event/event_dynamics.hpp"
 #include "solver/impulse.hpp"
 #include "world/world_state.hpp"
 
@@ -51,7 +53,10 @@ struct Simulation {
     ImpulseSolver<Real> solver;
     Executor executor;
     const KernelTable<Real>* kernels = nullptr;
-    int substeps = 1;  ///< what was asked for; strong drag can make a step take more
+    Solver method = Solver::impulse;       ///< never `automatic`
+    EventDynamics events;                  ///< of solver `event`
+    std::vector<std::int32_t> event_rows;  ///< the world's rows it has; empty: they have changed
+    int substeps = 1;                      ///< what was asked for; strong drag can make a step take more
 
     // Of the present substep.
     double h = 0;                       ///< s
@@ -70,6 +75,7 @@ struct Simulation {
         candidates.invalidate();
         solver.forget_contacts();
         solver.flights.accelerations.clear();
+        event_rows.clear();
     }
 };
 

@@ -37,6 +37,16 @@ void resolve_impacts(Simulation<Real>& sim);
 template <class Real>
 void end_flight(Simulation<Real>& sim);
 
+/// Solver `event`: goes from impact to impact to the end of the step.   reads everything; writes pose,
+/// velocity, angle, spin, books
+template <class Real>
+void run_events(Simulation<Real>& sim);
+
+/// Hands the bodies to solver `event` if they have changed outside of a step.
+/// @throws Error (inconsistent) if two of them, or one and a wall, overlap; `where` opens the message
+template <class Real>
+void load_events(Simulation<Real>& sim, std::string_view where);
+
 /// Turns bodies.   reads and writes angle, spin
 template <class Real>
 void advance_rotation(Simulation<Real>& sim);

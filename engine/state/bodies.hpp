@@ -53,6 +53,7 @@ struct Bodies {
     Property<Real> mass;                   // kg
     Property<Real> radius;                 // m
     Property<Real> restitution;            // no unit
+    Property<Real> friction;               // Coulomb coefficient
     bool has_rotation = false;
     bool has_flags = false;
 
@@ -74,6 +75,7 @@ struct Bodies {
         if (!mass.is_uniform()) fn("mass", "kg", mass.column());
         if (!radius.is_uniform()) fn("radius", "m", radius.column());
         if (!restitution.is_uniform()) fn("restitution", "1", restitution.column());
+        if (!friction.is_uniform()) fn("friction", "1", friction.column());
         if (has_flags) fn("flags", "bits", flags);
     }
 

@@ -8,8 +8,9 @@ namespace carom {
 enum BodyFlag : std::uint8_t {
     kImmovable =
         1,  ///< static or kinematic: nothing changes its velocity; pairs of two such are no candidates
-    kDisabled = 2,   ///< quarantined: takes no part any more, no candidates at all
-    kKinematic = 4,  ///< immovable, but moves at its velocity
+    kDisabled = 2,    ///< quarantined: takes no part any more, no candidates at all
+    kKinematic = 4,   ///< immovable, but moves at its velocity
+    kFixedAngle = 8,  ///< impulses do not turn it
 };
 
 }  // namespace carom

@@ -58,9 +58,10 @@ BodyId WorldState<Real>::append(const Body& body) {
         bodies.angle[row] = real(body.angle), bodies.angular_velocity[row] = real(body.angular_velocity);
     bodies.radius.set(row, bodies.count, real(radius));
     bodies.restitution.set(row, bodies.count, real(body.material.restitution));
+    bodies.friction.set(row, bodies.count, real(body.material.friction));
     if (body.type == BodyType::dynamic_body) {
         bodies.mass.set(row, bodies.count, real(mass));
-        bodies.set_flags(row, 0);
+        bodies.set_flags(row, body.fixed_rotation && effects.friction ? kFixedAngle : 0);
         dynamic_mass += static_cast<double>(bodies.mass[row]);
     } else {
         bodies.mass.set(row, bodies.count,

@@ -21,6 +21,7 @@ struct Effects {
     bool walls = false;
     bool restitution = false;
     bool rotation = false;
+    bool friction = false;
     bool ledger = false;
 };
 

@@ -35,7 +35,7 @@ class WrongInputTest(ProgramTest):
             "--precision": ["half", "", "FLOAT", "long double"],
             "--threads": ["-1", "x", "1.5", "100000", "99999999999999"],
             "--isa": ["", "bogus", "AVX2", "avx3", "neon"],
-            "--solver": ["", "bogus", "Impulse", "soft", "rigid", "event", "rattle"],
+            "--solver": ["", "bogus", "Impulse", "soft", "rigid", "rattle"],
             "--effects": ["", "sleep", "+", "-", "+bogus", "++ledger", "+ledger,-ledger", "-ledger,+ledger",
                           "+sleep", "+ledger,,", "-gravity", "-restitution", "-drag", "-continuous", "+friction"],
         }.items():

@@ -13,7 +13,7 @@ enum class Solver : std::uint8_t {
     impulse,    ///< time of impact inside the step: bouncy, gas-like scenes
     soft,       ///< not built yet
     rigid,      ///< not built yet
-    event,      ///< not built yet
+    event,      ///< from impact to impact at exact times: discs and walls, nothing at rest, no drag
     rattle,     ///< not built yet
 };
 

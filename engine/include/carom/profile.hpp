@@ -20,6 +20,7 @@ struct Profile {
     std::int64_t steps = 0;
     std::int64_t rebuilds = 0;         ///< steps that built the candidate pairs anew
     std::int64_t candidate_pairs = 0;  ///< now
+    std::int64_t pair_tests = 0;       ///< pairs looked at; counted by solver `event` alone
     std::int64_t impacts = 0;          ///< collisions resolved, walls included
     std::int64_t wall_impacts = 0;
     std::int64_t simultaneous_impacts = 0;  ///< of these, solved together with others at the same instant

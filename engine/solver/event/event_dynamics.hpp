@@ -35,9 +35,10 @@ class EventDynamics {
     /// Cost: O(bodies log bodies).
     void load(std::span<const EventBody> bodies, const EventLaws& laws);
 
-    /// The first two bodies, by row, that overlap by more than a fraction of the smaller radius.
+    /// The first two bodies by row, or body and wall, that overlap by more than a fraction of the smaller
+    /// radius.
     struct Overlap {
-        std::int32_t a, b;  ///< rows, a < b
+        std::int32_t a, b;  ///< rows, a < b; or b = -1 - side of the walls
         double separation;  ///< m
     };
     std::optional<Overlap> find_overlap(double fraction) const;

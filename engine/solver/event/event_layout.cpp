@@ -186,6 +186,15 @@ std::optional<EventDynamics::Overlap> EventDynamics::find_overlap(double fractio
     };
     for (std::size_t disc = 0; disc < store_.first_immovable; ++disc) {
         for_each_neighbour(disc, [&](std::size_t other) { compare(disc, other); });
+        const Vec2 x = store_.position_at(disc, time_);
+        const double radius = store_.movers[disc].radius;
+        for (std::int32_t side = 0; side < 4; ++side) {
+            const EventWall& wall = store_.laws.walls[static_cast<std::size_t>(side)];
+            const double clearance = dot(wall.normal, x) - wall.offset - radius;
+            if (wall.is_closed && clearance < -fraction * radius &&
+                (!found || store_.row_of[disc] < found->a))
+                found = Overlap{store_.row_of[disc], -1 - side, clearance};
+        }
     }
     return found;
 }

@@ -131,7 +131,7 @@ const std::vector<Fault> kBodyFaults{
         "/material/friction", "has friction -0.1"),
     of_ball(
         "friction", [](Body& b) { b.material.friction = 0.5; }, ErrorCode::not_built_yet,
-        "/material/friction", "friction is not built yet: it comes with the solver \"soft\""),
+        "/material/friction", "friction is not built yet for the solver \"impulse\""),
     of_ball(
         "friction without a number", [](Body& b) { b.material.friction = kNaN; }, ErrorCode::not_finite,
         "/material/friction", "has friction nan"),
@@ -208,8 +208,18 @@ const std::vector<Fault> kSettingFaults{
      "/accuracy/iterations", "has iterations 5000"},
     {"solver soft", [](Scene& s) { s.accuracy.solver = Solver::soft; }, ErrorCode::not_built_yet,
      "/accuracy/solver", "solver \"soft\", which is not built yet. Use \"auto\", \"impulse\""},
-    {"solver event", [](Scene& s) { s.accuracy.solver = Solver::event; }, ErrorCode::not_built_yet,
-     "/accuracy/solver", "solver \"event\""},
+    {"solver rattle", [](Scene& s) { s.accuracy.solver = Solver::rattle; }, ErrorCode::not_built_yet,
+     "/accuracy/solver", "solver \"rattle\""},
+    {"drag with solver event", [](Scene& s) { s.accuracy.solver = Solver::event; }, ErrorCode::inconsistent,
+     "/drag/linear", "the solver \"event\" knows free flight only. Use \"auto\" or \"impulse\""},
+    {"what rests at once with solver event",
+     [](Scene& s) {
+         s.accuracy.solver = Solver::event;
+         s.drag = {};
+         s.bodies[1].material.restitution = 0;
+     },
+     ErrorCode::inconsistent, "/bodies/1/material/restitution",
+     "comes to rest at once; the solver \"event\""},
     {"sleep", [](Scene& s) { s.effects.sleep = true; }, ErrorCode::not_built_yet, "/effects/sleep",
      "sleeping is not built yet"},
     {"not continuous", [](Scene& s) { s.effects.continuous = false; }, ErrorCode::inconsistent,
