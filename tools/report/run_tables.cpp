@@ -72,7 +72,8 @@ void add_course(const Json& summary, Page& page) {
     for (const char* kind : {"kinetic", "rotational", "potential", "total"})
         add(kind + std::string(" energy (J)"), summary.at("energy"),
             [kind](const Json& energy) { return number_of(energy.at(kind)); });
-    for (const auto& [name, axis] : {std::pair{"momentum x (kg m/s)", 0}, {"momentum y (kg m/s)", 1}})
+    for (const auto& [name, axis] :
+         {std::pair{"momentum x (kg m/s)", std::size_t{0}}, {"momentum y (kg m/s)", 1}})
         add(name, summary.at("momentum"), [axis = axis](const Json& p) { return number_of(p.at(axis)); });
     add("angular momentum (kg m\u00b2/s)", summary.at("angular_momentum"),
         [](const Json& p) { return number_of(p); });
