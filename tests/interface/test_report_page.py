@@ -247,6 +247,92 @@ class SeedPageTest(ProgramTest):
         self.assertEqual(urls, {page})
 
 
+PIXELS_AT = """
+const [places, frame] = arguments, canvas = document.getElementById("scene"), copy = document.createElement("canvas");
+copy.width = canvas.width;
+copy.height = canvas.height;
+const pen = copy.getContext("2d", { willReadFrequently: true });
+pen.drawImage(canvas, 0, 0);
+const { data } = pen.getImageData(0, 0, copy.width, copy.height);
+return places.map(([x, y]) => {
+    const at = 4 * (Math.floor(carom.view.y(y)) * copy.width + Math.floor(carom.view.x(x)));
+    return [...data.slice(at, at + 3)];
+});
+"""
+
+
+class MarksTest(ProgramTest):
+    """What is drawn beside few bodies, and how very many are drawn."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.browser = Browser()
+        cls.addClassCleanup(cls.browser.close)
+
+    def open_scene(self, scene, *arguments):
+        results = self.run_scene(scene, *arguments)
+        self.browser.open(self.folder / "out/report.html")
+        self.browser.settle()
+        self.addCleanup(lambda: self.assertEqual(self.browser.console(), []))
+        return results.trajectory()
+
+    def pixels_at(self, places):
+        return [tuple(pixel) for pixel in self.browser.run(PIXELS_AT, [list(map(float, place)) for place in places])]
+
+    def show(self, frame, *toggled):
+        for name in toggled:
+            self.browser.run("document.getElementById(arguments[0]).click()", name)
+        self.browser.run("carom.player.seekFrame(arguments[0])", frame)
+        self.browser.settle(2)
+
+    def test_every_one_of_very_many_discs_is_drawn_at_its_place_and_in_its_size(self):
+        side = 45  # 2,025 discs: beyond those that are drawn as paths
+        trajectory = self.open_scene(gas(side, steps=60, every=20))
+        self.show(3, "show-impacts")
+        disc = tuple(int(self.browser.run("return carom.theme.colour(0)")[i:i + 2], 16) for i in (1, 3, 5))
+        self.assertEqual(set(self.pixels_at(trajectory["position"][3])), {disc})
+        scale = self.browser.run("return carom.view.scale()")
+        self.assertLess(0.5 * scale, 8)  # pixels: small enough to be set one by one
+        (full, _, _), = self.browser.run(PIXELS, [disc])
+        area = side * side * numpy.pi * (0.5 * scale) ** 2
+        rim = side * side * numpy.pi * scale
+        self.assertAlmostEqual(full, area - 0.5 * rim, delta=0.25 * rim)  # pixels on the rim are of mixed colour
+
+    def test_a_flash_shows_where_two_bodies_met_and_when(self):
+        trajectory = self.open_scene(SEED.parent / "head-on.json")
+        velocity = trajectory["velocity"][:, 0, 0]
+        hit = int(numpy.argmax(velocity < 0))  # the first frame after
+        flash = (0xD0, 0, 0)
+        self.show(hit - 1)
+        self.assertEqual(self.browser.run(PIXELS, [flash])[0][0], 0)
+        self.show(hit)
+        count, x, y = self.browser.run(PIXELS, [flash])[0]
+        self.assertGreater(count, 20)
+        self.assertAlmostEqual(x, self.browser.run("return carom.view.x(0)"), delta=2)
+        self.assertAlmostEqual(y, self.browser.run("return carom.view.y(0)"), delta=2)
+
+    def test_rotation_marks_and_velocity_arrows_point_where_the_trajectory_says(self):
+        scene = {"carom": 1, "name": "spin", "walls": {"min": [0, 0], "max": [10, 6]},
+                 "bodies": [{"shape": {"disc": {"radius": 1}}, "position": [2, 2], "angular_velocity": 2, "velocity": [1, 0.5]},
+                            {"shape": {"disc": {"radius": 1}}, "position": [7, 4], "angular_velocity": -1, "velocity": [-1, -0.8]}],
+                 "step": {"dt": 0.01, "count": 100}}
+        trajectory = self.open_scene(scene)
+        frame = 70
+        position, velocity, angle = (trajectory[name][frame] for name in ("position", "velocity", "angle"))
+        along = numpy.stack([numpy.cos(angle), numpy.sin(angle)], axis=1)
+        self.show(frame)
+        light, dark = (lambda pixel: min(pixel) > 180), (lambda pixel: max(pixel) < 90)  # the lines' edges are smooth
+        self.assertTrue(all(map(light, self.pixels_at(position + 0.6 * along))))
+        self.assertFalse(any(map(light, self.pixels_at(position - 0.6 * along))))
+        self.show(frame, "show-marks", "show-arrows")
+        self.assertFalse(any(map(light, self.pixels_at(position + 0.6 * along))))
+        ahead = numpy.array(velocity) / numpy.linalg.norm(velocity, axis=1)[:, None]
+        found = [self.pixels_at(position + sign * 0.05 * ahead) for sign in (1, -1)]
+        self.assertTrue(all(map(dark, found[0])), found)
+        self.assertFalse(any(map(dark, found[1])), found)
+
+
 class LooksTest(ProgramTest):
     """No overlap, no cut text, and colours that stand out, wide and narrow, light and dark."""
 
