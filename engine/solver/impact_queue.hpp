@@ -95,7 +95,7 @@ class ImpactCalendar {
 /// The impacts of a substep. In a small world they come in the order of time. A large world is cut into
 /// tiles, and a tile's impacts are all done before the next tile's: the bodies of a tile fit into the cache,
 /// while impacts in the order of time alone jump all over memory. Across the border of two tiles an impact
-/// can so be carried out after one that it would have changed: for a gas of 1,000,000 eight in 100,000
+/// can so be carried out after one that it would have changed: for a gas of 1,000,000 twelve in 100,000
 /// impacts, each a matter of a part of one body's way in a step. docs/decisions/0002-impulse-solver.md has
 /// the measurements.
 class ImpactQueue {
