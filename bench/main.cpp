@@ -178,6 +178,13 @@ Choices read_choices(const std::vector<std::string>& arguments) {
     return choices;
 }
 
+/// One scene of the peers has a file of its own, beside the others.
+std::string file_name(std::string_view part, const Choices& choices) {
+    if (part != "peers" || choices.scene.empty()) return measure::joined(part, ".json");
+    const std::string bodies = std::to_string(peer_tasks(choices).front().bodies);
+    return measure::joined(part, "-", choices.scene, "-", bodies, ".json");
+}
+
 int run(const Choices& choices) {
     fs::create_directories(choices.out);
     // Quick cases are repeated for a shorter time each.
@@ -192,7 +199,7 @@ int run(const Choices& choices) {
         say(measure::joined("== ", part.name));
         Json json = part.run(choices);
         json["quick"] = choices.quick;
-        const fs::path path = choices.out / measure::joined(part.name, ".json");
+        const fs::path path = choices.out / file_name(part.name, choices);
         write(path, json);
         say(measure::joined("== ", part.name, ": ", path.string()));
     }

@@ -97,7 +97,7 @@ std::unique_ptr<Peer> make_with_hash(const BenchScene& scene) {
 std::vector<PeerEngine> chipmunk_engines() {
     const std::string settings =
         measure::joined(cpVersionString, " as installed, double precision, 10 iterations, ");
-    return {{"Chipmunk, tree", settings + "tree of bounding boxes (its default)", 200'000, &make_with_tree},
+    return {{"Chipmunk, tree", settings + "tree of bounding boxes (its default)", 50'000, &make_with_tree},
             {"Chipmunk, hash", settings + "spatial hash, cells of 1 m", 200'000, &make_with_hash}};
 }
 

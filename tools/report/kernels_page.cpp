@@ -30,7 +30,7 @@ Chart roofline_chart(const std::vector<Result>& results) {
                 .log_x = true,
                 .log_y = true,
                 .series = {},
-                .note = "No kernel can be above the roof of the memory its data are in."};
+                .note = "Roofs of copying: a kernel that only reads can be above that of the memory its data are in."};
     for (std::size_t i = 0; i < results.size(); ++i) {
         const Json& json = results[i].json;
         const double peak = json.at("ceilings").at("peak").back().at("float_per_second").get<double>();
