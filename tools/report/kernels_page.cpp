@@ -23,14 +23,16 @@ Series roof(const Json& level, double peak, const std::string& tag) {
 
 /// Single precision in the first cache, each kernel once an instruction set.
 Chart roofline_chart(const std::vector<Result>& results) {
-    Chart chart{.id = "roofline",
-                .title = "Roofline: kernels in single precision, data in the first cache",
-                .x_label = "operations a byte",
-                .y_label = "operations a second (G/s)",
-                .log_x = true,
-                .log_y = true,
-                .series = {},
-                .note = "Roofs of copying: a kernel that only reads can be above that of the memory its data are in."};
+    Chart chart{
+        .id = "roofline",
+        .title = "Roofline: kernels in single precision, data in the first cache",
+        .x_label = "operations a byte",
+        .y_label = "operations a second (G/s)",
+        .log_x = true,
+        .log_y = true,
+        .series = {},
+        .note =
+            "Roofs of copying: a kernel that only reads can be above that of the memory its data are in."};
     for (std::size_t i = 0; i < results.size(); ++i) {
         const Json& json = results[i].json;
         const double peak = json.at("ceilings").at("peak").back().at("float_per_second").get<double>();
