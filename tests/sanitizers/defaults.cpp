@@ -1,9 +1,10 @@
 // Options of the sanitizers, linked into every program that is built with one: what they would otherwise
-// report is libomp's own. Names and signatures are the sanitizers' interface.
+// report is other libraries' own. Names and signatures are the sanitizers' interface.
 extern "C" {
 
 const char* __lsan_default_suppressions() {
-    return "leak:libomp.so";  // thread descriptors, kept until the process ends
+    return "leak:libomp.so\n"     // thread descriptors, kept until the process ends
+           "leak:libfontconfig";  // fonts that cairo looked up, likewise
 }
 
 const char* __tsan_default_options() {
