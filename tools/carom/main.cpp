@@ -34,6 +34,7 @@ int run_program(int argc, char** argv) {
     add_profile_command(program, action);
     add_scaling_command(program, action);
     add_report_command(program, action);
+    add_accuracy_command(program, action);
     try {
         program.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -23,20 +23,20 @@ std::string clock_text(double seconds) {
 
 }  // namespace
 
-std::string progress_line(std::int64_t done, std::int64_t step_count, double seconds) {
+std::string progress_line(std::int64_t done, std::int64_t step_count, double seconds, const char* unit) {
     const double part = step_count > 0 ? static_cast<double>(done) / static_cast<double>(step_count) : 1.0;
     const double rate = seconds > 0 ? static_cast<double>(done) / seconds : 0.0;
     const double left = rate > 0 ? static_cast<double>(step_count - done) / rate : 0.0;
     const auto filled = static_cast<std::size_t>(std::clamp(part, 0.0, 1.0) * kBarWidth);
 
     return joined("[", std::string(filled, '#'), std::string(kBarWidth - filled, '.'), "] ",
-                  format("%3d %%  step %lld of %lld  %.*f steps/s  %s left", static_cast<int>(part * 100),
+                  format("%3d %%  %s %lld of %lld  %.*f %ss/s  %s left", static_cast<int>(part * 100), unit,
                          static_cast<long long>(done), static_cast<long long>(step_count), rate < 10 ? 1 : 0,
-                         rate, clock_text(left).c_str()));
+                         rate, unit, clock_text(left).c_str()));
 }
 
-ProgressBar::ProgressBar(std::int64_t step_count, bool wanted)
-    : step_count_(step_count), shown_(wanted && isatty(STDERR_FILENO) == 1) {}
+ProgressBar::ProgressBar(std::int64_t step_count, bool wanted, const char* unit)
+    : step_count_(step_count), shown_(wanted && isatty(STDERR_FILENO) == 1), unit_(unit) {}
 
 void ProgressBar::update(std::int64_t done) {
     if (!shown_) return;
@@ -45,7 +45,7 @@ void ProgressBar::update(std::int64_t done) {
     last_drawn_ = now;
     drawn_ = true;
     const double seconds = std::chrono::duration<double>(now - start_).count();
-    std::fprintf(stderr, "\r%s\x1b[K", progress_line(done, step_count_, seconds).c_str());
+    std::fprintf(stderr, "\r%s\x1b[K", progress_line(done, step_count_, seconds, unit_).c_str());
     std::fflush(stderr);
 }
 

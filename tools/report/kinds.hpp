@@ -24,6 +24,7 @@ struct Result {
 /// How one kind of result is drawn; each is in a file of its own. The table of them is in kinds.cpp.
 /// @throws ResultError
 void draw_run(const Result& result, Page& page);
+void draw_accuracy(const Result& result, Page& page);
 
 /// Results of measurements of one kind, at least one: several are compared side by side, in one chart.
 void draw_scaling(const std::vector<Result>& results, Page& page);

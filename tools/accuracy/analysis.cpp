@@ -1,0 +1,95 @@
+#include "accuracy/analysis.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "accuracy/solvers.hpp"
+
+namespace carom::accuracy {
+namespace {
+
+bool is_of(const Point& point, const Contender& contender) {
+    return point.setting.solver == contender.solver && point.setting.precision == contender.precision;
+}
+
+/// The points of the sweep over steps that have an error, longest step first.
+std::vector<const Point*> step_sweep(const CaseResult& result, const Contender& contender) {
+    std::vector<const Point*> sweep;
+    for (const Point& point : result.points)
+        if (is_of(point, contender) && point.failure.empty() &&
+            (sweep.empty() || (point.setting.substeps == sweep.front()->setting.substeps &&
+                               point.setting.iterations == sweep.front()->setting.iterations)))
+            sweep.push_back(&point);
+    std::sort(sweep.begin(), sweep.end(),
+              [](const Point* a, const Point* b) { return a->setting.dt > b->setting.dt; });
+    return sweep;
+}
+
+}  // namespace
+
+std::string in_words(const Contender& contender) {
+    return std::string(name_of(contender.solver)) +
+           (contender.precision == Precision::single_ ? ", float" : ", double");
+}
+
+std::vector<Contender> contenders_in(const CaseResult& result) {
+    std::vector<Contender> found;
+    for (const Point& point : result.points) {
+        const Contender contender{point.setting.solver, point.setting.precision};
+        if (std::find(found.begin(), found.end(), contender) == found.end()) found.push_back(contender);
+    }
+    return found;
+}
+
+std::optional<Order> observed_order(const CaseResult& result, const Contender& contender, std::size_t error) {
+    constexpr double kStillFalls = 0.8;  // of the error of the step before
+    constexpr std::size_t kFewest = 3;
+    std::vector<double> x, y;
+    Order fit;
+    for (const Point* point : step_sweep(result, contender)) {
+        const double value = point->errors[error].value;
+        if (!(value > 0) || (!y.empty() && std::log(value) > y.back() + std::log(kStillFalls))) break;
+        x.push_back(std::log(point->setting.dt)), y.push_back(std::log(value));
+        if (x.size() == 1) fit.from = point->setting.dt;
+        fit.to = point->setting.dt;
+    }
+    if (x.size() < kFewest) return std::nullopt;
+    const double n = static_cast<double>(x.size());
+    double sx = 0, sy = 0, sxx = 0, sxy = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) sx += x[i], sy += y[i], sxx += x[i] * x[i], sxy += x[i] * y[i];
+    fit.order = (n * sxy - sx * sy) / (n * sxx - sx * sx);
+    return fit;
+}
+
+const Point* cheapest(const CaseResult& result, const Contender& contender, double target) {
+    const Point* best = nullptr;
+    for (const Point& point : result.points)
+        if (is_of(point, contender) && point.failure.empty() && point.errors[0].value <= target &&
+            (!best || point.seconds.value < best->seconds.value))
+            best = &point;
+    return best;
+}
+
+const Point* cheapest(const CaseResult& result, double target) {
+    const Point* best = nullptr;
+    for (const Contender& contender : contenders_in(result))
+        if (const Point* point = cheapest(result, contender, target);
+            point && (!best || point->seconds.value < best->seconds.value))
+            best = point;
+    return best;
+}
+
+std::vector<const Point*> frontier_of(const CaseResult& result) {
+    std::vector<const Point*> frontier;
+    for (const Point& point : result.points) {
+        if (!point.failure.empty()) continue;
+        const auto is_better = [&](const Point& other) {
+            return other.failure.empty() && other.seconds.value < point.seconds.value &&
+                   other.errors[0].value <= point.errors[0].value;
+        };
+        if (std::none_of(result.points.begin(), result.points.end(), is_better)) frontier.push_back(&point);
+    }
+    return frontier;
+}
+
+}  // namespace carom::accuracy

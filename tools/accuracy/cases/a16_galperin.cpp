@@ -1,0 +1,58 @@
+#include "accuracy/cases/parts.hpp"
+
+namespace carom::accuracy {
+namespace {
+
+constexpr double kRatio = 1e4, kTime = 30;  // masses 1 and 100²; s
+constexpr std::int64_t kCollisions = 314;   // floor(100 pi)
+
+Scene scene_of(int) {
+    Scene scene;
+    scene.walls = Walls{.min = {0, -10},
+                        .max = {1e5, 10},
+                        .right = false,
+                        .bottom = false,
+                        .top = false,
+                        .material = bouncy(1)};
+    scene.add(disc(0.5, 1, {1.5, 0}, {}, bouncy(1)));
+    scene.add(disc(0.5, kRatio, {3, 0}, {-1, 0}, bouncy(1)));
+    return scene;
+}
+
+/// The heavy disc's velocity at the end, impact by impact.
+double exact_velocity() {
+    long double light = 0, heavy = -1;
+    for (std::int64_t i = 0; i < kCollisions; ++i) {
+        if (i % 2 == 1) {
+            light = -light;  // the wall
+            continue;
+        }
+        const long double mean = (light + kRatio * heavy) / (1 + kRatio);
+        light = 2 * mean - light, heavy = 2 * mean - heavy;
+    }
+    return static_cast<double>(heavy);
+}
+
+std::vector<double> run(Stepper& stepper, const Scene&, int) {
+    stepper.advance_to(kTime);
+    const auto impacts = static_cast<double>(stepper.simulation().profile().impacts);
+    return {stepper.state(1).velocity.x - exact_velocity(), impacts / kCollisions - 1};
+}
+
+}  // namespace
+
+Case galperin_billiard() {
+    return {.id = "A16",
+            .title = "Galperin's billiard: a wall, a mass, one 10,000 times as heavy",
+            .kind = "single impacts",
+            .effects = "N R",
+            .exact = "exactly floor(100 pi) = 314 collisions",
+            .errors = {{"velocity", "difference of the heavy disc's last velocity, over its first"},
+                       {"collisions", "difference in their number, over 314"}},
+            .solvers = {"event", "impulse", "soft", "pairwise"},
+            .steps = {1.0 / 30, 1.0 / 60, 1.0 / 120, 1.0 / 240, 1.0 / 480, 1.0 / 960},
+            .scene = scene_of,
+            .run = run};
+}
+
+}  // namespace carom::accuracy

@@ -1,0 +1,201 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include "report/kinds.hpp"
+
+// Error against time, on cases whose answer is known: a section for each case.
+
+namespace carom::report {
+namespace {
+
+/// JSON as a person writes it: texts without quotes.
+std::string plain(const Json& value) {
+    return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+std::string number(double value, const char* pattern = "%.3g") {
+    char text[32];
+    std::snprintf(text, sizeof text, pattern, value);
+    return text;
+}
+
+std::string step_text(double dt) {
+    const double rate = 1 / dt;
+    return std::fabs(rate - std::round(rate)) < 1e-6 * rate && dt < 1 ? "1/" + number(rate, "%.0f") + " s"
+                                                                      : number(dt) + " s";
+}
+
+std::string contender_of(const Json& point) {
+    return plain(point.at("solver")) + ", " + plain(point.at("precision"));
+}
+
+std::string label_of(const Json& point) {
+    std::string text = contender_of(point) + ", " + step_text(point.at("dt"));
+    if (point.at("substeps") != 1) text += ", " + plain(point.at("substeps")) + " substeps";
+    if (point.at("iterations") != 1) text += ", " + plain(point.at("iterations")) + " iterations";
+    return text;
+}
+
+bool has_failed(const Json& point) {
+    return !point.at("failure").is_null();
+}
+
+double work_of(const Json& point) {
+    double sum = 0;
+    for (const auto& [name, amount] : point.at("work").items()) sum += amount.get<double>();
+    return sum;
+}
+
+/// Where points stand that have no error, or none that a logarithm can show.
+struct Edges {
+    double top = 1, bottom = 1e-17;
+};
+
+Edges edges_of(const Json& result, std::size_t error) {
+    Edges edges{.top = 0, .bottom = 1};
+    for (const Json& point : result.at("points")) {
+        if (has_failed(point)) continue;
+        const double value = point.at("errors").at(error).at("value").get<double>();
+        edges.top = std::max(edges.top, value);
+        if (value > 0) edges.bottom = std::min(edges.bottom, value);
+    }
+    return {edges.top > 0 ? 10 * edges.top : 1, edges.bottom / 10};
+}
+
+Point point_at(const Json& point, std::size_t error, double x, const Edges& edges) {
+    if (has_failed(point))
+        return {.x = x, .y = edges.top, .label = label_of(point) + ": " + plain(point.at("failure"))};
+    const Json& band = point.at("errors").at(error);
+    const double value = band.at("value").get<double>();
+    if (!(value > 0)) return {.x = x, .y = edges.bottom, .label = label_of(point) + ": no error at all"};
+    return {.x = x,
+            .y = value,
+            .low = std::max(band.at("low").get<double>(), edges.bottom),
+            .high = band.at("high").get<double>(),
+            .label = label_of(point)};
+}
+
+/// One line a solver and precision, in the order of x; failures are marks of their own at the upper edge.
+template <class Abscissa>
+std::vector<Series> series_of(const Json& result, std::size_t error, const Abscissa& x_of, bool steps_only) {
+    std::vector<Series> series;
+    std::map<std::string, std::size_t> place;
+    Series failed{.name = "failed", .line = false};
+    const Edges edges = edges_of(result, error);
+    for (const Json& point : result.at("points")) {
+        const Point drawn = point_at(point, error, x_of(point), edges);
+        if (has_failed(point)) {
+            if (std::isfinite(drawn.x) && drawn.x > 0) failed.points.push_back(drawn);
+            continue;
+        }
+        const std::string name = contender_of(point);
+        if (!place.contains(name)) place[name] = series.size(), series.push_back({.name = name});
+        series[place[name]].points.push_back(drawn);
+    }
+    for (Series& each : series) {
+        const auto before = [](const Point& a, const Point& b) { return a.x < b.x; };
+        if (steps_only) std::stable_sort(each.points.begin(), each.points.end(), before);
+    }
+    if (!failed.points.empty()) series.push_back(std::move(failed));
+    return series;
+}
+
+void name_orders(const Json& result, const std::string& error, std::vector<Series>& series) {
+    for (const Json& fit : result.at("orders"))
+        for (Series& each : series)
+            if (plain(fit.at("error")) == error && each.name == contender_of(fit))
+                each.name += ": order " + number(fit.at("order").get<double>(), "%.2f");
+}
+
+void add_charts(const Json& result, std::size_t error, Page& page) {
+    const Json& measure = result.at("errors").at(error);
+    const std::string name = plain(measure.at("name")),
+                      id = plain(result.at("id")) + "-" + std::to_string(error);
+    const std::string meaning = "Error: " + plain(measure.at("meaning")) + ".";
+    const std::string y_label = "error of " + name;
+    page.chart(
+        {.id = id + "-time",
+         .title = plain(result.at("id")) + ": error of " + name + " against time",
+         .x_label = "time of all steps (s)",
+         .y_label = y_label,
+         .log_x = true,
+         .log_y = true,
+         .series = series_of(
+             result, error, [](const Json& p) { return p.at("seconds").at("value").get<double>(); }, false),
+         .slopes = {{-1, "slope 1"}, {-2, "slope 2"}},
+         .note = meaning});
+    std::vector<Series> by_step = series_of(
+        result, error,
+        [](const Json& p) { return p.at("dt").get<double>() / p.at("substeps").get<double>(); }, true);
+    name_orders(result, name, by_step);
+    page.chart({.id = id + "-step",
+                .title = plain(result.at("id")) + ": error of " + name + " against substep",
+                .x_label = "step / substeps (s)",
+                .y_label = y_label,
+                .log_x = true,
+                .log_y = true,
+                .series = std::move(by_step),
+                .slopes = {{1, "slope 1"}, {2, "slope 2"}}});
+    if (error > 0) return;
+    page.chart({.id = id + "-work",
+                .title = plain(result.at("id")) + ": error of " + name + " against work",
+                .x_label = "bodies moved + pairs looked at + impacts",
+                .y_label = y_label,
+                .log_x = true,
+                .log_y = true,
+                .series = series_of(result, error, work_of, false),
+                .note = "The same in units that do not depend on the machine."});
+}
+
+void add_times(const Json& result, Page& page) {
+    Table table{.caption = "Time to reach an error of " + plain(result.at("errors").at(0).at("name")),
+                .headers = {"solver", "1 %", "0.1 %", "0.01 %"},
+                .sortable = true};
+    std::map<std::string, std::size_t> row;
+    for (const Json& time : result.at("time_to_reach")) {
+        const std::string name = contender_of(time);
+        if (!row.contains(name)) row[name] = table.rows.size(), table.rows.push_back({name});
+        table.rows[row[name]].push_back(time.at("seconds").is_null()
+                                            ? "–"
+                                            : number(1e3 * time.at("seconds").get<double>(), "%.4g") +
+                                                  " ms (" + plain(time.at("setting")) + ")");
+    }
+    page.table(table);
+}
+
+void add_case(const Json& result, Page& page) {
+    page.heading(plain(result.at("id")) + ": " + plain(result.at("title")));
+    std::string text =
+        "Exact: " + plain(result.at("exact")) + ". Effects: " + plain(result.at("effects")) + ".";
+    if (result.at("starts") > 1)
+        text += " Motion is chaotic, so " + plain(result.at("starts")) +
+                " starts are compared (fewer in a quick run): median with 10–90 % band, or mean with "
+                "standard error.";
+    page.paragraph(text);
+    std::string failures;
+    for (const Json& point : result.at("points"))
+        if (has_failed(point))
+            failures += (failures.empty() ? "" : "; ") + label_of(point) + ": " + plain(point.at("failure"));
+    if (!failures.empty()) page.paragraph("Failed: " + failures + ".");
+    for (std::size_t error = 0; error < result.at("errors").size(); ++error) add_charts(result, error, page);
+    add_times(result, page);
+}
+
+}  // namespace
+
+void draw_accuracy(const Result& result, Page& page) {
+    const Json& json = result.json;
+    page.set_title("What accuracy costs in time");
+    if (json.at("quick").get<bool>()) page.warning("A quick run: few settings, starts and repetitions.");
+    page.paragraph(
+        "Each case has a known answer. Every solver computes it in single and double precision over a "
+        "sweep of steps, substeps and iterations. Lower is nearer the answer, further left is faster. "
+        "Times are of stepping alone, on one thread, the median of repeated runs.");
+    page.heading("Which solver for which scene");
+    for (const Json& advice : json.at("advice")) page.paragraph(plain(advice));
+    for (const Json& each : json.at("cases")) add_case(each, page);
+}
+
+}  // namespace carom::report
