@@ -31,6 +31,13 @@ constexpr std::array kReasons{
     Reason{"find_impacts", "loads a record a lane and turns them in registers: shuffles, not arithmetic"},
     Reason{"find_impacts_near",
            "three short runs of about two bodies, then a record a lane: calls and shuffles, not arithmetic"},
+    Reason{"find_contacts", "a record a lane, and nine columns compressed one after the other"},
+    Reason{"warm_start_pairs", "gathers and scatters two records a lane, turned in registers"},
+    Reason{"first_pairs", "gathers and scatters four records a lane, turned in registers"},
+    Reason{"next_pairs", "gathers and scatters two records a lane, turned in registers"},
+    Reason{"begin_substeps", "turns records in registers, and writes as much again as it reads"},
+    Reason{"advance_bodies", "turns five records in registers for each batch"},
+    Reason{"end_substeps", "turns records into columns in registers; divides by radii"},
     Reason{"advance_rotation", "as many loads and stores as operations: one store a cycle"},
 };
 

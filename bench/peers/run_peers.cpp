@@ -183,7 +183,7 @@ std::string peers_text(const Json& peers) {
             const std::string kinetic = measures.contains("kinetic_ratio")
                                             ? format("%.4f", number("measures", "kinetic_ratio"))
                                             : "-";
-            text += format("  %-16s %12.4g %26s %12s %10.2f %% %10.2f %% %11.3g\n", name.c_str(),
+            text += format("  %-16s %12.4g %26s %12s %10.3g %% %10.3g %% %11.3g\n", name.c_str(),
                            number("ns_per_body", "median"), ratio.c_str(), kinetic.c_str(),
                            100 * number("measures", "overlap_mean"), 100 * number("measures", "overlap_max"),
                            number("measures", "speed_rms"));

@@ -61,8 +61,8 @@ class PerformancePageTest(unittest.TestCase):
                 self.assertGreater(len(self.results.parts["kernels"]["reasons"][row["kernel"]]), 20, row["kernel"])
 
     def test_numbers_are_written_without_exponents(self):
-        self.assertEqual([make.number(value) for value in (0, 0.01234, 3.14159, 123.4, 12345, 1e6)],
-                         ["0", "0.0123", "3.14", "123", "12,300", "1,000,000"])
+        self.assertEqual([make.number(value) for value in (0, 2.636e-6, 0.01234, 3.14159, 123.4, 12345, 1e6)],
+                         ["0", "0.00000264", "0.0123", "3.14", "123", "12,300", "1,000,000"])
 
 
 if __name__ == "__main__":

@@ -5,7 +5,8 @@
 namespace carom::measure {
 namespace {
 
-using Count = double (*)(const ProfiledSteps&);
+/// @param calls  of the stage in a step: one a substep
+using Count = double (*)(const ProfiledSteps&, double calls);
 using Bytes = double (*)(double real);
 
 struct StageModel {
@@ -16,16 +17,16 @@ struct StageModel {
     double operations;
 };
 
-double all_bodies(const ProfiledSteps& s) {
-    return s.bodies;
+double all_bodies(const ProfiledSteps& s, double calls) {
+    return s.bodies * calls;
 }
-double rebuilt_bodies(const ProfiledSteps& s) {
+double rebuilt_bodies(const ProfiledSteps& s, double) {
     return s.bodies * static_cast<double>(s.after.rebuilds - s.before.rebuilds) / s.steps();
 }
-double candidate_pairs(const ProfiledSteps& s) {
-    return static_cast<double>(s.after.candidate_pairs);
+double candidate_pairs(const ProfiledSteps& s, double calls) {
+    return static_cast<double>(s.after.candidate_pairs) * calls;
 }
-double impacts(const ProfiledSteps& s) {
+double impacts(const ProfiledSteps& s, double) {
     return static_cast<double>(s.after.impacts - s.before.impacts) / s.steps();
 }
 
@@ -44,16 +45,21 @@ constexpr std::array kModels{
                [](double real) { return 2 * (4 * real + 9 * (4 * real + 4)); }, 2 * 9 * 28 + 60},
     StageModel{"keep_books", "body", &all_bodies, [](double real) { return 5 * real; }, 20},
     StageModel{"advance_rotation", "body", &all_bodies, [](double real) { return 4 * real; }, 3},
+    // a record in, two of velocity and one of displacement out
+    StageModel{"begin_substeps", "body", &all_bodies, [](double real) { return 16 * real; }, 7},
+    // two records of velocity and one of displacement in and out, the turn
+    StageModel{"advance_bodies", "body and substep", &all_bodies, [](double real) { return 22 * real; }, 38},
+    StageModel{"end_substeps", "body", &all_bodies, [](double real) { return 17 * real; }, 13},
     StageModel{"end_flight", "body", &all_bodies, [](double real) { return 8 * real; }, 10},
 };
 
 }  // namespace
 
-std::optional<StageWork> work_of_stage(std::string_view stage, const ProfiledSteps& steps) {
+std::optional<StageWork> work_of_stage(std::string_view stage, const ProfiledSteps& steps, double calls) {
     for (const StageModel& model : kModels)
         if (model.stage == stage)
             return StageWork{
-                model.item, model.items(steps), {model.bytes(steps.real_bytes), model.operations}};
+                model.item, model.items(steps, calls), {model.bytes(steps.real_bytes), model.operations}};
     return std::nullopt;
 }
 

@@ -26,7 +26,8 @@ struct ProfiledSteps {
     double steps() const { return static_cast<double>(after.steps - before.steps); }
 };
 
+/// @param calls  of the stage in a step: one a substep
 /// @return nothing for a stage whose work is not a matter of items
-std::optional<StageWork> work_of_stage(std::string_view stage, const ProfiledSteps& steps);
+std::optional<StageWork> work_of_stage(std::string_view stage, const ProfiledSteps& steps, double calls);
 
 }  // namespace carom::measure

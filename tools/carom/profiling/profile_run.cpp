@@ -90,7 +90,7 @@ Json stage_json(std::size_t index, const Turns& turns, const measure::ProfiledSt
               {"share", seconds / all_seconds}};
     measure::StageFacts facts{
         .bodies = steps.bodies, .seconds_per_call = seconds / calls, .seconds_of_a_reading = clock_reading};
-    if (const auto work = measure::work_of_stage(after.name, steps); work && work->items > 0) {
+    if (const auto work = measure::work_of_stage(after.name, steps, calls); work && work->items > 0) {
         const measure::CopyBandwidth& level =
             ceilings.copy_of(static_cast<std::size_t>(work->items * work->work.bytes));
         const measure::ArithmeticPeak& peak = ceilings.peak_of(turns.plan.isa);
