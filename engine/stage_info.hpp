@@ -19,6 +19,15 @@ enum class StageName : std::uint8_t {
     advance_rotation,
     end_flight,
     run_events,
+    begin_substeps,
+    update_contacts,
+    find_contacts,
+    solve_contacts,
+    book_substep,
+    advance_bodies,
+    end_contacts,
+    end_substeps,
+    book_displacements,
 };
 
 /// What a stage touches; `carom explain` and docs/how-a-step-works.md print it.
@@ -39,6 +48,16 @@ inline constexpr std::array kStages{
     StageInfo{"advance_rotation", "angular velocity", "angle, angular velocity"},
     StageInfo{"end_flight", "motion, accelerations", "position, velocity"},
     StageInfo{"run_events", "all columns", "position, velocity, angle, angular velocity, books"},
+    StageInfo{"begin_substeps", "motion, angular velocity, mass, radius", "velocity records"},
+    StageInfo{"update_contacts", "candidate pairs", "coloured candidates, impulses"},
+    StageInfo{"find_contacts", "motion, coloured candidates, impulses", "contacts, velocity records"},
+    StageInfo{"solve_contacts", "contacts, velocity records", "impulses, velocity records, displacements"},
+    StageInfo{"book_substep", "contacts, velocity records", "books"},
+    StageInfo{"advance_bodies", "velocity records", "velocity records, displacements"},
+    StageInfo{"end_contacts", "contacts, velocity records", "impulses, velocity records"},
+    StageInfo{"end_substeps", "velocity records, displacements",
+              "position, velocity, angle, angular velocity"},
+    StageInfo{"book_displacements", "motion, position", "books"},
 };
 
 constexpr const StageInfo& info_of(StageName stage) {

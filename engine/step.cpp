@@ -15,12 +15,16 @@ void step(Simulation<Real>& sim, double dt, StageTimes& times) {
         times.lap(name);
     };
 
-    sim.h = dt / plan.substeps;
+    // A flight is what the broadphase looks ahead: solver `impulse` takes one a substep, `soft` one a step.
+    sim.h = plan.flights > 0 ? dt / plan.flights : dt;
+    sim.substep_count = plan.contact_substeps;
+    sim.substep_h = plan.contact_substeps > 0 ? dt / plan.contact_substeps : 0;
     times.start();
-    for (int i = 0; i < plan.substeps; ++i) {
+    for (int i = 0; i < plan.flights; ++i) {
         run(StageName::sort_rows, plan.sort_rows);
         run(StageName::begin_flight, plan.begin_flight);
         run(StageName::update_candidates, plan.update_candidates);
+
         run(StageName::find_impacts, plan.find_impacts);
         run(StageName::settle_contacts, plan.settle_contacts);
         run(StageName::resolve_impacts, plan.resolve_impacts);
@@ -29,6 +33,17 @@ void step(Simulation<Real>& sim, double dt, StageTimes& times) {
         run(StageName::end_flight, plan.end_flight);
         run(StageName::run_events, plan.run_events);
     }
+    run(StageName::begin_substeps, plan.begin_substeps);
+    run(StageName::update_contacts, plan.update_contacts);
+    run(StageName::find_contacts, plan.find_contacts);
+    for (sim.substep = 0; sim.substep < plan.contact_substeps; ++sim.substep) {
+        run(StageName::solve_contacts, plan.solve_contacts);
+        run(StageName::book_substep, plan.book_substep);
+        run(StageName::advance_bodies, plan.advance_bodies);
+    }
+    run(StageName::end_contacts, plan.end_contacts);
+    run(StageName::end_substeps, plan.end_substeps);
+    run(StageName::book_displacements, plan.book_displacements);
     sim.world.time += dt;
     ++sim.step_count;
 }

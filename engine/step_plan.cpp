@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "math/vec2_math.hpp"
 #include "stage_info.hpp"
 #include "stages/stages.hpp"
 
@@ -94,12 +95,33 @@ CalledEffects call_effects(const Scene& scene, const EffectOverrides& overrides)
                                  ? "angular drag is " + number(scene.drag.angular) + " 1/s and bodies turn"
                                  : "",
                              scene.drag.angular > 0 ? "nothing turns" : "angular drag is zero");
-    decide(reports, "continuous collision", {}, "solver impulse finds the time of every impact", "");
+    decide(reports, "continuous collision", {}, "every solver looks ahead over the whole step", "");
     on.ledger = decide(reports, "ledger", either(overrides.ledger, own.ledger), "", "not asked for");
     decide(reports, "joints", {}, "", "the scene has no joints");
     decide(reports, "sleeping", {}, "", "not asked for");
     return called;
 }
+
+namespace {
+
+/// Substeps of solver `soft`: so many that a body falls at most this share of the smallest radius from rest
+/// in one, because contacts are looked at once a substep.
+constexpr double kLargestFall = 0.005;
+
+template <class Real>
+int substeps_against_gravity(const Simulation<Real>& sim, double dt) {
+    const Bodies<Real>& bodies = sim.world.bodies;
+    double smallest = sim.candidates.smallest_radius();
+    if (!(smallest > 0)) {
+        smallest = bodies.radius[0];
+        for (std::size_t row = 1; row < bodies.count && !bodies.radius.is_uniform(); ++row)
+            smallest = std::fmin(smallest, bodies.radius[row]);
+    }
+    const double gravity = std::sqrt(length_squared(sim.world.gravity));
+    return static_cast<int>(std::ceil(dt * std::sqrt(0.5 * gravity / (kLargestFall * smallest))));
+}
+
+}  // namespace
 
 template <class Real>
 StepPlan<Real> make_step_plan(const Simulation<Real>& sim, double dt) {
@@ -108,14 +130,33 @@ StepPlan<Real> make_step_plan(const Simulation<Real>& sim, double dt) {
     const WorldState<Real>& world = sim.world;
     // Strong drag: more substeps, so that the series of effects/flight.hpp stay exact.
     const double largest_drag = std::fmax(world.drag.linear, world.drag.angular);
-    plan.substeps =
+    const int substeps =
         std::max(sim.substeps, static_cast<int>(std::ceil(dt * largest_drag / kLargestDragTimesStep)));
     const bool can_meet = world.bodies.count > 1 || world.effects.walls;
     if (sim.method == Solver::event) {
+        plan.flights = 1;
         plan.run_events = run_events<Real>;
         return plan;
     }
     plan.begin_flight = begin_flight<Real>;
+    if (sim.method == Solver::soft) {
+        plan.flights = 1;
+        plan.contact_substeps = std::max(substeps, substeps_against_gravity(sim, dt));
+        plan.begin_substeps = begin_substeps<Real>;
+        plan.advance_bodies = advance_bodies<Real>;
+        plan.end_substeps = end_substeps<Real>;
+        if (world.effects.ledger) plan.book_displacements = book_displacements<Real>;
+        if (world.effects.ledger || world.effects.walls) plan.book_substep = book_substep<Real>;
+        if (!can_meet) return plan;
+        plan.sort_rows = sort_rows<Real>;
+        plan.update_candidates = update_candidates<Real>;
+        plan.update_contacts = update_contacts<Real>;
+        plan.find_contacts = find_contacts<Real>;
+        plan.solve_contacts = solve_contacts<Real>;
+        plan.end_contacts = end_contacts<Real>;
+        return plan;
+    }
+    plan.flights = substeps;
     plan.end_flight = end_flight<Real>;
     if (can_meet) {
         plan.find_impacts = find_impacts<Real>;
@@ -159,6 +200,17 @@ Plan describe_plan(Simulation<Real>& sim, const CalledEffects& called) {
     list(stages.advance_rotation, StageName::advance_rotation, plan.isa);
     list(stages.end_flight, StageName::end_flight, plan.isa);
     list(stages.run_events, StageName::run_events, "scalar, in double precision");
+    const std::string contact =
+        plan.isa + (sim.world.effects.friction ? ", friction" : ", no friction") + variant;
+    list(stages.begin_substeps, StageName::begin_substeps, plan.isa);
+    list(stages.update_contacts, StageName::update_contacts, "");
+    list(stages.find_contacts, StageName::find_contacts, contact);
+    list(stages.solve_contacts, StageName::solve_contacts, contact);
+    list(stages.advance_bodies, StageName::advance_bodies, plan.isa);
+    list(stages.book_substep, StageName::book_substep, "");
+    list(stages.end_contacts, StageName::end_contacts, "");
+    list(stages.end_substeps, StageName::end_substeps, plan.isa);
+    list(stages.book_displacements, StageName::book_displacements, "");
 
     sim.world.bodies.for_each_column([&](const char* name, const char* unit, auto& column) {
         plan.columns.push_back({name, unit, sizeof(column[0])});

@@ -9,7 +9,8 @@ template <class Real>
 struct StepPlan {
     using Stage = void (*)(Simulation<Real>&);
 
-    int substeps = 1;
+    int flights = 0;           ///< that the broadphase looks ahead
+    int contact_substeps = 0;  ///< of solver `soft`
     Stage sort_rows = nullptr;
     Stage begin_flight = nullptr;
     Stage update_candidates = nullptr;
@@ -20,6 +21,17 @@ struct StepPlan {
     Stage advance_rotation = nullptr;
     Stage end_flight = nullptr;
     Stage run_events = nullptr;
+
+    // Solver `soft`.
+    Stage begin_substeps = nullptr;
+    Stage update_contacts = nullptr;
+    Stage find_contacts = nullptr;
+    Stage solve_contacts = nullptr;
+    Stage advance_bodies = nullptr;
+    Stage book_substep = nullptr;
+    Stage end_contacts = nullptr;
+    Stage book_displacements = nullptr;
+    Stage end_substeps = nullptr;
 };
 
 /// Which effects a scene calls for, its overrides applied, each with the reason.

@@ -51,9 +51,10 @@ void check_options(const Scene& scene, const WorldOptions& options) {
     const Accuracy accuracy = accuracy_of(scene, options);
     validate_accuracy(accuracy, "World");
     if (accuracy.solver == Solver::pairwise)
-        throw Error(ErrorCode::inconsistent,
-                    "World: solver \"pairwise\" is the naive reference engine, class carom::Pairwise "
-                    "(<carom/pairwise.hpp>), not a solver of World. Use \"auto\" or \"impulse\" here.");
+        throw Error(
+            ErrorCode::inconsistent,
+            "World: solver \"pairwise\" is the naive reference engine, class carom::Pairwise "
+            "(<carom/pairwise.hpp>), not a solver of World. Use \"auto\", \"impulse\" or \"soft\" here.");
     raise_if("World", find_solver_problem(scene, accuracy.solver));
     validate_effects(scene, scene.effects, "World");
     validate_effects(scene, options.effects, "World: option effects");
@@ -209,7 +210,9 @@ BodyId BasicWorld<Real>::add(const Body& body) {
 
 template <class Real>
 void BasicWorld<Real>::remove(BodyId body) {
-    implementation_->world().remove(implementation_->row_of(body, "World::remove"));
+    const std::size_t row = implementation_->row_of(body, "World::remove");
+    implementation_->sim.soft.graph.follow_removed_row(row, body_count() - 1);
+    implementation_->world().remove(row);
     implementation_->sim.forget_derived_state();
 }
 
@@ -296,6 +299,9 @@ Profile BasicWorld<Real>::profile() const {
     profile.wall_impacts = counters.wall_impacts + events.wall_impacts;
     profile.simultaneous_impacts = counters.simultaneous_impacts + events.simultaneous_impacts;
     profile.resting_contacts = counters.resting_contacts;
+    const SoftCounters& soft = sim.soft.counters;
+    profile.contacts = soft.contacts, profile.colours = soft.colours;
+    profile.overflow = soft.overflow, profile.bounces = soft.bounces;
     profile.overlaps_corrected = counters.overlaps_corrected;
     profile.unresolved_impacts = counters.unresolved_impacts;
     profile.quarantined = sim.world.quarantined_count;

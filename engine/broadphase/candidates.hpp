@@ -28,6 +28,8 @@ class Candidates {
 
     /// Forgets the pairs: rows, radii or positions were changed from outside.
     void invalidate() { is_valid_ = radii_are_known_ = false; }
+    /// Forgets the pairs alone.
+    void invalidate_pairs() { is_valid_ = false; }
 
     /// Finds the pairs anew if they are void or if too many bodies leave their margins on the flights that
     /// begin now.

@@ -1,11 +1,23 @@
 #pragma once
 
 #include "kernels/broadphase_arguments.hpp"
+#include "kernels/contact_arguments.hpp"
 #include "kernels/flight_arguments.hpp"
 
+#include <array>
 #include <string_view>
 
 namespace carom {
+
+/// The contact kernels with some effects compiled in.
+template <class Real>
+struct ContactKernels {
+    using Solve = void (*)(const SolveContacts<Real>&, std::size_t first, std::size_t last);
+    std::size_t (*find)(const FindContacts<Real>&, std::size_t first, std::size_t last);
+    Solve warm_start_pairs, warm_start_supports;
+    Solve first_pairs, first_supports;
+    Solve next_pairs, next_supports;
+};
 
 /// The kernels of one instruction set in one precision. A new kernel: an argument struct in kernels/, a line
 /// here, a line in make_table.hpp.
@@ -25,6 +37,12 @@ struct KernelTable {
     std::size_t (*find_impacts_near)(const GridLevel<Real>&, const FindImpactsNear<Real>&);
     std::size_t (*find_impacts_near_uniform_radius)(const GridLevel<Real>&, const FindImpactsNear<Real>&);
     void (*end_flight)(const EndFlight<Real>&, std::size_t first, std::size_t last);
+    std::array<ContactKernels<Real>, 3> contacts;  // smooth; rough; rough, and some bodies do not turn
+    // The last three: without and with rotation.
+    std::array<void (*)(const BeginSubsteps<Real>&, std::size_t first, std::size_t last), 2> begin_substeps;
+    std::array<void (*)(const AdvanceBodies<Real>&, std::size_t first, std::size_t last), 2> advance_bodies;
+    std::array<std::size_t (*)(const EndSubsteps<Real>&, std::size_t first, std::size_t last), 2>
+        end_substeps;
     void (*advance_rotation)(const AdvanceRotation<Real>&, std::size_t first, std::size_t last);
 };
 

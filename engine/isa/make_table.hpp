@@ -1,17 +1,33 @@
 #pragma once
 
 #include "isa/kernel_table.hpp"
+#include "kernels/advance_bodies.hpp"
 #include "kernels/begin_flight.hpp"
 #include "kernels/end_flight.hpp"
 #include "kernels/find_bounds.hpp"
 #include "kernels/find_candidates.hpp"
 #include "kernels/find_cells.hpp"
+#include "kernels/find_contacts.hpp"
 #include "kernels/find_impacts.hpp"
 #include "kernels/find_near.hpp"
+#include "kernels/solve_contacts.hpp"
 #include "simd/lanes.hpp"
 
 namespace carom {
 namespace {
+
+template <unsigned kVariant, class Real, class Isa>
+constexpr ContactKernels<Real> make_contact_kernels() {
+    return {
+        .find = &find_contacts<kVariant, Real, Isa>,
+        .warm_start_pairs = &warm_start_pairs<kVariant, Real, Isa>,
+        .warm_start_supports = &warm_start_supports<kVariant, Real, Isa>,
+        .first_pairs = &solve_pairs<kVariant, true, Real, Isa>,
+        .first_supports = &solve_supports<kVariant, true, Real, Isa>,
+        .next_pairs = &solve_pairs<kVariant, false, Real, Isa>,
+        .next_supports = &solve_supports<kVariant, false, Real, Isa>,
+    };
+}
 
 /// The one list of kernels, instantiated for each instruction set by its file.
 template <class Real, class Isa>
@@ -29,6 +45,11 @@ constexpr KernelTable<Real> make_table(std::string_view isa) {
         .find_impacts_near = &find_impacts_near<false, Real, Isa>,
         .find_impacts_near_uniform_radius = &find_impacts_near<true, Real, Isa>,
         .end_flight = &end_flight<Real, Isa>,
+        .contacts = {make_contact_kernels<0, Real, Isa>(), make_contact_kernels<kRough, Real, Isa>(),
+                     make_contact_kernels<kRough | kFixedAngles, Real, Isa>()},
+        .begin_substeps = {&begin_substeps<false, Real, Isa>, &begin_substeps<true, Real, Isa>},
+        .advance_bodies = {&advance_bodies<false, Real, Isa>, &advance_bodies<true, Real, Isa>},
+        .end_substeps = {&end_substeps<false, Real, Isa>, &end_substeps<true, Real, Isa>},
         .advance_rotation = &advance_rotation<Real, Isa>,
     };
 }

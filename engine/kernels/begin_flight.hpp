@@ -1,13 +1,11 @@
 #pragma once
 
+#include "kernels/consecutive_rows.hpp"
 #include "kernels/flight_arguments.hpp"
 #include "simd/lanes.hpp"
 
 namespace carom {
 namespace {
-
-/// Lane numbers as rows of a record block: store_rows4 writes consecutive records.
-constexpr std::int32_t kConsecutive[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 /// Whether a path from x to end, bulging by `bend`, comes nearer than `touch` to [min, max]'s ends.
 template <class F>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/begin_flight.hpp"
+#include "kernels/consecutive_rows.hpp"
 #include "kernels/flight_arguments.hpp"
 #include "simd/lanes.hpp"
 

@@ -1,25 +1,55 @@
 #include "scene/choose_solver.hpp"
 
+#include <algorithm>
+
 #include "scene/event_limits.hpp"
 
 namespace carom {
 namespace {
 
-SolverChoice choose(const Scene&) {
-    return {Solver::impulse,
-            "every shape is a disc and nothing has friction: each impact is resolved at its own time"};
+/// Bounces of a scene all of whose bodies have at least this restitution die out slowly enough that contact
+/// at rest is the exception. A choice of speed, not of correctness.
+constexpr double kBouncy = 0.5;
+
+bool is_rough(const Material& material) {
+    return material.friction > 0;
+}
+
+/// What in the scene is rough, in words; empty if nothing is.
+std::string what_is_rough(const Scene& scene) {
+    if (scene.walls && is_rough(scene.walls->material)) return "the walls have friction";
+    const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(),
+                                   [](const Body& b) { return is_rough(b.material); });
+    if (body == scene.bodies.end()) return {};
+    return join("body ", body - scene.bodies.begin(), " has friction");
+}
+
+SolverChoice choose(const Scene& scene) {
+    if (const std::string rough = what_is_rough(scene); !rough.empty()) return {Solver::soft, rough};
+    if (scene.effects.friction == true) return {Solver::soft, "friction is forced on"};
+    if (scene.bodies.size() <= 1 && !scene.walls)
+        return {Solver::impulse, "there is nothing to touch: free flight is exact"};
+    if (scene.gravity == Vec2{})
+        return {Solver::impulse,
+                "nothing has friction and without gravity nothing rests: each impact is "
+                "resolved at its own time"};
+    const auto dull = std::find_if(scene.bodies.begin(), scene.bodies.end(), [](const Body& b) {
+        return b.type == BodyType::dynamic_body && b.material.restitution < kBouncy;
+    });
+    if (dull == scene.bodies.end())
+        return {Solver::impulse, join("nothing has friction and every body bounces (restitution >= ", kBouncy,
+                                      "): each impact is resolved at its own time")};
+    return {Solver::soft,
+            join("gravity brings bodies to rest on each other: body ", dull - scene.bodies.begin(),
+                 " has restitution ", dull->material.restitution, ", below ", kBouncy)};
 }
 
 std::optional<Problem> find_roughness_problem(const Item& item, const Material& material, Solver solver) {
-    if (material.friction > 0 && solver != Solver::event)
-        return problem(ErrorCode::not_built_yet, item, "/material/friction", "friction ", material.friction,
-                       "; friction is not built yet for the solver ", quoted(name_of(solver)),
-                       ": it comes with the solver \"soft\". Use \"event\", or set it to 0.");
-    if (material.rolling_resistance > 0)
-        return problem(
-            ErrorCode::not_built_yet, item, "/material/rolling_resistance", "rolling resistance ",
-            material.rolling_resistance,
-            "; rolling resistance is not built yet: it comes with the solver \"soft\". Set it to 0.");
+    if (solver == Solver::soft || solver == Solver::event) return std::nullopt;
+    if (material.friction > 0)
+        return problem(ErrorCode::inconsistent, item, "/material/friction", "friction ", material.friction,
+                       ", but the solver ", quoted(name_of(solver)),
+                       " has no friction. Use \"soft\" or \"auto\", or set it to 0.");
     return std::nullopt;
 }
 
@@ -48,8 +78,8 @@ std::optional<Problem> find_solver_problem(const Scene& scene, Solver solver) {
     return std::nullopt;
 }
 
-int default_substeps(Solver) {
-    return 1;
+int default_substeps(Solver solver) {
+    return solver == Solver::soft ? 4 : 1;
 }
 
 }  // namespace carom

@@ -40,14 +40,30 @@ std::optional<Problem> find_restitution_problem(const Scene& scene) {
                       body->material.restitution);
 }
 
+bool rubs(const Body& body) {
+    return body.material.friction > 0;
+}
+
+std::optional<Problem> find_friction_problem(const Scene& scene, const EffectOverrides& effects) {
+    if (effects.friction == true && effects.rotation == false)
+        return problem(
+            ErrorCode::inconsistent, kEffectsItem, "/friction",
+            "the effect friction forced on and rotation forced off; expected both, because friction "
+            "turns bodies. Leave \"rotation\" out.");
+    if (effects.friction != false && effects.rotation != false) return std::nullopt;
+    const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(), rubs);
+    if (body == scene.bodies.end()) return std::nullopt;
+    return forced_off(effects.friction == false ? "friction" : "rotation", "body ",
+                      body - scene.bodies.begin(), " with friction ", body->material.friction);
+}
+
 }  // namespace
 
 std::optional<Problem> find_effects_problem(const Scene& scene, const EffectOverrides& effects) {
     if (effects.sleep == true)
-        return problem(
-            ErrorCode::not_built_yet, kEffectsItem, "/sleep",
-            "the effect sleep forced on; sleeping is not built yet: it comes with the solver \"soft\". "
-            "Leave \"sleep\" out.");
+        return problem(ErrorCode::not_built_yet, kEffectsItem, "/sleep",
+                       "the effect sleep forced on; sleeping is not built yet. "
+                       "Leave \"sleep\" out.");
     if (effects.continuous == false && scene.accuracy.solver != Solver::pairwise)
         return problem(ErrorCode::inconsistent, kEffectsItem, "/continuous",
                        "the effect continuous forced off, but the solver \"impulse\" always is continuous. "
@@ -59,8 +75,9 @@ std::optional<Problem> find_effects_problem(const Scene& scene, const EffectOver
                           " 1/s (angular)");
     if (effects.rotation == false)
         if (auto found = find_rotation_problem(scene.bodies)) return found;
-    if (effects.restitution == false) return find_restitution_problem(scene);
-    return std::nullopt;
+    if (effects.restitution == false)
+        if (auto found = find_restitution_problem(scene)) return found;
+    return find_friction_problem(scene, effects);
 }
 
 void validate_effects(const Scene& scene, const EffectOverrides& effects, std::string_view where) {

@@ -12,17 +12,17 @@ constexpr Item kAccuracyItem{"the accuracy has", "/accuracy", -1, ""};
 
 constexpr bool is_built(Solver solver) {
     return solver == Solver::automatic || solver == Solver::pairwise || solver == Solver::impulse ||
-           solver == Solver::event;
+           solver == Solver::event || solver == Solver::soft;
 }
 
 }  // namespace
 
 std::optional<Problem> find_accuracy_problem(const Accuracy& accuracy) {
     if (!is_built(accuracy.solver))
-        return problem(ErrorCode::not_built_yet, kAccuracyItem, "/solver", "solver ",
-                       quoted(name_of(accuracy.solver)),
-                       ", which is not built yet. Use \"auto\", \"impulse\", \"event\", or \"pairwise\" for "
-                       "small scenes.");
+        return problem(
+            ErrorCode::not_built_yet, kAccuracyItem, "/solver", "solver ", quoted(name_of(accuracy.solver)),
+            ", which is not built yet. Use \"auto\", \"impulse\", \"soft\", \"event\", or \"pairwise\" for "
+            "small scenes.");
     if (accuracy.substeps)
         if (auto found = check(kAccuracyItem, "/substeps", *accuracy.substeps, kSubsteps)) return found;
     if (accuracy.iterations) return check(kAccuracyItem, "/iterations", *accuracy.iterations, kIterations);

@@ -88,6 +88,29 @@ struct Lanes<float, xsimd::avx2> : BatchLanes<float, xsimd::avx2> {
         store_rows(out, _mm256_permutevar8x32_epi32(values, compress_order8(bits)));
         return static_cast<std::size_t>(__builtin_popcount(bits));
     }
+    static void compress_store(float* out, Batch values, unsigned bits) {
+        _mm256_storeu_ps(out, _mm256_permutevar8x32_ps(values.raw, compress_order8(bits)));
+    }
+
+    static Batch2 load_rows2(const float* packed, const std::int32_t* rows) {
+        const auto two = [&](int first, int second) {
+            const __m128 low = load_pair(packed + 2 * static_cast<std::ptrdiff_t>(rows[first]));
+            const __m128 high = load_pair(packed + 2 * static_cast<std::ptrdiff_t>(rows[second]));
+            return _mm_movelh_ps(low, high);
+        };
+        const __m256 ab = _mm256_insertf128_ps(_mm256_castps128_ps256(two(0, 1)), two(4, 5), 1);
+        const __m256 cd = _mm256_insertf128_ps(_mm256_castps128_ps256(two(2, 3)), two(6, 7), 1);
+        return {{Batch::Raw(_mm256_shuffle_ps(ab, cd, _MM_SHUFFLE(2, 0, 2, 0))),
+                 Batch::Raw(_mm256_shuffle_ps(ab, cd, _MM_SHUFFLE(3, 1, 3, 1)))}};
+    }
+    static void store_rows2(float* packed, const std::int32_t* rows, const Batch2& values) {
+        const __m256 ab = _mm256_unpacklo_ps(values[0].raw, values[1].raw);
+        const __m256 cd = _mm256_unpackhi_ps(values[0].raw, values[1].raw);
+        store_two(packed, rows[0], rows[1], _mm256_castps256_ps128(ab));
+        store_two(packed, rows[2], rows[3], _mm256_castps256_ps128(cd));
+        store_two(packed, rows[4], rows[5], _mm256_extractf128_ps(ab, 1));
+        store_two(packed, rows[6], rows[7], _mm256_extractf128_ps(cd, 1));
+    }
 
     static Batch4 load_rows4(const float* packed, const std::int32_t* rows) {
         return transposed(two_records(packed, rows, 0), two_records(packed, rows, 1),
@@ -116,6 +139,17 @@ struct Lanes<float, xsimd::avx2> : BatchLanes<float, xsimd::avx2> {
         const __m128 second = _mm_loadu_ps(packed + 4 * static_cast<std::ptrdiff_t>(rows[i + 4]));
         return _mm256_insertf128_ps(_mm256_castps128_ps256(first), second, 1);
     }
+
+    static __m128 load_pair(const float* pair) {
+        return _mm_castpd_ps(_mm_load_sd(reinterpret_cast<const double*>(pair)));
+    }
+    static void store_two(float* packed, std::int32_t first, std::int32_t second, __m128 values) {
+        const auto to = [&](std::int32_t row) {
+            return reinterpret_cast<__m64*>(packed + 2 * static_cast<std::ptrdiff_t>(row));
+        };
+        _mm_storel_pi(to(first), values), _mm_storeh_pi(to(second), values);
+    }
+
     /// 4 x 4 in each 128-bit half.
     static Batch4 transposed(__m256 a, __m256 b, __m256 c, __m256 d) {
         const __m256d ab_low = _mm256_castps_pd(_mm256_unpacklo_ps(a, b));
@@ -157,6 +191,33 @@ struct Lanes<double, xsimd::avx2> : BatchLanes<double, xsimd::avx2> {
         const __m128 compressed = _mm_permutevar_ps(_mm_castsi128_ps(values), compress_order4(bits));
         store_rows(out, _mm_castps_si128(compressed));
         return static_cast<std::size_t>(__builtin_popcount(bits));
+    }
+    static void compress_store(double* out, Batch values, unsigned bits) {
+        // Lane k is the floats 2 k and 2 k + 1.
+        const __m256i lanes = _mm256_cvtepi32_epi64(_mm_slli_epi32(compress_order4(bits), 1));
+        const __m256i halves =
+            _mm256_or_si256(lanes, _mm256_slli_epi64(_mm256_add_epi64(lanes, _mm256_set1_epi64x(1)), 32));
+        const __m256 packed = _mm256_permutevar8x32_ps(_mm256_castpd_ps(values.raw), halves);
+        _mm256_storeu_pd(out, _mm256_castps_pd(packed));
+    }
+
+    static Batch2 load_rows2(const double* packed, const std::int32_t* rows) {
+        const auto two = [&](int low, int high) {
+            const __m128d first = _mm_loadu_pd(packed + 2 * static_cast<std::ptrdiff_t>(rows[low]));
+            const __m128d second = _mm_loadu_pd(packed + 2 * static_cast<std::ptrdiff_t>(rows[high]));
+            return _mm256_insertf128_pd(_mm256_castpd128_pd256(first), second, 1);
+        };
+        const __m256d even = two(0, 2), odd = two(1, 3);
+        return {{Batch::Raw(_mm256_unpacklo_pd(even, odd)), Batch::Raw(_mm256_unpackhi_pd(even, odd))}};
+    }
+    static void store_rows2(double* packed, const std::int32_t* rows, const Batch2& values) {
+        const __m256d even = _mm256_unpacklo_pd(values[0].raw, values[1].raw);
+        const __m256d odd = _mm256_unpackhi_pd(values[0].raw, values[1].raw);
+        const auto to = [&](int i) { return packed + 2 * static_cast<std::ptrdiff_t>(rows[i]); };
+        _mm_storeu_pd(to(0), _mm256_castpd256_pd128(even));
+        _mm_storeu_pd(to(1), _mm256_castpd256_pd128(odd));
+        _mm_storeu_pd(to(2), _mm256_extractf128_pd(even, 1));
+        _mm_storeu_pd(to(3), _mm256_extractf128_pd(odd, 1));
     }
 
     static Batch4 load_rows4(const double* packed, const std::int32_t* rows) {

@@ -81,6 +81,20 @@ struct Lanes<float, xsimd::avx512bw> : BatchLanes<float, xsimd::avx512bw> {
         }
         return total;
     }
+    static void compress_store(float* out, Batch values, unsigned bits) {
+        _mm512_storeu_ps(out, _mm512_maskz_compress_ps(static_cast<__mmask16>(bits), values.raw));
+    }
+
+    static Batch2 load_rows2(const float* packed, const std::int32_t* rows) {
+        const auto low = Lanes<float, xsimd::avx2>::load_rows2(packed, rows);
+        const auto high = Lanes<float, xsimd::avx2>::load_rows2(packed, rows + 8);
+        return {{joined(low[0].raw, high[0].raw), joined(low[1].raw, high[1].raw)}};
+    }
+    static void store_rows2(float* packed, const std::int32_t* rows, const Batch2& values) {
+        using Half = Lanes<float, xsimd::avx2>;
+        Half::store_rows2(packed, rows, {{low_half(values[0].raw), low_half(values[1].raw)}});
+        Half::store_rows2(packed, rows + 8, {{high_half(values[0].raw), high_half(values[1].raw)}});
+    }
 
     static Batch4 load_rows4(const float* packed, const std::int32_t* rows) {
         return transposed(four_records(packed, rows, 0), four_records(packed, rows, 1),
@@ -112,6 +126,14 @@ struct Lanes<float, xsimd::avx512bw> : BatchLanes<float, xsimd::avx512bw> {
         records = _mm512_insertf32x4(records, record(i + 8), 2);
         return _mm512_insertf32x4(records, record(i + 12), 3);
     }
+
+    using HalfBatch = Lanes<float, xsimd::avx2>::Batch;
+    static Batch joined(__m256 low, __m256 high) {
+        return Batch::Raw(_mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1));
+    }
+    static HalfBatch low_half(__m512 values) { return HalfBatch::Raw(_mm512_castps512_ps256(values)); }
+    static HalfBatch high_half(__m512 values) { return HalfBatch::Raw(_mm512_extractf32x8_ps(values, 1)); }
+
     /// 4 x 4 in each 128-bit quarter.
     static Batch4 transposed(__m512 a, __m512 b, __m512 c, __m512 d) {
         const __m512d ab_low = _mm512_castps_pd(_mm512_unpacklo_ps(a, b));
@@ -153,6 +175,36 @@ struct Lanes<double, xsimd::avx512bw> : BatchLanes<double, xsimd::avx512bw> {
     static std::size_t compress_store(std::int32_t* out, Rows values, unsigned bits) {
         store_rows(out, _mm256_maskz_compress_epi32(static_cast<__mmask8>(bits), values));
         return static_cast<std::size_t>(__builtin_popcount(bits));
+    }
+    static void compress_store(double* out, Batch values, unsigned bits) {
+        _mm512_storeu_pd(out, _mm512_maskz_compress_pd(static_cast<__mmask8>(bits), values.raw));
+    }
+
+    static Batch2 load_rows2(const double* packed, const std::int32_t* rows) {
+        const auto four = [&](int i) {
+            const auto record = [&](int k) {
+                return _mm_loadu_pd(packed + 2 * static_cast<std::ptrdiff_t>(rows[k]));
+            };
+            __m512d records = _mm512_castpd128_pd512(record(i));
+            records = _mm512_insertf64x2(records, record(i + 2), 1);
+            records = _mm512_insertf64x2(records, record(i + 4), 2);
+            return _mm512_insertf64x2(records, record(i + 6), 3);
+        };
+        const __m512d even = four(0), odd = four(1);
+        return {{Batch::Raw(_mm512_unpacklo_pd(even, odd)), Batch::Raw(_mm512_unpackhi_pd(even, odd))}};
+    }
+    static void store_rows2(double* packed, const std::int32_t* rows, const Batch2& values) {
+        const __m512d even = _mm512_unpacklo_pd(values[0].raw, values[1].raw);
+        const __m512d odd = _mm512_unpackhi_pd(values[0].raw, values[1].raw);
+        const auto to = [&](int i) { return packed + 2 * static_cast<std::ptrdiff_t>(rows[i]); };
+        _mm_storeu_pd(to(0), _mm512_castpd512_pd128(even));
+        _mm_storeu_pd(to(1), _mm512_castpd512_pd128(odd));
+        _mm_storeu_pd(to(2), _mm512_extractf64x2_pd(even, 1));
+        _mm_storeu_pd(to(3), _mm512_extractf64x2_pd(odd, 1));
+        _mm_storeu_pd(to(4), _mm512_extractf64x2_pd(even, 2));
+        _mm_storeu_pd(to(5), _mm512_extractf64x2_pd(odd, 2));
+        _mm_storeu_pd(to(6), _mm512_extractf64x2_pd(even, 3));
+        _mm_storeu_pd(to(7), _mm512_extractf64x2_pd(odd, 3));
     }
 
     static Batch4 load_rows4(const double* packed, const std::int32_t* rows) {

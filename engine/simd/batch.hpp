@@ -81,6 +81,11 @@ struct BatchLanes {
         Batch& operator[](std::size_t k) { return lane[k]; }
         const Batch& operator[](std::size_t k) const { return lane[k]; }
     };
+    struct Batch2 {
+        Batch lane[2];
+        Batch& operator[](std::size_t k) { return lane[k]; }
+        const Batch& operator[](std::size_t k) const { return lane[k]; }
+    };
 
     static Batch broadcast(Real value) { return Batch(value); }
     static Batch load(const Real* from) { return Batch::Raw::load_aligned(from); }

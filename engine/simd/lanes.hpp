@@ -8,7 +8,7 @@
 ///
 ///   size                 lanes in a batch
 ///   Batch, Mask, Rows    Real lanes; booleans (&, |, !); as many int32 row numbers
-///   Batch4               four batches, [0] ... [3]
+///   Batch4, Batch2       four batches, [0] ... [3]; two
 ///   broadcast(value), load(p), load_unaligned(p), store(p, batch), store_unaligned(p, batch)
 ///   broadcast_row(row), load_rows(p), store_rows(p, rows)         unaligned
 ///   rows_sum(a, b)                                                of row numbers
@@ -16,9 +16,11 @@
 ///   gather_at(column, rows*)                                      the same; quicker where rows are in memory
 ///   compress_store(out, rows, bits)   the lanes whose bit is set, in order, to out; returns how many.
 ///                                     Writes a whole batch: out needs room for `size` more numbers
+///   compress_store(out, batch, bits)  the same for Reals; returns nothing
 ///   load_rows4(packed, rows*)         records of four Reals -> four batches, e.g. (vx, vy, spin, spare)
 ///   load_differences4(packed, of*, from*)   records of rows `of` less those of rows `from`, likewise
 ///   store_rows4(packed, rows*, Batch4)  the same back; of equal rows the last lane wins
+///   load_rows2(packed, rows*), store_rows2(packed, rows*, Batch2)  the same for records of two Reals
 ///
 /// On a Batch: + - * / += -= *=, unary -, < <= > >= ==. As free functions in carom::simd, for scalars too:
 ///   sqrt, abs, min, max (the second operand if one is NaN or both are zeros), select(mask, if_true,

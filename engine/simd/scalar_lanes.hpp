@@ -92,6 +92,11 @@ struct ScalarLanes {
         Batch& operator[](std::size_t k) { return lane[k]; }
         const Batch& operator[](std::size_t k) const { return lane[k]; }
     };
+    struct Batch2 {
+        Batch lane[2];
+        Batch& operator[](std::size_t k) { return lane[k]; }
+        const Batch& operator[](std::size_t k) const { return lane[k]; }
+    };
 
     static Batch broadcast(Real value) { return value; }
     static Batch load(const Real* from) { return *from; }
@@ -111,6 +116,7 @@ struct ScalarLanes {
         *out = values;
         return bits;
     }
+    static void compress_store(Real* out, Batch values, unsigned) { *out = values; }
 
     static Batch4 load_rows4(const Real* packed, const std::int32_t* rows) {
         const Real* record = packed + 4 * static_cast<std::ptrdiff_t>(*rows);
@@ -124,6 +130,14 @@ struct ScalarLanes {
     static void store_rows4(Real* packed, const std::int32_t* rows, const Batch4& values) {
         Real* record = packed + 4 * static_cast<std::ptrdiff_t>(*rows);
         for (int k = 0; k < 4; ++k) record[k] = values.lane[k];
+    }
+    static Batch2 load_rows2(const Real* packed, const std::int32_t* rows) {
+        const Real* record = packed + 2 * static_cast<std::ptrdiff_t>(*rows);
+        return {{record[0], record[1]}};
+    }
+    static void store_rows2(Real* packed, const std::int32_t* rows, const Batch2& values) {
+        Real* record = packed + 2 * static_cast<std::ptrdiff_t>(*rows);
+        record[0] = values.lane[0], record[1] = values.lane[1];
     }
 };
 

@@ -60,6 +60,35 @@ struct Lanes<float, xsimd::sse2> : BatchLanes<float, xsimd::sse2> {
         }
         return count;
     }
+    static void compress_store(float* out, Batch values, unsigned bits) {
+        alignas(16) float value[size];
+        _mm_store_ps(value, values.raw);
+        std::size_t count = 0;
+        for (std::size_t lane = 0; lane < size; ++lane) {
+            out[count] = value[lane];
+            count += (bits >> lane) & 1u;
+        }
+    }
+
+    static Batch2 load_rows2(const float* packed, const std::int32_t* rows) {
+        const auto two = [&](int first, int second) {
+            const __m128 low = load_pair(packed + 2 * static_cast<std::ptrdiff_t>(rows[first]));
+            const __m128 high = load_pair(packed + 2 * static_cast<std::ptrdiff_t>(rows[second]));
+            return _mm_movelh_ps(low, high);
+        };
+        const __m128 ab = two(0, 1), cd = two(2, 3);
+        return {{Batch::Raw(_mm_shuffle_ps(ab, cd, _MM_SHUFFLE(2, 0, 2, 0))),
+                 Batch::Raw(_mm_shuffle_ps(ab, cd, _MM_SHUFFLE(3, 1, 3, 1)))}};
+    }
+    static void store_rows2(float* packed, const std::int32_t* rows, const Batch2& values) {
+        const __m128 ab = _mm_unpacklo_ps(values[0].raw, values[1].raw);
+        const __m128 cd = _mm_unpackhi_ps(values[0].raw, values[1].raw);
+        const auto to = [&](int i) {
+            return reinterpret_cast<__m64*>(packed + 2 * static_cast<std::ptrdiff_t>(rows[i]));
+        };
+        _mm_storel_pi(to(0), ab), _mm_storeh_pi(to(1), ab);
+        _mm_storel_pi(to(2), cd), _mm_storeh_pi(to(3), cd);
+    }
 
     static Batch4 load_rows4(const float* packed, const std::int32_t* rows) {
         const auto record = [&](int i) {
@@ -87,6 +116,9 @@ struct Lanes<float, xsimd::sse2> : BatchLanes<float, xsimd::sse2> {
     static Batch4 transposed(__m128 a, __m128 b, __m128 c, __m128 d) {
         _MM_TRANSPOSE4_PS(a, b, c, d);
         return {{Batch::Raw(a), Batch::Raw(b), Batch::Raw(c), Batch::Raw(d)}};
+    }
+    static __m128 load_pair(const float* pair) {
+        return _mm_castpd_ps(_mm_load_sd(reinterpret_cast<const double*>(pair)));
     }
 };
 
@@ -117,6 +149,22 @@ struct Lanes<double, xsimd::sse2> : BatchLanes<double, xsimd::sse2> {
         out[0] = _mm_cvtsi128_si32(values);
         out[first] = _mm_cvtsi128_si32(_mm_shuffle_epi32(values, 1));
         return first + ((bits >> 1) & 1u);
+    }
+    static void compress_store(double* out, Batch values, unsigned bits) {
+        _mm_store_sd(out, values.raw);
+        _mm_storeh_pd(out + (bits & 1u), values.raw);
+    }
+
+    static Batch2 load_rows2(const double* packed, const std::int32_t* rows) {
+        const __m128d a = _mm_loadu_pd(packed + 2 * static_cast<std::ptrdiff_t>(rows[0]));
+        const __m128d b = _mm_loadu_pd(packed + 2 * static_cast<std::ptrdiff_t>(rows[1]));
+        return {{Batch::Raw(_mm_unpacklo_pd(a, b)), Batch::Raw(_mm_unpackhi_pd(a, b))}};
+    }
+    static void store_rows2(double* packed, const std::int32_t* rows, const Batch2& values) {
+        _mm_storeu_pd(packed + 2 * static_cast<std::ptrdiff_t>(rows[0]),
+                      _mm_unpacklo_pd(values[0].raw, values[1].raw));
+        _mm_storeu_pd(packed + 2 * static_cast<std::ptrdiff_t>(rows[1]),
+                      _mm_unpackhi_pd(values[0].raw, values[1].raw));
     }
 
     static Batch4 load_rows4(const double* packed, const std::int32_t* rows) {

@@ -89,7 +89,9 @@ void begin_flight(Simulation<Real>& sim) {
     WorldState<Real>& world = sim.world;
     Flights<Real>& flights = sim.solver.flights;
     const std::size_t count = world.bodies.count;
-    flights.end = flight_clock_at(sim.h, world.drag.linear);
+    // Solver `soft` asks only how far bodies may come: drag shortens that, and its step may be long.
+    const bool drags = sim.method != Solver::soft;
+    flights.end = flight_clock_at(sim.h, drags ? world.drag.linear : 0);
     flights.bodies = &world.bodies;
     flights.books = &world.books;
     flights.walls = world.walls ? &*world.walls : nullptr;

@@ -47,6 +47,45 @@ void run_events(Simulation<Real>& sim);
 template <class Real>
 void load_events(Simulation<Real>& sim, std::string_view where);
 
+// Solver `soft`.
+
+/// Velocity records of all bodies.   reads motion, spin; writes records
+template <class Real>
+void begin_substeps(Simulation<Real>& sim);
+
+/// Colours the candidate pairs if they are new; contacts keep their impulses.   reads pairs; writes graph
+template <class Real>
+void update_contacts(Simulation<Real>& sim);
+
+/// Contacts that can touch in this step; warm start.   reads motion, graph; writes contacts, records
+template <class Real>
+void find_contacts(Simulation<Real>& sim);
+
+/// Two sweeps over the contacts.   reads contacts; writes contacts, records
+template <class Real>
+void solve_contacts(Simulation<Real>& sim);
+
+/// Moves bodies through a substep.   reads records; writes records
+template <class Real>
+void advance_bodies(Simulation<Real>& sim);
+
+/// Work and momentum of a substep by cause.   reads contacts, records; writes books
+template <class Real>
+void book_substep(Simulation<Real>& sim);
+
+/// Work of displacements that no velocity accounts for.   reads motion, pose; writes
+/// books
+template <class Real>
+void book_displacements(Simulation<Real>& sim);
+
+/// Restitution; keeps the impulses for the next step.   reads contacts; writes records, graph
+template <class Real>
+void end_contacts(Simulation<Real>& sim);
+
+/// Writes positions and velocities back.   reads records; writes pose, velocity, angle, spin
+template <class Real>
+void end_substeps(Simulation<Real>& sim);
+
 /// Turns bodies.   reads and writes angle, spin
 template <class Real>
 void advance_rotation(Simulation<Real>& sim);

@@ -71,7 +71,7 @@ std::vector<Attempt<Real>> attempts() {
         add("restitution", bad, code_of(bad), [](Body& b, double v) { b.material.restitution = v; });
     for (const double bad : {kNaN, kInfinity, -0.1})
         add("friction", bad, code_of(bad), [](Body& b, double v) { b.material.friction = v; });
-    add("friction", 0.5, ErrorCode::not_built_yet, [](Body& b, double v) { b.material.friction = v; });
+    add("friction", 0.5, ErrorCode::inconsistent, [](Body& b, double v) { b.material.friction = v; });
     for (const double bad : {kNaN, kInfinity, 1e9}) {
         add("position", bad, code_of(bad), [](Body& b, double v) { b.position.x = v; });
         add("velocity", bad, code_of(bad), [](Body& b, double v) { b.velocity.y = v; });

@@ -86,7 +86,8 @@ TEST_SUITE("hard cases/quarantine") {
         for (int i = 0; i < 60; ++i) world.step(kStep);
         REQUIRE(world.quarantined().size() == 1);
         CHECK(world.quarantined()[0] == BodyId{0, 0});
-        CHECK(world.state({1, 0}).velocity.y == doctest::Approx(8e6));
+        // In float each substep rounds what gravity adds to ten million metres a second.
+        CHECK(world.state({1, 0}).velocity.y == doctest::Approx(8e6).epsilon(1e-3));
     }
 
     TEST_CASE_TEMPLATE("a disabled body is in nobody's way, and can be removed", Real, float, double) {

@@ -35,9 +35,9 @@ class WrongInputTest(ProgramTest):
             "--precision": ["half", "", "FLOAT", "long double"],
             "--threads": ["-1", "x", "1.5", "100000", "99999999999999"],
             "--isa": ["", "bogus", "AVX2", "avx3", "neon"],
-            "--solver": ["", "bogus", "Impulse", "soft", "rigid", "rattle"],
+            "--solver": ["", "bogus", "Impulse", "rigid", "rattle"],
             "--effects": ["", "sleep", "+", "-", "+bogus", "++ledger", "+ledger,-ledger", "-ledger,+ledger",
-                          "+sleep", "+ledger,,", "-gravity", "-restitution", "-drag", "-continuous", "+friction"],
+                          "+sleep", "+ledger,,", "-gravity", "-restitution", "-drag", "-continuous", "+frictoin"],
         }.items():
             for value in values:
                 self.check_refused("run", SEED, option, value)

@@ -19,7 +19,7 @@ struct EffectName {
     std::optional<bool> EffectOverrides::*wish;
 };
 
-constexpr std::array<EffectName, 7> kEffects{{
+constexpr std::array<EffectName, 8> kEffects{{
     {"sleep", &EffectOverrides::sleep},
     {"continuous", &EffectOverrides::continuous},
     {"ledger", &EffectOverrides::ledger},
@@ -27,6 +27,7 @@ constexpr std::array<EffectName, 7> kEffects{{
     {"drag", &EffectOverrides::drag},
     {"rotation", &EffectOverrides::rotation},
     {"restitution", &EffectOverrides::restitution},
+    {"friction", &EffectOverrides::friction},
 }};
 
 constexpr int kMostThreads = 1024;

@@ -11,7 +11,7 @@ enum class Solver : std::uint8_t {
     automatic,  ///< what suits the scene; `World::plan()` says which and why
     pairwise,   ///< the naive loop over all pairs: `carom::Pairwise`, not a solver of `World`
     impulse,    ///< time of impact inside the step: bouncy, gas-like scenes
-    soft,       ///< not built yet
+    soft,       ///< contacts at rest, friction, rotation: piles
     rigid,      ///< not built yet
     event,      ///< from impact to impact at exact times: discs and walls, nothing at rest, no drag
     rattle,     ///< not built yet
@@ -22,7 +22,8 @@ enum class Precision : std::uint8_t { single_, double_ };
 /// What a scene asks for in accuracy. What is left out takes the solver's own default.
 struct Accuracy {
     Solver solver = Solver::automatic;
-    std::optional<int> substeps{};    ///< parts a step is cut into, 1 ... 1024; `impulse` takes 1 by default
+    std::optional<int>
+        substeps{};  ///< parts a step is cut into, 1 ... 1024; `impulse` takes 1 by default, `soft` 4
     std::optional<int> iterations{};  ///< 1 ... 1024; `impulse` iterates to convergence and has no use for it
     Precision precision = Precision::single_;
 };

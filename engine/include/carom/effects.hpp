@@ -14,7 +14,7 @@ struct EffectOverrides {
     std::optional<bool> drag{};         ///< likewise
     std::optional<bool> rotation{};     ///< likewise; `true` gives every body an angle and a spin
     std::optional<bool> restitution{};  ///< likewise
-    std::optional<bool> friction{};     ///< likewise; needs rotation
+    std::optional<bool> friction{};     ///< likewise; needs rotation, and the solver `soft` or `event`
 };
 
 }  // namespace carom

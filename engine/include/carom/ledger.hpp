@@ -19,7 +19,7 @@ struct EnergyByCause {
     double gravity = 0;
     double drag = 0;
     double restitution = 0;  ///< lost where bodies or walls meet with restitution < 1
-    double friction = 0;     ///< zero in this version
+    double friction = 0;     ///< lost where surfaces slide on each other
     double correction = 0;   ///< spent on pushing overlapping bodies apart against gravity
     double joints = 0;       ///< zero in this version
     double drive = 0;        ///< by kinematic bodies

@@ -6,7 +6,7 @@ namespace carom {
 /// the geometric mean of its friction coefficients (docs/conventions.md).
 struct Material {
     double density = 1;             ///< kg/m², > 0; used where a body gives no mass
-    double friction = 0;            ///< Coulomb coefficient, >= 0; above zero is not built yet
+    double friction = 0;            ///< Coulomb coefficient, >= 0; needs the solver `soft` or `event`
     double restitution = 0;         ///< normal speed after / before, 0 ... 1
     double rolling_resistance = 0;  ///< no unit, >= 0; above zero is not built yet
 

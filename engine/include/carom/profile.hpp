@@ -25,6 +25,10 @@ struct Profile {
     std::int64_t wall_impacts = 0;
     std::int64_t simultaneous_impacts = 0;  ///< of these, solved together with others at the same instant
     std::int64_t resting_contacts = 0;      ///< in the last step
+    std::int64_t contacts = 0;              ///< that could touch in the last step (solver `soft`)
+    std::int64_t colours = 0;               ///< groups of contacts that share no body (solver `soft`)
+    std::int64_t overflow = 0;              ///< contacts that found no colour and are solved one by one
+    std::int64_t bounces = 0;               ///< impacts with restitution (solver `soft`)
     std::int64_t overlaps_corrected = 0;    ///< pairs or walls pushed apart
     std::int64_t unresolved_impacts = 0;    ///< left to the next step at the limit of impacts a body and step
     std::int64_t quarantined = 0;           ///< bodies disabled because their state left the limits

@@ -130,9 +130,6 @@ const std::vector<Fault> kBodyFaults{
         "negative friction", [](Body& b) { b.material.friction = -0.1; }, ErrorCode::out_of_range,
         "/material/friction", "has friction -0.1"),
     of_ball(
-        "friction", [](Body& b) { b.material.friction = 0.5; }, ErrorCode::not_built_yet,
-        "/material/friction", "friction is not built yet for the solver \"impulse\""),
-    of_ball(
         "friction without a number", [](Body& b) { b.material.friction = kNaN; }, ErrorCode::not_finite,
         "/material/friction", "has friction nan"),
     of_ball(
@@ -206,8 +203,15 @@ const std::vector<Fault> kSettingFaults{
      "has substeps 0; expected 1 <= substeps <= 1024."},
     {"many iterations", [](Scene& s) { s.accuracy.iterations = 5000; }, ErrorCode::out_of_range,
      "/accuracy/iterations", "has iterations 5000"},
-    {"solver soft", [](Scene& s) { s.accuracy.solver = Solver::soft; }, ErrorCode::not_built_yet,
-     "/accuracy/solver", "solver \"soft\", which is not built yet. Use \"auto\", \"impulse\""},
+    {"solver rigid", [](Scene& s) { s.accuracy.solver = Solver::rigid; }, ErrorCode::not_built_yet,
+     "/accuracy/solver", "solver \"rigid\", which is not built yet. Use \"auto\", \"impulse\""},
+    {"friction that the solver has not",
+     [](Scene& s) {
+         s.accuracy.solver = Solver::impulse;
+         s.bodies[1].material.friction = 0.5;
+     },
+     ErrorCode::inconsistent, "/bodies/1/material/friction",
+     "friction 0.5, but the solver \"impulse\" has no friction. Use \"soft\" or \"auto\""},
     {"solver rattle", [](Scene& s) { s.accuracy.solver = Solver::rattle; }, ErrorCode::not_built_yet,
      "/accuracy/solver", "solver \"rattle\""},
     {"drag with solver event", [](Scene& s) { s.accuracy.solver = Solver::event; }, ErrorCode::inconsistent,

@@ -73,8 +73,8 @@ void read_accuracy(const Node& node, Accuracy& accuracy) {
 }
 
 void read_effects(const Node& node, EffectOverrides& effects) {
-    static constexpr std::array<std::string_view, 7> kKeys{"sleep", "continuous", "ledger",     "gravity",
-                                                           "drag",  "rotation",   "restitution"};
+    static constexpr std::array<std::string_view, 8> kKeys{"sleep", "continuous", "ledger",      "gravity",
+                                                           "drag",  "rotation",   "restitution", "friction"};
     node.expect_keys(kKeys);
     node.read("sleep", effects.sleep);
     node.read("continuous", effects.continuous);
@@ -83,6 +83,7 @@ void read_effects(const Node& node, EffectOverrides& effects) {
     node.read("drag", effects.drag);
     node.read("rotation", effects.rotation);
     node.read("restitution", effects.restitution);
+    node.read("friction", effects.friction);
 }
 
 void read_record(const Node& node, Record& record) {

@@ -1,0 +1,128 @@
+#pragma once
+
+#include "kernels/consecutive_rows.hpp"
+#include "kernels/contact_arguments.hpp"
+#include "simd/lanes.hpp"
+
+namespace carom {
+namespace {
+
+/// What free flight does to a velocity in a substep; nothing if nothing moves the body.
+template <class F>
+struct FreeFlight {
+    F gain_x, gain_y, decay, spin_decay;
+
+    F x(F vx, F inverse_mass) const { return simd::select(moves(inverse_mass), decay * vx + gain_x, vx); }
+    F y(F vy, F inverse_mass) const { return simd::select(moves(inverse_mass), decay * vy + gain_y, vy); }
+    F spin(F u, F inverse_mass) const { return simd::select(moves(inverse_mass), spin_decay * u, u); }
+
+  private:
+    static auto moves(F inverse_mass) { return simd::abs(inverse_mass) > F(0); }
+};
+
+/// Moves bodies through a substep, whose velocities are solved, and foresees the next one's: whatever the
+/// contacts did to a velocity in this substep they will do again, because their impulses are nearly the same.
+/// That is the warm start of the next substep, without looking at a contact.
+///
+/// The displacement is that of the velocity at the end, h v1 (symplectic Euler), which is what contacts need;
+/// where the velocity changed by no more than free flight would change it - bodies in flight, sliding,
+/// rolling, at rest - it is h (v0 + v1) / 2, which is exact under constant acceleration.
+template <bool kTurns, class Real, class Isa>
+void advance_bodies(const AdvanceBodies<Real>& k, std::size_t first, std::size_t last) {
+    using Lanes = simd::Lanes<Real, Isa>;
+    using F = typename Lanes::Batch;
+    const FreeFlight<F> free{F(k.gain_x), F(k.gain_y), F(k.decay), F(k.spin_decay)};
+    const F h(k.h), half(Real(0.5));
+    for (std::size_t row = first; row < last; row += Lanes::size) {
+        auto v = Lanes::load_rows4(k.velocity + 4 * row, kConsecutive);
+        auto start = Lanes::load_rows4(k.start_velocity + 4 * row, kConsecutive);
+        auto moved = Lanes::load_rows2(k.displacement + 2 * row, kConsecutive);
+        const F inverse_mass = v[3];
+        const F free_x = free.x(start[0], inverse_mass), free_y = free.y(start[1], inverse_mass);
+        const F change_x = v[0] - start[0], change_y = v[1] - start[1];
+        const F fall_x = free_x - start[0], fall_y = free_y - start[1];
+        const auto is_smooth = change_x * change_x + change_y * change_y <=
+                               (fall_x * fall_x + fall_y * fall_y) * F(Real(1.0001));
+        moved[0] += h * (v[0] - simd::select(is_smooth, half * change_x, F(0)));
+        moved[1] += h * (v[1] - simd::select(is_smooth, half * change_y, F(0)));
+        Lanes::store_rows2(k.displacement + 2 * row, kConsecutive, moved);
+        if constexpr (kTurns) Lanes::store(k.turn + row, Lanes::load(k.turn + row) + h * v[2]);
+        if (k.is_last) continue;
+        Lanes::store_rows4(k.start_velocity + 4 * row, kConsecutive, v);
+        const F next_x = free.x(v[0], inverse_mass) + (v[0] - free_x);
+        const F next_y = free.y(v[1], inverse_mass) + (v[1] - free_y);
+        if constexpr (kTurns)
+            v[2] = free.spin(v[2], inverse_mass) + (v[2] - free.spin(start[2], inverse_mass));
+        v[0] = simd::select(simd::abs(inverse_mass) > F(0), next_x, v[0]);
+        v[1] = simd::select(simd::abs(inverse_mass) > F(0), next_y, v[1]);
+        Lanes::store_rows4(k.velocity + 4 * row, kConsecutive, v);
+    }
+}
+
+/// @see BeginSubsteps
+template <bool kTurns, class Real, class Isa>
+void begin_substeps(const BeginSubsteps<Real>& k, std::size_t first, std::size_t last) {
+    using Lanes = simd::Lanes<Real, Isa>;
+    using F = typename Lanes::Batch;
+    const FreeFlight<F> free{F(k.gain_x), F(k.gain_y), F(k.decay), F(k.spin_decay)};
+    for (std::size_t row = first; row < last; row += Lanes::size) {
+        auto record = Lanes::load_rows4(k.motion + 4 * row, kConsecutive);
+        record[0] = record[2], record[1] = record[3];
+        record[2] = F(0);
+        if constexpr (kTurns) {
+            const F radius = k.radius ? Lanes::load(k.radius + row) : F(k.uniform_radius);
+            record[2] = Lanes::load(k.angular_velocity + row) * radius;
+            Lanes::store(k.turn + row, F(0));
+        }
+        record[3] = k.inverse_mass ? Lanes::load(k.inverse_mass + row) : F(k.uniform_inverse_mass);
+        Lanes::store_rows4(k.start_velocity + 4 * row, kConsecutive, record);
+        record[0] = free.x(record[0], record[3]);
+        record[1] = free.y(record[1], record[3]);
+        record[2] = free.spin(record[2], record[3]);
+        Lanes::store_rows4(k.velocity + 4 * row, kConsecutive, record);
+        typename Lanes::Batch2 still{{F(0), F(0)}};
+        Lanes::store_rows2(k.displacement + 2 * row, kConsecutive, still);
+    }
+}
+
+/// @see EndSubsteps. @return how many rows were lost.
+template <bool kTurns, class Real, class Isa>
+std::size_t end_substeps(const EndSubsteps<Real>& k, std::size_t first, std::size_t last) {
+    using Lanes = simd::Lanes<Real, Isa>;
+    using F = typename Lanes::Batch;
+    const F largest_position(k.largest_position), largest_speed(k.largest_speed);
+    std::size_t lost = 0;
+    for (std::size_t row = first; row < last; row += Lanes::size) {
+        auto v = Lanes::load_rows4(k.velocity + 4 * row, kConsecutive);
+        const auto moved = Lanes::load_rows2(k.displacement + 2 * row, kConsecutive);
+        const F old_x = Lanes::load(k.position_x + row), old_y = Lanes::load(k.position_y + row);
+        F x = old_x + moved[0], y = old_y + moved[1];
+        const auto is_sound = (simd::abs(x) <= largest_position) & (simd::abs(y) <= largest_position) &
+                              (simd::abs(v[0]) <= largest_speed) & (simd::abs(v[1]) <= largest_speed);
+        if (!simd::all(is_sound)) {  // not a number compares false
+            x = simd::select(is_sound, x, old_x), y = simd::select(is_sound, y, old_y);
+            v[0] = simd::select(is_sound, v[0], F(0)), v[1] = simd::select(is_sound, v[1], F(0));
+            const unsigned bits = simd::bitmask(is_sound);
+            for (std::size_t lane = 0; lane < Lanes::size; ++lane)
+                if (((bits >> lane) & 1u) == 0) k.lost[lost++] = static_cast<std::int32_t>(row + lane);
+        }
+        Lanes::store(k.position_x + row, x);
+        Lanes::store(k.position_y + row, y);
+        Lanes::store(k.velocity_x + row, v[0]);
+        Lanes::store(k.velocity_y + row, v[1]);
+        if constexpr (kTurns) {
+            F radius = k.radius ? Lanes::load(k.radius + row) : F(k.uniform_radius);
+            radius = simd::select(radius > F(0), radius, F(1));  // padding rows have none
+            const F angle = Lanes::load(k.angle + row), spin = Lanes::load(k.angular_velocity + row);
+            Lanes::store(k.angle + row,
+                         simd::select(is_sound, angle + Lanes::load(k.turn + row) / radius, angle));
+            // The change of the rim speed, so that a spin which nothing changes keeps its bits.
+            Lanes::store(k.angular_velocity + row,
+                         simd::select(is_sound, spin + (v[2] - spin * radius) / radius, F(0)));
+        }
+    }
+    return lost;
+}
+
+}  // namespace
+}  // namespace carom

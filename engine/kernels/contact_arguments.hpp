@@ -1,0 +1,129 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+// Plain arguments of the kernels that find contacts and solve them (solver `soft`). Columns are padded and
+// 64-byte aligned; `first` and `last` are multiples of kRowPadding, so there is no tail.
+//
+// A body's velocity record is [4]: vx, vy [m/s], rim speed u = spin * radius [m/s], inverse mass [1/kg]. The
+// inverse mass is zero for what nothing moves, and negative for a disc that has a fixed angle. With the rim
+// speed in place of the spin no formula of a disc needs its radius: I = m r²/2, so an impulse j at the rim
+// changes u by r² j / I = 2 j / m.
+// A body's displacement record is [2]: how far it moved since the start of the step [m].
+
+namespace carom {
+
+/// What a variant of the contact kernels has compiled in.
+enum ContactVariant : unsigned {
+    kRough = 1,        // friction, and with it rotation
+    kFixedAngles = 2,  // some bodies do not turn (only with kRough)
+};
+
+/// Contacts of one kind as the solver streams them, sorted by colour: a body is in one contact of a colour.
+/// The normal points from body a to body b, the tangent is the normal turned by a quarter counter-clockwise.
+template <class Real>
+struct ContactColumns {
+    std::int32_t* a;         // row
+    std::int32_t* b;         // row; null where nothing moves b
+    Real* normal_x;          // no unit
+    Real* normal_y;          //
+    Real* separation;        // m, at the start of the step; negative = overlapping
+    Real* mass;              // kg, effective, along the normal
+    Real* normal_impulse;    // N s, of a substep, >= 0
+    Real* friction_impulse;  // N s, along the tangent, on b; null without friction
+    Real* friction;          // Coulomb coefficient; null: uniform_friction serves all
+    Real* floor;             // m/s, least relative normal velocity, written by the first sweep
+    Real* largest_impulse;   // N s, of the substeps so far; null without restitution
+    Real* surface_normal;    // m/s, velocity of b along the normal; only where b is null
+    Real* surface_tangent;   // m/s, velocity of b's surface along the tangent; only where b is null
+};
+
+/// One Gauss-Seidel sweep over the contacts of a colour.
+template <class Real>
+struct SolveContacts {
+    ContactColumns<Real> contacts;
+    Real* velocity;      // [rows][4]
+    Real* displacement;  // [rows][2]
+    Real uniform_friction;
+    Real inverse_h;  // 1/s, of the substep
+    Real h;          // s
+    Real elapsed;    // s, since the start of the step, at the start of the substep
+    Real recovery;   // share of an overlap that one sweep takes away, by displacement
+    Real push;       // m, largest displacement of that kind
+};
+
+/// Candidate pairs of one colour that are near enough to touch in this step.
+template <class Real>
+struct FindContacts {
+    const Real* motion;     // [rows][4]: x, y [m], vx, vy [m/s] at the start of the step
+    const std::int32_t* a;  // rows of the candidates
+    const std::int32_t* b;  //
+    Real* normal_impulse;   // N s, of the candidates, from the step before; zeroed where there is no contact
+    const Real* friction_impulse;  // null without friction
+    const Real* radius;            // m, or null: uniform_radius serves all
+    const Real* inverse_mass;      // 1/kg, >= 0, or null: uniform_inverse_mass serves all
+    const Real* friction;          // Coulomb coefficient, or null
+    Real uniform_radius;
+    Real uniform_inverse_mass;
+    Real dt;                   // s, of the step
+    Real near;                 // m, separation up to which slow bodies are in contact
+    ContactColumns<Real> out;  // room for last - first and a batch more
+    std::int32_t* candidate;   // out: number of the candidate
+    Real* approach;            // out: m/s, relative normal velocity at the start; null without restitution
+};
+
+/// The passage from the end of one substep to the start of the next, or to the end of the step.
+template <class Real>
+struct AdvanceBodies {
+    Real* velocity;  // [rows][4], in: at the end of the substep; out: at the start of the next, foreseen
+    Real* start_velocity;  // [rows][4], in: at the start of the substep; out: of the next
+    Real* displacement;    // [rows][2]
+    Real* turn;            // m, rim displacement u t since the start of the step; null without rotation
+    Real h;                // s
+    Real gain_x, gain_y;   // m/s, what gravity adds in a substep
+    Real decay;            // velocity kept under drag in a substep
+    Real spin_decay;       // rim speed kept under angular drag
+    bool is_last;          // no next substep
+};
+
+/// Velocity and displacement records at the start of a step.
+template <class Real>
+struct BeginSubsteps {
+    const Real* motion;            // [rows][4]: x, y, vx, vy
+    const Real* angular_velocity;  // rad/s, or null
+    const Real* radius;            // m, or null: uniform_radius serves all
+    const Real* inverse_mass;      // 1/kg, signed as in the records, or null: uniform_inverse_mass serves all
+    Real uniform_radius;
+    Real uniform_inverse_mass;
+    Real gain_x, gain_y;  // m/s
+    Real decay;
+    Real spin_decay;
+    std::size_t count;     // rows at and beyond it are padding: all zero
+    Real* velocity;        // out
+    Real* start_velocity;  // out
+    Real* displacement;    // out
+    Real* turn;            // out, or null
+};
+
+/// Positions and velocities back into the columns.
+template <class Real>
+struct EndSubsteps {
+    const Real* velocity;      // [rows][4]
+    const Real* displacement;  // [rows][2]
+    const Real* turn;          // m, or null
+    const Real* radius;        // m, or null: uniform_radius serves all
+    Real uniform_radius;
+    Real* position_x;  // in and out, m
+    Real* position_y;
+    Real* velocity_x;  // out, m/s
+    Real* velocity_y;
+    Real* angle;             // in and out, rad, or null
+    Real* angular_velocity;  // in and out, rad/s, or null
+    Real largest_position;   // m
+    Real largest_speed;      // m/s
+    std::int32_t* lost;      // out: rows whose state leaves the limits, or is not a number: they keep their
+                             // position and stop; room for last - first and a batch
+};
+
+}  // namespace carom

@@ -1,0 +1,241 @@
+#pragma once
+
+#include "kernels/contact_arguments.hpp"
+#include "simd/lanes.hpp"
+
+namespace carom {
+namespace {
+
+/// A body of a contact, a lane a contact.
+template <class Lanes>
+struct BodyLanes {
+    using F = typename Lanes::Batch;
+    typename Lanes::Batch4 record;
+
+    template <unsigned kVariant>
+    F inverse_mass() const {
+        if constexpr ((kVariant & kFixedAngles) != 0) return simd::abs(record[3]);
+        return record[3];
+    }
+    /// r²/I: what an impulse at the rim changes the rim speed by.
+    template <unsigned kVariant>
+    F inverse_inertia() const {
+        if constexpr ((kVariant & kFixedAngles) != 0) {
+            const F turning = simd::max(record[3], F(0));
+            return turning + turning;
+        }
+        return record[3] + record[3];
+    }
+    /// Takes an impulse `normal` along n and `tangent` along t at the rim; the rim arm has the sign of both
+    /// bodies' (docs/conventions.md): j along the tangent on b slows both rims.
+    template <unsigned kVariant>
+    void take(F normal, F tangent, F nx, F ny, F sign) {
+        const F w = inverse_mass<kVariant>() * sign;
+        if constexpr ((kVariant & kRough) != 0) {
+            record[0] += w * (normal * nx - tangent * ny);
+            record[1] += w * (normal * ny + tangent * nx);
+            record[2] -= inverse_inertia<kVariant>() * tangent;
+        } else {
+            record[0] += w * (normal * nx);
+            record[1] += w * (normal * ny);
+        }
+    }
+};
+
+/// Impulses of a batch of contacts before this sweep, and what the sweep adds.
+template <class F>
+struct Increments {
+    F normal, tangent;
+};
+
+/// The contact laws. Signorini: the relative normal velocity is at least `floor`, the impulse pushes.
+/// Coulomb: the tangential impulse stops the surfaces' relative motion, within friction times the normal one.
+/// For discs the two do not couple: a normal impulse does not change the tangential velocity.
+template <unsigned kVariant, class Lanes, class Real>
+Increments<typename Lanes::Batch> solve_laws(const SolveContacts<Real>& k, std::size_t c,
+                                             typename Lanes::Batch mass, typename Lanes::Batch tangent_mass,
+                                             typename Lanes::Batch normal_velocity,
+                                             typename Lanes::Batch tangent_velocity,
+                                             typename Lanes::Batch floor) {
+    using F = typename Lanes::Batch;
+    Increments<F> add{F(0), F(0)};
+    const F before = Lanes::load(k.contacts.normal_impulse + c);
+    const F impulse = simd::max(before + mass * (floor - normal_velocity), F(0));
+    add.normal = impulse - before;
+    Lanes::store(k.contacts.normal_impulse + c, impulse);
+    if constexpr ((kVariant & kRough) != 0) {
+        const F friction = k.contacts.friction ? Lanes::load(k.contacts.friction + c) : F(k.uniform_friction);
+        const F limit = friction * impulse;
+        const F friction_before = Lanes::load(k.contacts.friction_impulse + c);
+        const F wanted = friction_before - tangent_mass * tangent_velocity;
+        const F held = simd::max(simd::min(wanted, limit), -limit);
+        add.tangent = held - friction_before;
+        Lanes::store(k.contacts.friction_impulse + c, held);
+    }
+    return add;
+}
+
+/// The first sweep over contacts also takes overlaps away, by displacement alone, and notes the floor: bodies
+/// that are still apart may approach until they touch. `separation`: now. Returns the push [m] times the
+/// effective mass, zero where there is no overlap.
+template <class Lanes, class Real>
+typename Lanes::Batch begin_contact(const SolveContacts<Real>& k, std::size_t c, typename Lanes::Batch mass,
+                                    typename Lanes::Batch separation, typename Lanes::Batch& floor) {
+    using F = typename Lanes::Batch;
+    floor = simd::min(-separation * F(k.inverse_h), F(0));
+    Lanes::store(k.contacts.floor + c, floor);
+    const F depth = simd::max(-separation, F(0));
+    // The cap on the push grows with the load: what lies deep in a pile may recover as fast as its load
+    // moves.
+    const F load = Lanes::load(k.contacts.normal_impulse + c);
+    return simd::min(mass * (F(k.recovery) * depth), mass * F(k.push) + F(k.h) * load);
+}
+
+/// For restitution: a contact that pushed in some substep has had an impact.
+template <class Lanes, class Real>
+void note_largest_impulse(const SolveContacts<Real>& k, std::size_t c) {
+    if (!k.contacts.largest_impulse) return;
+    Lanes::store(k.contacts.largest_impulse + c, simd::max(Lanes::load(k.contacts.largest_impulse + c),
+                                                           Lanes::load(k.contacts.normal_impulse + c)));
+}
+
+/// Pairs of bodies that both move. kFirst: the first sweep of a substep.
+template <unsigned kVariant, bool kFirst, class Real, class Isa>
+void solve_pairs(const SolveContacts<Real>& k, std::size_t first, std::size_t last) {
+    using Lanes = simd::Lanes<Real, Isa>;
+    using F = typename Lanes::Batch;
+    for (std::size_t c = first; c < last; c += Lanes::size) {
+        const std::int32_t *row_a = k.contacts.a + c, *row_b = k.contacts.b + c;
+        BodyLanes<Lanes> a{Lanes::load_rows4(k.velocity, row_a)}, b{Lanes::load_rows4(k.velocity, row_b)};
+        const F nx = Lanes::load(k.contacts.normal_x + c), ny = Lanes::load(k.contacts.normal_y + c);
+        const F mass = Lanes::load(k.contacts.mass + c);
+        const F dvx = b.record[0] - a.record[0], dvy = b.record[1] - a.record[1];
+
+        F floor(0);
+        if constexpr (kFirst) {
+            auto moved_a = Lanes::load_rows2(k.displacement, row_a);
+            auto moved_b = Lanes::load_rows2(k.displacement, row_b);
+            const F now = Lanes::load(k.contacts.separation + c) + (moved_b[0] - moved_a[0]) * nx +
+                          (moved_b[1] - moved_a[1]) * ny;
+            const F push = begin_contact<Lanes>(k, c, mass, now, floor);
+            if (simd::any(push > F(0))) {
+                const F push_a = push * a.template inverse_mass<kVariant>();
+                const F push_b = push * b.template inverse_mass<kVariant>();
+                moved_a[0] -= push_a * nx, moved_a[1] -= push_a * ny;
+                moved_b[0] += push_b * nx, moved_b[1] += push_b * ny;
+                Lanes::store_rows2(k.displacement, row_a, moved_a);
+                Lanes::store_rows2(k.displacement, row_b, moved_b);
+            }
+        } else {
+            floor = Lanes::load(k.contacts.floor + c);
+        }
+
+        F tangent_velocity(0), tangent_mass(0);
+        if constexpr ((kVariant & kRough) != 0) {
+            tangent_velocity = dvy * nx - dvx * ny - a.record[2] - b.record[2];
+            if constexpr ((kVariant & kFixedAngles) != 0) {
+                // A padding lane has no mass at all: its tangential mass must not be infinite.
+                const F stiffness =
+                    a.template inverse_mass<kVariant>() + b.template inverse_mass<kVariant>() +
+                    a.template inverse_inertia<kVariant>() + b.template inverse_inertia<kVariant>();
+                tangent_mass = simd::select(mass > F(0), F(1) / stiffness, F(0));
+            } else {
+                tangent_mass =
+                    mass * F(Real(1) / Real(3));  // 1/ma + 1/mb + ra²/Ia + rb²/Ib = 3 (1/ma + 1/mb)
+            }
+        }
+        const auto add = solve_laws<kVariant, Lanes>(k, c, mass, tangent_mass, dvx * nx + dvy * ny,
+                                                     tangent_velocity, floor);
+        a.template take<kVariant>(add.normal, add.tangent, nx, ny, F(-1));
+        b.template take<kVariant>(add.normal, add.tangent, nx, ny, F(1));
+        Lanes::store_rows4(k.velocity, row_a, a.record);
+        Lanes::store_rows4(k.velocity, row_b, b.record);
+        if constexpr (!kFirst) note_largest_impulse<Lanes>(k, c);
+    }
+}
+
+/// Bodies against what nothing moves: walls, static and kinematic bodies. Their surface moves at a steady
+/// velocity through the step.
+template <unsigned kVariant, bool kFirst, class Real, class Isa>
+void solve_supports(const SolveContacts<Real>& k, std::size_t first, std::size_t last) {
+    using Lanes = simd::Lanes<Real, Isa>;
+    using F = typename Lanes::Batch;
+    for (std::size_t c = first; c < last; c += Lanes::size) {
+        const std::int32_t* row = k.contacts.a + c;
+        BodyLanes<Lanes> body{Lanes::load_rows4(k.velocity, row)};
+        const F nx = Lanes::load(k.contacts.normal_x + c), ny = Lanes::load(k.contacts.normal_y + c);
+        const F mass = Lanes::load(k.contacts.mass + c);
+        const F surface = Lanes::load(k.contacts.surface_normal + c);
+
+        F floor(0);
+        if constexpr (kFirst) {
+            auto moved = Lanes::load_rows2(k.displacement, row);
+            const F now = Lanes::load(k.contacts.separation + c) + surface * F(k.elapsed) -
+                          (moved[0] * nx + moved[1] * ny);
+            const F push = begin_contact<Lanes>(k, c, mass, now, floor);
+            if (simd::any(push > F(0))) {
+                const F push_body = push * body.template inverse_mass<kVariant>();
+                moved[0] -= push_body * nx, moved[1] -= push_body * ny;
+                Lanes::store_rows2(k.displacement, row, moved);
+            }
+        } else {
+            floor = Lanes::load(k.contacts.floor + c);
+        }
+
+        F tangent_velocity(0), tangent_mass(0);
+        if constexpr ((kVariant & kRough) != 0) {
+            tangent_velocity = Lanes::load(k.contacts.surface_tangent + c) -
+                               (body.record[1] * nx - body.record[0] * ny) - body.record[2];
+            if constexpr ((kVariant & kFixedAngles) != 0) {
+                const F stiffness =
+                    body.template inverse_mass<kVariant>() + body.template inverse_inertia<kVariant>();
+                tangent_mass = simd::select(mass > F(0), F(1) / stiffness, F(0));
+            } else {
+                tangent_mass = mass * F(Real(1) / Real(3));
+            }
+        }
+        const F normal_velocity = surface - (body.record[0] * nx + body.record[1] * ny);
+        const auto add =
+            solve_laws<kVariant, Lanes>(k, c, mass, tangent_mass, normal_velocity, tangent_velocity, floor);
+        body.template take<kVariant>(add.normal, add.tangent, nx, ny, F(-1));
+        Lanes::store_rows4(k.velocity, row, body.record);
+        if constexpr (!kFirst) note_largest_impulse<Lanes>(k, c);
+    }
+}
+
+/// Gives the bodies the impulses that their contacts had at the end of the step before.
+template <unsigned kVariant, class Real, class Isa>
+void warm_start_pairs(const SolveContacts<Real>& k, std::size_t first, std::size_t last) {
+    using Lanes = simd::Lanes<Real, Isa>;
+    using F = typename Lanes::Batch;
+    for (std::size_t c = first; c < last; c += Lanes::size) {
+        const std::int32_t *row_a = k.contacts.a + c, *row_b = k.contacts.b + c;
+        BodyLanes<Lanes> a{Lanes::load_rows4(k.velocity, row_a)}, b{Lanes::load_rows4(k.velocity, row_b)};
+        const F nx = Lanes::load(k.contacts.normal_x + c), ny = Lanes::load(k.contacts.normal_y + c);
+        const F normal = Lanes::load(k.contacts.normal_impulse + c);
+        F tangent(0);
+        if constexpr ((kVariant & kRough) != 0) tangent = Lanes::load(k.contacts.friction_impulse + c);
+        a.template take<kVariant>(normal, tangent, nx, ny, F(-1));
+        b.template take<kVariant>(normal, tangent, nx, ny, F(1));
+        Lanes::store_rows4(k.velocity, row_a, a.record);
+        Lanes::store_rows4(k.velocity, row_b, b.record);
+    }
+}
+
+template <unsigned kVariant, class Real, class Isa>
+void warm_start_supports(const SolveContacts<Real>& k, std::size_t first, std::size_t last) {
+    using Lanes = simd::Lanes<Real, Isa>;
+    using F = typename Lanes::Batch;
+    for (std::size_t c = first; c < last; c += Lanes::size) {
+        BodyLanes<Lanes> body{Lanes::load_rows4(k.velocity, k.contacts.a + c)};
+        F tangent(0);
+        if constexpr ((kVariant & kRough) != 0) tangent = Lanes::load(k.contacts.friction_impulse + c);
+        body.template take<kVariant>(Lanes::load(k.contacts.normal_impulse + c), tangent,
+                                     Lanes::load(k.contacts.normal_x + c),
+                                     Lanes::load(k.contacts.normal_y + c), F(-1));
+        Lanes::store_rows4(k.velocity, k.contacts.a + c, body.record);
+    }
+}
+
+}  // namespace
+}  // namespace carom

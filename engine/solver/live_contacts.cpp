@@ -1,0 +1,91 @@
+#include "solver/live_contacts.hpp"
+
+#include <algorithm>
+
+namespace carom {
+
+template <class Real>
+void LiveContacts<Real>::resize(std::size_t contacts, bool is_support, bool is_rough, bool friction_varies,
+                                bool bounces) {
+    const auto fit = [contacts](auto& column, bool is_used) {
+        column.resize_for_overwrite(is_used ? contacts : 0);
+    };
+    fit(a, true), fit(b, !is_support);
+    for (Column<Real>* column : {&normal_x, &normal_y, &separation, &mass, &normal_impulse, &floor})
+        fit(*column, true);
+    fit(friction_impulse, is_rough), fit(friction, friction_varies);
+    fit(surface_normal, is_support), fit(surface_tangent, is_support);
+    for (Column<Real>* column : {&largest_impulse, &approach, &bounce_impulse, &spare}) fit(*column, bounces);
+    fit(bounce_friction, bounces && is_rough);
+    fit(candidate, true);
+}
+
+template <class Real>
+ContactColumns<Real> LiveContacts<Real>::columns() {
+    const auto data = [](auto& column) { return column.empty() ? nullptr : column.data(); };
+    return {a.data(),
+            data(b),
+            normal_x.data(),
+            normal_y.data(),
+            separation.data(),
+            mass.data(),
+            normal_impulse.data(),
+            data(friction_impulse),
+            data(friction),
+            floor.data(),
+            data(largest_impulse),
+            data(surface_normal),
+            data(surface_tangent)};
+}
+
+template <class Real>
+std::size_t LiveContacts<Real>::bytes() const {
+    std::size_t bytes = a.bytes() + b.bytes() + candidate.bytes();
+    for (const Column<Real>* column :
+         {&normal_x, &normal_y, &separation, &mass, &normal_impulse, &friction_impulse, &friction, &floor,
+          &largest_impulse, &surface_normal, &surface_tangent, &approach, &bounce_impulse, &bounce_friction,
+          &spare})
+        bytes += column->bytes();
+    return bytes;
+}
+
+/// Contacts at [first + count, end of the batch) that push nothing.
+template <class Real>
+void LiveContacts<Real>::pad(std::size_t first, std::size_t contacts, std::int32_t dummy) {
+    const std::size_t from = first + contacts, to = first + padded(contacts);
+    const auto fill = [&](auto& column, auto value) {
+        if (!column.empty()) std::fill(column.data() + from, column.data() + to, value);
+    };
+    fill(a, dummy), fill(b, dummy), fill(candidate, -1);
+    for (Column<Real>* column :
+         {&normal_x, &normal_y, &separation, &mass, &normal_impulse, &friction_impulse, &friction, &floor,
+          &largest_impulse, &surface_normal, &surface_tangent, &approach, &bounce_impulse, &bounce_friction})
+        fill(*column, Real(0));
+}
+
+template <class Real>
+std::size_t LiveContacts<Real>::close_colour(std::size_t colour, std::int32_t dummy) {
+    const std::size_t first = begin[colour], contacts = count[colour];
+    if (!is_serial(colour)) {
+        pad(first, contacts, dummy);
+        return first + padded(contacts);
+    }
+    for (std::size_t i = contacts; i-- > 0;) {
+        const std::size_t from = first + i, to = first + kRowPadding * i;
+        const auto move = [&](auto& column) {
+            if (!column.empty()) column[to] = column[from];
+        };
+        move(a), move(b), move(candidate);
+        for (Column<Real>* column :
+             {&normal_x, &normal_y, &separation, &mass, &normal_impulse, &friction_impulse, &friction,
+              &approach, &surface_normal, &surface_tangent})
+            move(*column);
+    }
+    for (std::size_t i = 0; i < contacts; ++i) pad(first + kRowPadding * i, 1, dummy);
+    return first + kRowPadding * contacts;
+}
+
+template struct LiveContacts<float>;
+template struct LiveContacts<double>;
+
+}  // namespace carom

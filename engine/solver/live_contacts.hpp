@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "kernels/contact_arguments.hpp"
+#include "solver/contact_graph.hpp"
+
+namespace carom {
+
+/// Contacts of one step as the kernels stream them, with what is used once beside them.
+template <class Real>
+struct LiveContacts {
+    Column<std::int32_t> a, b;
+    Column<Real> normal_x, normal_y, separation, mass, normal_impulse, friction_impulse, friction, floor;
+    Column<Real> largest_impulse, surface_normal, surface_tangent;
+    Column<std::int32_t> candidate;  // number among the candidates
+    Column<Real> approach;           // m/s, relative normal velocity at the start of the step
+    Column<Real> bounce_impulse, bounce_friction, spare;
+    std::vector<std::size_t> begin, count;  // of each colour
+
+    void resize(std::size_t contacts, bool is_support, bool is_rough, bool friction_varies, bool bounces);
+    ContactColumns<Real> columns();
+    std::size_t bytes() const;
+
+    /// Closes colour number `colour`, whose contacts stand one behind the other from begin[colour] on: fills
+    /// its last batch with contacts of row `dummy` that push nothing. The overflow's contacts may share
+    /// bodies, so each of them gets a batch of its own.
+    /// @return the place of the next colour.
+    std::size_t close_colour(std::size_t colour, std::int32_t dummy);
+
+    /// Contacts the kernels run over in a colour, padding included.
+    std::size_t length(std::size_t colour) const {
+        return is_serial(colour) ? kRowPadding * count[colour] : padded(count[colour]);
+    }
+
+    /// Calls fn(contact) for every contact that is no padding.
+    template <class Fn>
+    void for_each(const Fn& fn) const {
+        for (std::size_t c = 0; c < begin.size(); ++c)
+            for (std::size_t n = 0; n < count[c]; ++n) fn(begin[c] + n * (is_serial(c) ? kRowPadding : 1));
+    }
+
+  private:
+    static bool is_serial(std::size_t colour) { return colour == ContactGraph<Real>::kColours; }
+    void pad(std::size_t first, std::size_t count, std::int32_t dummy);
+};
+
+extern template struct LiveContacts<float>;
+extern template struct LiveContacts<double>;
+
+}  // namespace carom

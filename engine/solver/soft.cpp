@@ -1,0 +1,347 @@
+#include "solver/soft.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "effects/flight.hpp"
+#include "effects/friction.hpp"
+#include "effects/restitution.hpp"
+#include "solver/separate_overlaps.hpp"
+
+namespace carom {
+namespace {
+
+/// Share of an overlap that one substep takes away. Below 0.15 piles sink deeper, above 0.5 they jitter.
+constexpr double kRecovery = 0.4;
+/// Bodies as near as this, in radii of the smallest, are solved together even if they hardly move: what
+/// pushes one of them in the middle of a step is felt by the other.
+constexpr double kNearFraction = 0.04;
+/// Second sweeps of the first substep if there are no impulses to start from.
+constexpr int kFirstSweeps = 32;
+/// Impulses of substeps that were longer or shorter by this factor are of no use.
+constexpr double kOtherLength = 2;
+
+}  // namespace
+
+template <class Real>
+void SoftSolver<Real>::derive_masses(const Bodies<Real>& bodies) {
+    if (masses_are_known_) return;
+    masses_vary_ = !bodies.mass.is_uniform() || bodies.has_flags;
+    some_are_fixed_ = false;
+    if (masses_vary_) inverse_mass_.resize(bodies.count);
+    for (std::size_t row = 0; row < bodies.count && masses_vary_; ++row) {
+        const bool is_fixed = (bodies.flags_of(row) & kFixedAngle) != 0;
+        const double inverse = bodies.inverse_mass(row);
+        inverse_mass_[row] = static_cast<Real>(is_fixed ? -inverse : inverse);
+        some_are_fixed_ = some_are_fixed_ || is_fixed;
+    }
+    masses_are_known_ = true;
+}
+
+template <class Real>
+const ContactKernels<Real>& SoftSolver<Real>::contact_kernels() const {
+    return kernels_->contacts[is_rough_ ? (some_are_fixed_ ? 2 : 1) : 0];
+}
+
+template <class Real>
+void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Column<Real>& motion, double h,
+                                      const Vec2 gravity, const KernelTable<Real>& kernels,
+                                      const Executor& executor) {
+    const Bodies<Real>& bodies = world.bodies;
+    kernels_ = &kernels, executor_ = &executor;
+    count_ = bodies.count, h_ = h;
+    is_rough_ = world.effects.friction, turns_ = world.effects.rotation;
+    bounces_ = world.effects.restitution;
+    friction_varies_ = is_rough_ && !bodies.friction.is_uniform();
+    uniform_friction_ =
+        bodies.friction.is_uniform() ? static_cast<double>(bodies.friction.uniform_value()) : 0;
+    derive_masses(bodies);
+    const FlightClock clock = flight_clock_at(h, world.drag.linear);
+    gain_ = clock.s * gravity, decay_ = clock.u;
+    spin_decay_ = flight_clock_at(h, world.drag.angular).u;
+
+    const std::size_t rows = padded(count_ + kRowPadding);
+    velocity_.resize(4 * rows), start_velocity_.resize(4 * rows), displacement_.resize(2 * rows);
+    turn_.resize(turns_ ? rows : 0);
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    BeginSubsteps<Real> k{};
+    k.motion = motion.data();
+    k.angular_velocity = turns_ ? bodies.angular_velocity.data() : nullptr;
+    k.radius = bodies.radius.data(), k.uniform_radius = bodies.radius.uniform_value();
+    k.inverse_mass = masses_vary_ ? inverse_mass_.data() : nullptr;
+    k.uniform_inverse_mass = count_ > 0 ? real(bodies.inverse_mass(0)) : Real(0);
+    k.gain_x = real(gain_.x), k.gain_y = real(gain_.y), k.decay = real(decay_),
+    k.spin_decay = real(spin_decay_);
+    k.velocity = velocity_.data(), k.start_velocity = start_velocity_.data();
+    k.displacement = displacement_.data(), k.turn = turns_ ? turn_.data() : nullptr;
+    const auto kernel = kernels.begin_substeps[turns_ ? 1 : 0];
+    executor.for_each_chunk(count_, kRowsPerChunk, [&](std::size_t, std::size_t first, std::size_t last) {
+        kernel(k, first, padded(last));
+    });
+    for (Column<Real>* records : {&velocity_, &start_velocity_})  // padding must not fall
+        std::fill(records->data() + 4 * count_, records->data() + 4 * rows, Real(0));
+    elapsed_ = 0;
+}
+
+template <class Real>
+SolveContacts<Real> SoftSolver<Real>::arguments(LiveContacts<Real>& live) {
+    SolveContacts<Real> k{};
+    k.contacts = live.columns();
+    k.velocity = velocity_.data(), k.displacement = displacement_.data();
+    k.uniform_friction = static_cast<Real>(uniform_friction_);
+    k.inverse_h = static_cast<Real>(1 / h_), k.h = static_cast<Real>(h_);
+    k.elapsed = static_cast<Real>(elapsed_);
+    k.recovery = static_cast<Real>(kRecovery), k.push = static_cast<Real>(push_);
+    return k;
+}
+
+template <class Real>
+void SoftSolver<Real>::find_pairs(const Bodies<Real>& bodies, const Column<Real>& motion) {
+    ContactCandidates<Real>& candidates = graph.pairs;
+    const std::size_t colours = candidates.colours();
+    const std::size_t serial = candidates.has_overflow ? candidates.count.back() : 0;
+    pairs_.resize(candidates.a.size() + kRowPadding * (colours + 1 + serial), false, is_rough_,
+                  friction_varies_, bounces_);
+    pairs_.begin.resize(colours), pairs_.count.resize(colours);
+    FindContacts<Real> all{};
+    all.motion = motion.data();
+    all.radius = bodies.radius.data(), all.uniform_radius = bodies.radius.uniform_value();
+    all.inverse_mass = masses_vary_ ? inverse_mass_.data() : nullptr;
+    all.uniform_inverse_mass = bodies.count > 0 ? static_cast<Real>(bodies.inverse_mass(0)) : Real(0);
+    all.friction = friction_varies_ ? bodies.friction.data() : nullptr;
+    all.dt = static_cast<Real>(dt_), all.near = static_cast<Real>(near_);
+    const ContactColumns<Real> out = pairs_.columns();
+    std::size_t place = 0;
+    for (std::size_t c = 0; c < colours; ++c) {
+        const std::size_t begin = candidates.begin[c];
+        FindContacts<Real> k = all;
+        k.a = candidates.a.data() + begin, k.b = candidates.b.data() + begin;
+        k.normal_impulse = candidates.normal_impulse.data() + begin;
+        k.friction_impulse = candidates.friction_impulse.data() + begin;
+        ContactColumns<Real>& to = k.out = out;
+        for (std::int32_t** column : {&to.a, &to.b}) *column += place;
+        for (Real** column : {&to.normal_x, &to.normal_y, &to.separation, &to.mass, &to.normal_impulse})
+            *column += place;
+        if (to.friction_impulse) to.friction_impulse += place;
+        if (to.friction) to.friction += place;
+        k.candidate = pairs_.candidate.data() + place;
+        k.approach = bounces_ ? pairs_.approach.data() + place : nullptr;
+        std::size_t count = contact_kernels().find(k, 0, padded(candidates.count[c]));
+        while (count > 0 && to.a[count - 1] == static_cast<std::int32_t>(count_))
+            --count;  // padding touches itself
+        for (std::size_t i = 0; i < count; ++i) k.candidate[i] += static_cast<std::int32_t>(begin);
+        pairs_.begin[c] = place, pairs_.count[c] = count;
+        place = pairs_.close_colour(c, static_cast<std::int32_t>(count_));
+    }
+    counters.contacts = 0;
+    for (const std::size_t count : pairs_.count) counters.contacts += static_cast<std::int64_t>(count);
+    counters.colours = static_cast<std::int64_t>(colours);
+    counters.overflow = candidates.has_overflow ? static_cast<std::int64_t>(pairs_.count.back()) : 0;
+}
+
+namespace {
+
+/// Where a body and its support touch.
+struct Surface {
+    Vec2 normal;        // from the body into the support
+    double separation;  // m
+    Vec2 velocity;      // m/s, of the surface
+    double friction, restitution;
+};
+
+template <class Real>
+Surface surface_of(const WorldState<Real>& world, std::size_t row, std::int32_t support) {
+    const Bodies<Real>& bodies = world.bodies;
+    const Vec2 x{bodies.position_x[row], bodies.position_y[row]};
+    const double radius = bodies.radius[row];
+    if (support < 0) {
+        const Walls& walls = *world.walls;
+        const Vec2 n = Flights<Real>::wall_normal(support);
+        const Vec2 corner = support == kLeft || support == kBottom ? walls.min : walls.max;
+        return {n, dot(corner - x, n) - radius, {}, walls.material.friction, walls.material.restitution};
+    }
+    const auto other = static_cast<std::size_t>(support);
+    const Vec2 d = Vec2{bodies.position_x[other], bodies.position_y[other]} - x;
+    const double distance = std::sqrt(length_squared(d));
+    const Vec2 n = distance > 0 ? (1 / distance) * d : Vec2{0, -1};
+    const double support_radius = bodies.radius[other];
+    Vec2 velocity{bodies.velocity_x[other], bodies.velocity_y[other]};
+    if (bodies.has_rotation) {
+        const double rim = bodies.angular_velocity[other] * support_radius;
+        velocity += rim * Vec2{n.y, -n.x};  // spin times the arm -r n
+    }
+    return {n, distance - radius - support_radius, velocity, bodies.friction[other],
+            bodies.restitution[other]};
+}
+
+}  // namespace
+
+template <class Real>
+void SoftSolver<Real>::find_supports(const WorldState<Real>& world, const Column<Real>& motion) {
+    static_cast<void>(motion);
+    ContactCandidates<Real>& candidates = graph.supports;
+    const Bodies<Real>& bodies = world.bodies;
+    const std::size_t colours = candidates.colours();
+    const std::size_t serial = candidates.has_overflow ? candidates.count.back() : 0;
+    supports_.resize(candidates.a.size() + kRowPadding * (colours + 1 + serial), true, is_rough_, is_rough_,
+                     bounces_);
+    supports_.begin.resize(colours), supports_.count.resize(colours);
+    std::size_t place = 0;
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    for (std::size_t c = 0; c < colours; ++c) {
+        std::size_t at = place;
+        for (std::size_t i = candidates.begin[c]; i < candidates.begin[c] + candidates.count[c]; ++i) {
+            const auto row = static_cast<std::size_t>(candidates.a[i]);
+            const Surface s = surface_of(world, row, candidates.b[i]);
+            const Vec2 v{bodies.velocity_x[row], bodies.velocity_y[row]};
+            const Vec2 dv = s.velocity - v;
+            const double fall = length_squared(gain_) > 0 ? std::sqrt(length_squared(gain_)) * dt_ / h_ : 0;
+            if (s.separation > near_ + dt_ * (std::fabs(dv.x) + std::fabs(dv.y) + fall)) {
+                candidates.normal_impulse[i] = 0;
+                continue;
+            }
+            supports_.a[at] = candidates.a[i];
+            supports_.normal_x[at] = real(s.normal.x), supports_.normal_y[at] = real(s.normal.y);
+            supports_.separation[at] = real(s.separation);
+            supports_.mass[at] = real(1 / bodies.inverse_mass(row));
+            supports_.normal_impulse[at] = candidates.normal_impulse[i];
+            supports_.surface_normal[at] = real(dot(s.velocity, s.normal));
+            supports_.surface_tangent[at] = real(cross(s.normal, s.velocity));
+            if (is_rough_) {
+                supports_.friction_impulse[at] = candidates.friction_impulse[i];
+                supports_.friction[at] =
+                    real(std::sqrt(pair_friction_squared(bodies.friction[row], s.friction)));
+            }
+            if (bounces_) supports_.approach[at] = real(dot(dv, s.normal));
+            supports_.candidate[at] = static_cast<std::int32_t>(i);
+            ++at;
+        }
+        const std::size_t count = at - place;
+        supports_.begin[c] = place, supports_.count[c] = count;
+        place = supports_.close_colour(c, static_cast<std::int32_t>(count_));
+    }
+    for (const std::size_t count : supports_.count) counters.contacts += static_cast<std::int64_t>(count);
+}
+
+/// What lasts from step to step is force: after substeps of another length the impulses are of another size.
+/// If that differs much, what was noise would become a kick: better to start from nothing, with more sweeps.
+template <class Real>
+void SoftSolver<Real>::keep_forces(ContactCandidates<Real>& candidates) const {
+    if (h_ == impulses_of_h_) return;
+    const double ratio = impulses_of_h_ > 0 ? h_ / impulses_of_h_ : 0;
+    const auto kept = static_cast<Real>(are_impulses_known_ ? ratio : 0);
+    for (Column<Real>* impulses : {&candidates.normal_impulse, &candidates.friction_impulse})
+        for (Real& impulse : *impulses) impulse *= kept;
+}
+
+template <class Real>
+void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const Candidates<Real>& candidates,
+                                     const Column<Real>& motion, double dt) {
+    dt_ = dt;
+    const double smallest = candidates.smallest_radius();
+    near_ = kNearFraction * smallest + std::sqrt(length_squared(gain_)) * dt;
+    push_ = kPushRadiiPerSecond * smallest * h_;
+    are_impulses_known_ = h_ < kOtherLength * impulses_of_h_ && impulses_of_h_ < kOtherLength * h_;
+    keep_forces(graph.pairs), keep_forces(graph.supports);
+    impulses_of_h_ = h_;
+    find_pairs(world.bodies, motion);
+    find_supports(world, motion);
+    for (LiveContacts<Real>* live : {&pairs_, &supports_})
+        if (bounces_)
+            for (Column<Real>* column : {&live->largest_impulse, &live->bounce_impulse})
+                std::fill(column->begin(), column->end(), Real(0));
+    sweep(supports_, contact_kernels().warm_start_supports, arguments(supports_));
+    sweep(pairs_, contact_kernels().warm_start_pairs, arguments(pairs_));
+}
+
+/// One colour after the other; within a colour no two contacts share a body that moves.
+template <class Real>
+void SoftSolver<Real>::sweep(LiveContacts<Real>& live, Kernel kernel, const SolveContacts<Real>& k) {
+    for (std::size_t c = 0; c < live.begin.size(); ++c)
+        kernel(k, live.begin[c], live.begin[c] + live.length(c));
+}
+
+template <class Real>
+void SoftSolver<Real>::solve_contacts(int number) {
+    elapsed_ = number * h_;
+    const ContactKernels<Real>& kernels = contact_kernels();
+    const SolveContacts<Real> on_supports = arguments(supports_), on_pairs = arguments(pairs_);
+    sweep(pairs_, kernels.first_pairs, on_pairs);
+    sweep(supports_, kernels.first_supports, on_supports);
+    const int sweeps = number == 0 && !are_impulses_known_ ? kFirstSweeps : 1;
+    for (int i = 0; i < sweeps; ++i) {
+        sweep(pairs_, kernels.next_pairs, on_pairs);
+        sweep(supports_, kernels.next_supports, on_supports);
+    }
+}
+
+template <class Real>
+void SoftSolver<Real>::advance_bodies(bool is_last) {
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    AdvanceBodies<Real> k{};
+    k.velocity = velocity_.data(), k.start_velocity = start_velocity_.data();
+    k.displacement = displacement_.data(), k.turn = turns_ ? turn_.data() : nullptr;
+    k.h = real(h_), k.gain_x = real(gain_.x), k.gain_y = real(gain_.y);
+    k.decay = real(decay_), k.spin_decay = real(spin_decay_), k.is_last = is_last;
+    const auto kernel = kernels_->advance_bodies[turns_ ? 1 : 0];
+    executor_->for_each_chunk(count_, kRowsPerChunk, [&](std::size_t, std::size_t first, std::size_t last) {
+        kernel(k, first, padded(last));
+    });
+}
+
+template <class Real>
+void SoftSolver<Real>::end_contacts(const WorldState<Real>& world, Books& books) {
+    if (bounces_) {
+        fastest_bounce_ = 0;
+        const bool any_pair = find_bounces(pairs_, world), any_support = find_bounces(supports_, world);
+        if (any_pair || any_support) {
+            if (books.is_open) before_bounce_ = velocity_;
+            bounce();
+            book_bounces(books);
+        }
+    }
+    const auto keep = [](const LiveContacts<Real>& live, ContactCandidates<Real>& candidates) {
+        live.for_each([&](std::size_t i) {
+            const auto candidate = static_cast<std::size_t>(live.candidate[i]);
+            candidates.normal_impulse[candidate] = live.normal_impulse[i];
+            if (!live.friction_impulse.empty())
+                candidates.friction_impulse[candidate] = live.friction_impulse[i];
+        });
+    };
+    keep(pairs_, graph.pairs), keep(supports_, graph.supports);
+}
+
+template <class Real>
+void SoftSolver<Real>::end_substeps(Bodies<Real>& bodies, std::vector<std::int32_t>& lost) {
+    EndSubsteps<Real> k{};
+    k.velocity = velocity_.data(), k.displacement = displacement_.data();
+    k.turn = turns_ ? turn_.data() : nullptr;
+    k.radius = bodies.radius.data(), k.uniform_radius = bodies.radius.uniform_value();
+    k.position_x = bodies.position_x.data(), k.position_y = bodies.position_y.data();
+    k.velocity_x = bodies.velocity_x.data(), k.velocity_y = bodies.velocity_y.data();
+    k.angle = turns_ ? bodies.angle.data() : nullptr;
+    k.angular_velocity = turns_ ? bodies.angular_velocity.data() : nullptr;
+    k.largest_position = static_cast<Real>(kLargestPosition);
+    k.largest_speed = static_cast<Real>(kLargestSpeed);
+    lost_rows_.prepare(count_, kRowsPerChunk);
+    const auto kernel = kernels_->end_substeps[turns_ ? 1 : 0];
+    executor_->for_each_chunk(count_, kRowsPerChunk,
+                              [&](std::size_t chunk, std::size_t first, std::size_t last) {
+                                  EndSubsteps<Real> part = k;
+                                  part.lost = lost_rows_.part(chunk);
+                                  lost_rows_.set_count(chunk, kernel(part, first, padded(last)));
+                              });
+    lost.clear();
+    lost_rows_.for_each_below(count_, [&](std::int32_t row) { lost.push_back(row); });
+}
+
+template <class Real>
+std::size_t SoftSolver<Real>::bytes() const {
+    return graph.bytes() + pairs_.bytes() + supports_.bytes() + inverse_mass_.bytes() + velocity_.bytes() +
+           start_velocity_.bytes() + displacement_.bytes() + turn_.bytes();
+}
+
+template class SoftSolver<float>;
+template class SoftSolver<double>;
+
+}  // namespace carom

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <carom/ledger.hpp>
+
+#include <vector>
+
+#include "isa/kernel_table.hpp"
+#include "parallel/executor.hpp"
+#include "solver/contact_graph.hpp"
+#include "solver/live_contacts.hpp"
+#include "state/chunked_list.hpp"
+#include "world/world_state.hpp"
+
+namespace carom {
+
+/// What the soft solver counts (the docstrings of Profile say what each means).
+struct SoftCounters {
+    std::int64_t contacts = 0;  ///< in the last step
+    std::int64_t colours = 0;
+    std::int64_t overflow = 0;
+    std::int64_t bounces = 0;  ///< ever
+};
+
+/// Solver `soft`: contacts at rest, with friction and rotation.
+///
+/// A step finds the contacts once and is then cut into substeps. In each, two Gauss-Seidel sweeps over the
+/// coloured contacts bring the velocities to what the contact laws allow; the first also takes away a share
+/// of every overlap, by displacement, never by velocity. Contacts keep their impulses from substep to substep
+/// and from step to step (warm start), which is what carries a pile. Restitution comes last, at the speed of
+/// the impact, repeated until it has converged.
+///
+/// Why overlaps are soft and velocities hard: docs/decisions/0004-soft-solver.md.
+/// Cost: about 8 sweeps a step at 4 substeps, docs/decisions/0004-soft-solver.md.
+/// Source: small steps (Macklin et al. 2019), the Soft Step of Box2D 3 (Catto 2024), here with split
+/// displacement.
+template <class Real>
+class SoftSolver {
+  public:
+    ContactGraph<Real> graph;
+    SoftCounters counters;
+
+    /// Velocity records of all bodies at the start of a step.
+    void begin_substeps(const WorldState<Real>& world, const Column<Real>& motion, double h,
+                        const Vec2 gravity, const KernelTable<Real>& kernels, const Executor& executor);
+
+    /// Contacts that can touch in this step, by colour; gives the bodies last step's impulses.
+    void find_contacts(const WorldState<Real>& world, const Candidates<Real>& candidates,
+                       const Column<Real>& motion, double dt);
+
+    /// Both sweeps of substep `number`.
+    void solve_contacts(int number);
+    /// Moves the bodies through the substep that was solved.
+    void advance_bodies(bool is_last);
+    /// Restitution, and the impulses back to the candidates.
+    void end_contacts(const WorldState<Real>& world, Books& books);
+    /// Columns from records.
+    /// @param lost  rows whose state left the limits; they stand still where they were
+    void end_substeps(Bodies<Real>& bodies, std::vector<std::int32_t>& lost);
+
+    /// What the impulses of this substep did (soft_books.cpp); only the walls' impulses if the ledger is
+    /// closed.
+    void book_substep(const WorldState<Real>& world, Books& books);
+    /// What the pushes of this step did against gravity.
+    void book_displacements(const WorldState<Real>& world, const Column<Real>& motion, Books& books);
+
+    /// Masses, shapes or rows have changed: what was derived from them is made anew.
+    void forget_rows() { masses_are_known_ = false; }
+
+    std::size_t bytes() const;
+
+  private:
+    using Kernel = void (*)(const SolveContacts<Real>&, std::size_t, std::size_t);
+
+    void keep_forces(ContactCandidates<Real>& candidates) const;
+    void derive_masses(const Bodies<Real>& bodies);
+    void find_pairs(const Bodies<Real>& bodies, const Column<Real>& motion);
+    void find_supports(const WorldState<Real>& world, const Column<Real>& motion);
+    SolveContacts<Real> arguments(LiveContacts<Real>& live);
+    void sweep(LiveContacts<Real>& live, Kernel kernel, const SolveContacts<Real>& k);
+    const ContactKernels<Real>& contact_kernels() const;
+    bool find_bounces(LiveContacts<Real>& live, const WorldState<Real>& world);
+    double restitution_of(const LiveContacts<Real>& live, std::size_t contact,
+                          const WorldState<Real>& world) const;
+    double impact_speed(const LiveContacts<Real>& live, std::size_t contact) const;
+    void bounce();
+    void book_bounces(Books& books) const;
+    void book_pairs(const Column<Real>& normal, const Column<Real>& friction, const Column<Real>& from,
+                    Books& books) const;
+    void book_supports(const Column<Real>& normal, const Column<Real>& friction, const Column<Real>& from,
+                       Books& books) const;
+    void book_free_flight(const WorldState<Real>& world, Books& books);
+    double change_of_bounces(LiveContacts<Real>& live) const;
+
+    // Of the present step.
+    const KernelTable<Real>* kernels_ = nullptr;
+    const Executor* executor_ = nullptr;
+    std::size_t count_ = 0;
+    double h_ = 0, dt_ = 0, elapsed_ = 0, near_ = 0, push_ = 0;
+    Vec2 gain_;
+    double decay_ = 1, spin_decay_ = 1;
+    bool is_rough_ = false, turns_ = false, some_are_fixed_ = false, bounces_ = false;
+    bool friction_varies_ = false;
+    double uniform_friction_ = 0;
+
+    bool masses_are_known_ = false;
+    bool masses_vary_ = false;
+    Column<Real> inverse_mass_;  // signed as in the records
+
+    Column<Real> velocity_, start_velocity_, displacement_, turn_;
+    LiveContacts<Real> pairs_, supports_;
+    ChunkedList lost_rows_;
+    double impulses_of_h_ = 0;  // s, substep of the candidates' impulses; 0 = there are none
+    bool are_impulses_known_ = false;
+    double fastest_bounce_ = 0;   // m/s, of this step
+    Column<Real> before_bounce_;  // velocity records; only with the ledger
+    double gravity_work_ = 0;     // J, of this step, on velocities; only with the ledger
+};
+
+extern template class SoftSolver<float>;
+extern template class SoftSolver<double>;
+
+}  // namespace carom

@@ -1,0 +1,131 @@
+// The ledger of solver `soft`: work and momentum by cause, from impulses and velocities, in double precision.
+//
+// In a substep a body's velocity goes from v0 to v1 by the sum of all impulses on it, so its kinetic energy
+// grows by exactly (sum of impulses) · (v0 + v1) / 2, and each impulse's share is its own product with that
+// mean. The mean velocity of the surfaces of a contact splits its share into what the contact takes, by its
+// normal and by its tangential impulse, and what a moving support drives.
+#include "solver/soft.hpp"
+
+#include "effects/flight.hpp"
+#include "math/vec2_math.hpp"
+
+namespace carom {
+namespace {
+
+/// Twice the mean of a body's velocity and rim speed over a change.
+struct MeanTwice {
+    Vec2 v;
+    double rim;
+};
+
+template <class Real>
+MeanTwice mean_twice(const Column<Real>& from, const Column<Real>& to, std::int32_t row) {
+    const auto i = 4 * static_cast<std::size_t>(row);
+    const auto sum = [&](std::size_t k) {
+        return static_cast<double>(from[i + k]) + static_cast<double>(to[i + k]);
+    };
+    return {{sum(0), sum(1)}, sum(2)};
+}
+
+}  // namespace
+
+template <class Real>
+void SoftSolver<Real>::book_pairs(const Column<Real>& normal, const Column<Real>& friction,
+                                  const Column<Real>& from, Books& books) const {
+    pairs_.for_each([&](std::size_t i) {
+        const Vec2 n{pairs_.normal_x[i], pairs_.normal_y[i]};
+        const MeanTwice a = mean_twice(from, velocity_, pairs_.a[i]),
+                        b = mean_twice(from, velocity_, pairs_.b[i]);
+        const Vec2 v = b.v - a.v;
+        books.restitution += 0.5 * static_cast<double>(normal[i]) * dot(v, n);
+        if (!friction.empty())
+            books.friction += 0.5 * static_cast<double>(friction[i]) * (cross(n, v) - a.rim - b.rim);
+    });
+}
+
+template <class Real>
+void SoftSolver<Real>::book_supports(const Column<Real>& normal, const Column<Real>& friction,
+                                     const Column<Real>& from, Books& books) const {
+    supports_.for_each([&](std::size_t i) {
+        const Vec2 n{supports_.normal_x[i], supports_.normal_y[i]}, t{-n.y, n.x};
+        const double jn = normal[i], jt = friction.empty() ? 0 : static_cast<double>(friction[i]);
+        const bool is_wall = graph.supports.b[static_cast<std::size_t>(supports_.candidate[i])] < 0;
+        const Vec2 impulse = -1 * (jn * n + jt * t);  // on the body
+        if (is_wall) books.wall_impulse += jn;
+        if (!books.is_open) return;
+        (is_wall ? books.wall_momentum : books.immovable_momentum) += impulse;
+        const MeanTwice body = mean_twice(from, velocity_, supports_.a[i]);
+        const double surface_n = supports_.surface_normal[i], surface_t = supports_.surface_tangent[i];
+        books.restitution += jn * (surface_n - 0.5 * dot(body.v, n));
+        books.friction += jt * (surface_t - 0.5 * (dot(body.v, t) + body.rim));
+        books.drive -= jn * surface_n + jt * surface_t;
+    });
+}
+
+/// Gravity's share is booked as the work it did on velocities, to be set off against the fall of the
+/// positions at the end of the step: what is left is displacement that no velocity accounts for.
+template <class Real>
+void SoftSolver<Real>::book_free_flight(const WorldState<Real>& world, Books& books) {
+    const double spin_loss = spin_decay_ - 1;
+    for (std::size_t row = 0; row < count_; ++row) {
+        if (world.bodies.is_immovable(row)) continue;
+        const double mass = world.bodies.mass[row];
+        const MeanTwice mean = mean_twice(start_velocity_, velocity_, static_cast<std::int32_t>(row));
+        const Vec2 v0{start_velocity_[4 * row], start_velocity_[4 * row + 1]};
+        const double rim0 = start_velocity_[4 * row + 2];
+        const Vec2 by_drag = mass * ((decay_ - 1) * v0 + gain_ - h_ * world.gravity);
+        gravity_work_ += 0.5 * mass * h_ * dot(world.gravity, mean.v);
+        books.drag += 0.5 * dot(by_drag, mean.v) + 0.25 * mass * spin_loss * rim0 * mean.rim;
+        books.drag_momentum += by_drag;
+    }
+    books.gravity_momentum += (world.dynamic_mass * h_) * world.gravity;
+}
+
+template <class Real>
+void SoftSolver<Real>::book_substep(const WorldState<Real>& world, Books& books) {
+    book_supports(supports_.normal_impulse, supports_.friction_impulse, start_velocity_, books);
+    if (!books.is_open) return;
+    book_pairs(pairs_.normal_impulse, pairs_.friction_impulse, start_velocity_, books);
+    book_free_flight(world, books);
+}
+
+template <class Real>
+void SoftSolver<Real>::book_bounces(Books& books) const {
+    book_supports(supports_.bounce_impulse, supports_.bounce_friction, before_bounce_, books);
+    if (books.is_open) book_pairs(pairs_.bounce_impulse, pairs_.bounce_friction, before_bounce_, books);
+}
+
+template <class Real>
+void SoftSolver<Real>::book_displacements(const WorldState<Real>& world, const Column<Real>& motion,
+                                          Books& books) {
+    double fall = 0;
+    const Bodies<Real>& bodies = world.bodies;
+    for (std::size_t row = 0; row < count_; ++row) {
+        if (bodies.is_immovable(row)) continue;
+        const Vec2 from{motion[4 * row], motion[4 * row + 1]},
+            to{bodies.position_x[row], bodies.position_y[row]};
+        fall += static_cast<double>(bodies.mass[row]) * dot(world.gravity, to - from);
+    }
+    books.correction += gravity_work_ - fall;
+    gravity_work_ = 0;
+}
+
+template void SoftSolver<float>::book_pairs(const Column<float>&, const Column<float>&, const Column<float>&,
+                                            Books&) const;
+template void SoftSolver<float>::book_supports(const Column<float>&, const Column<float>&,
+                                               const Column<float>&, Books&) const;
+template void SoftSolver<float>::book_free_flight(const WorldState<float>&, Books&);
+template void SoftSolver<double>::book_pairs(const Column<double>&, const Column<double>&,
+                                             const Column<double>&, Books&) const;
+template void SoftSolver<double>::book_supports(const Column<double>&, const Column<double>&,
+                                                const Column<double>&, Books&) const;
+template void SoftSolver<double>::book_free_flight(const WorldState<double>&, Books&);
+template void SoftSolver<float>::book_substep(const WorldState<float>&, Books&);
+template void SoftSolver<double>::book_substep(const WorldState<double>&, Books&);
+template void SoftSolver<float>::book_bounces(Books&) const;
+template void SoftSolver<double>::book_bounces(Books&) const;
+template void SoftSolver<float>::book_displacements(const WorldState<float>&, const Column<float>&, Books&);
+template void SoftSolver<double>::book_displacements(const WorldState<double>&, const Column<double>&,
+                                                     Books&);
+
+}  // namespace carom

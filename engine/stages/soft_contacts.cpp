@@ -1,0 +1,77 @@
+#include "stages/stages.hpp"
+
+namespace carom {
+
+template <class Real>
+void begin_substeps(Simulation<Real>& sim) {
+    sim.soft.begin_substeps(sim.world, sim.solver.flights.motion, sim.substep_h, sim.world.gravity,
+                            *sim.kernels, sim.executor);
+}
+
+template <class Real>
+void update_contacts(Simulation<Real>& sim) {
+    if (sim.graph_of_rebuild == sim.candidates.rebuild_count()) return;
+    sim.soft.graph.renew(sim.candidates, sim.world.bodies, sim.world.walls ? &*sim.world.walls : nullptr);
+    sim.graph_of_rebuild = sim.candidates.rebuild_count();
+}
+
+template <class Real>
+void find_contacts(Simulation<Real>& sim) {
+    sim.soft.find_contacts(sim.world, sim.candidates, sim.solver.flights.motion, sim.h);
+}
+
+template <class Real>
+void solve_contacts(Simulation<Real>& sim) {
+    sim.soft.solve_contacts(sim.substep);
+}
+
+template <class Real>
+void book_substep(Simulation<Real>& sim) {
+    sim.soft.book_substep(sim.world, sim.world.books);
+}
+
+template <class Real>
+void book_displacements(Simulation<Real>& sim) {
+    sim.soft.book_displacements(sim.world, sim.solver.flights.motion, sim.world.books);
+}
+
+template <class Real>
+void advance_bodies(Simulation<Real>& sim) {
+    sim.soft.advance_bodies(sim.substep + 1 == sim.substep_count);
+}
+
+template <class Real>
+void end_contacts(Simulation<Real>& sim) {
+    sim.soft.end_contacts(sim.world, sim.world.books);
+}
+
+template <class Real>
+void end_substeps(Simulation<Real>& sim) {
+    sim.soft.end_substeps(sim.world.bodies, sim.lost);
+    if (sim.lost.empty()) return;
+    for (const std::int32_t row : sim.lost)
+        if (!sim.world.bodies.is_immovable(static_cast<std::size_t>(row)))
+            sim.world.quarantine(static_cast<std::size_t>(row));
+    sim.forget_derived_state();
+}
+
+template void begin_substeps(Simulation<float>&);
+template void begin_substeps(Simulation<double>&);
+template void update_contacts(Simulation<float>&);
+template void update_contacts(Simulation<double>&);
+template void find_contacts(Simulation<float>&);
+template void find_contacts(Simulation<double>&);
+template void solve_contacts(Simulation<float>&);
+template void solve_contacts(Simulation<double>&);
+template void advance_bodies(Simulation<float>&);
+template void advance_bodies(Simulation<double>&);
+template void book_substep(Simulation<float>&);
+template void book_substep(Simulation<double>&);
+template void book_displacements(Simulation<float>&);
+template void book_displacements(Simulation<double>&);
+template void end_contacts(Simulation<float>&);
+template void end_contacts(Simulation<double>&);
+template void end_substeps(Simulation<float>&);
+template void end_substeps(Simulation<double>&);
+
+}  // namespace carom

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "state/column.hpp"
+
+namespace carom {
+
+/// Lists that chunks of a kernel write side by side, each into its own part, and that are then joined in
+/// order.
+class ChunkedList {
+  public:
+    /// Room for `rows` in chunks of `rows_per_chunk`, and a batch more for each.
+    void prepare(std::size_t rows, std::size_t rows_per_chunk) {
+        const std::size_t chunks = (rows + rows_per_chunk - 1) / rows_per_chunk;
+        stride_ = padded(rows_per_chunk) + kRowPadding;
+        numbers_.resize_for_overwrite(chunks * stride_);
+        counts_.assign(chunks, 0);
+    }
+    std::int32_t* part(std::size_t chunk) { return numbers_.data() + chunk * stride_; }
+    void set_count(std::size_t chunk, std::size_t count) { counts_[chunk] = count; }
+
+    /// Calls fn(number) for everything listed, below `limit`: padding rows may be listed too.
+    template <class Fn>
+    void for_each_below(std::size_t limit, const Fn& fn) const {
+        for (std::size_t c = 0; c < counts_.size(); ++c)
+            for (std::size_t n = 0; n < counts_[c]; ++n)
+                if (const auto number = numbers_[c * stride_ + n]; static_cast<std::size_t>(number) < limit)
+                    fn(number);
+    }
+
+    std::size_t bytes() const { return numbers_.bytes() + counts_.capacity() * sizeof(std::size_t); }
+
+  private:
+    Column<std::int32_t> numbers_;
+    std::vector<std::size_t> counts_;
+    std::size_t stride_ = 0;
+};
+
+}  // namespace carom
