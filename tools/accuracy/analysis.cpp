@@ -12,6 +12,11 @@ bool is_of(const Point& point, const Contender& contender) {
     return point.setting.solver == contender.solver && point.setting.precision == contender.precision;
 }
 
+/// What a point's first error is at most: of a mean that is uncertain, the upper end of its band.
+double surely_at_most(const CaseResult& result, const Point& point) {
+    return result.of->errors[0].is_statistic ? point.errors[0].high : point.errors[0].value;
+}
+
 /// The points of the sweep over steps that have an error, longest step first.
 std::vector<const Point*> step_sweep(const CaseResult& result, const Contender& contender) {
     std::vector<const Point*> sweep;
@@ -64,7 +69,7 @@ std::optional<Order> observed_order(const CaseResult& result, const Contender& c
 const Point* cheapest(const CaseResult& result, const Contender& contender, double target) {
     const Point* best = nullptr;
     for (const Point& point : result.points)
-        if (is_of(point, contender) && point.failure.empty() && point.errors[0].value <= target &&
+        if (is_of(point, contender) && point.failure.empty() && surely_at_most(result, point) <= target &&
             (!best || point.seconds.value < best->seconds.value))
             best = &point;
     return best;
@@ -85,7 +90,7 @@ std::vector<const Point*> frontier_of(const CaseResult& result) {
         if (!point.failure.empty()) continue;
         const auto is_better = [&](const Point& other) {
             return other.failure.empty() && other.seconds.value < point.seconds.value &&
-                   other.errors[0].value <= point.errors[0].value;
+                   surely_at_most(result, other) <= surely_at_most(result, point);
         };
         if (std::none_of(result.points.begin(), result.points.end(), is_better)) frontier.push_back(&point);
     }

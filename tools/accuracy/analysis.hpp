@@ -32,7 +32,8 @@ struct Order {
 /// Nothing if the error does not fall over three steps: round-off, or no convergence.
 std::optional<Order> observed_order(const CaseResult& result, const Contender& contender, std::size_t error);
 
-/// The cheapest point of a contender whose first error is at most `target`; null if none is.
+/// The cheapest point of a contender whose first error is at most `target`, of a statistic with its standard
+/// error; null if none is.
 const Point* cheapest(const CaseResult& result, const Contender& contender, double target);
 /// The same of all.
 const Point* cheapest(const CaseResult& result, double target);
