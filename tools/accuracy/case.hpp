@@ -31,7 +31,8 @@ struct Case {
     std::vector<double> steps;              ///< s, the longest first
     int members = 1;                        ///< starts: more than 1 where motion is chaotic
     Scene (*scene)(int member);
-    /// Takes a start to its end. @return the errors, as many as `errors`.
+    /// Takes a start to its end. @return the errors, as many as `errors`; not a number where the solver does
+    /// not say what is compared, as one that counts no impacts.
     std::vector<double> (*run)(Stepper& stepper, const Scene& scene, int member);
 };
 

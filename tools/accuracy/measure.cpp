@@ -23,8 +23,7 @@ Run run_once(const Case& asked, const Setting& setting, int member, double longe
     Run run;
     try {
         run.errors = asked.run(stepper, scene, member);
-        for (const double error : run.errors)
-            if (!std::isfinite(error)) throw Failure("the error is not a number");
+        if (!std::isfinite(run.errors.front())) throw Failure("the error is not a number");
     } catch (Failure& failure) {
         failure.seconds = stepper.seconds();
         throw;
@@ -35,6 +34,7 @@ Run run_once(const Case& asked, const Setting& setting, int member, double longe
 
 /// The value below which a part of them lies, between neighbours in proportion.
 double quantile(std::vector<double> values, double part) {
+    if (std::any_of(values.begin(), values.end(), [](double value) { return std::isnan(value); })) return NAN;
     std::sort(values.begin(), values.end());
     const double place = part * static_cast<double>(values.size() - 1);
     const auto below = static_cast<std::size_t>(place);

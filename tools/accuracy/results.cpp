@@ -26,7 +26,10 @@ Json to_json(const Band& band) {
 }
 
 Band band_from(const Json& json) {
-    return {json.at("value").get<double>(), json.at("low").get<double>(), json.at("high").get<double>()};
+    const auto number = [&](const char* key) {
+        return json.at(key).is_null() ? NAN : json.at(key).get<double>();
+    };
+    return {number("value"), number("low"), number("high")};
 }
 
 Json orders_of(const CaseResult& result) {

@@ -42,6 +42,11 @@ bool has_failed(const Json& point) {
     return !point.at("failure").is_null();
 }
 
+/// Whether the solver says what this error is about.
+bool is_known(const Json& point, std::size_t error) {
+    return has_failed(point) || !point.at("errors").at(error).at("value").is_null();
+}
+
 double work_of(const Json& point) {
     double sum = 0;
     for (const auto& [name, amount] : point.at("work").items()) sum += amount.get<double>();
@@ -56,7 +61,7 @@ struct Edges {
 Edges edges_of(const Json& result, std::size_t error) {
     Edges edges{.top = 0, .bottom = 1};
     for (const Json& point : result.at("points")) {
-        if (has_failed(point)) continue;
+        if (has_failed(point) || !is_known(point, error)) continue;
         const double value = point.at("errors").at(error).at("value").get<double>();
         edges.top = std::max(edges.top, value);
         if (value > 0) edges.bottom = std::min(edges.bottom, value);
@@ -85,6 +90,7 @@ std::vector<Series> series_of(const Json& result, std::size_t error, const Absci
     Series failed{.name = "failed", .line = false};
     const Edges edges = edges_of(result, error);
     for (const Json& point : result.at("points")) {
+        if (!is_known(point, error)) continue;
         const Point drawn = point_at(point, error, x_of(point), edges);
         if (has_failed(point)) {
             if (std::isfinite(drawn.x) && drawn.x > 0) failed.points.push_back(drawn);

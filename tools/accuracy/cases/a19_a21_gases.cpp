@@ -9,11 +9,6 @@ constexpr std::int64_t kDiscs = 256;
 constexpr double kForever = 1e9;  // s
 const std::vector<double> kSteps{1.0 / 30, 1.0 / 60, 1.0 / 120, 1.0 / 240, 1.0 / 480};
 
-double count_pair_impacts(const Stepper& stepper) {
-    const Profile profile = stepper.simulation().profile();
-    return static_cast<double>(profile.impacts - profile.wall_impacts);
-}
-
 double kinetic_energy(const Stepper& stepper) {
     return stepper.simulation().ledger().energy.kinetic;
 }
@@ -57,11 +52,12 @@ struct Behaviour {
 Behaviour watch(Stepper& stepper, const Scene& scene) {
     constexpr double kStart = 1, kEnd = 9;  // s
     stepper.advance_to(kStart);
-    const double impulse = stepper.simulation().ledger().wall_impulse, impacts = count_pair_impacts(stepper);
+    const double impulse = stepper.simulation().ledger().wall_impulse,
+                 impacts = count_impacts(stepper, false);
     stepper.advance_to(kEnd);
     const double side = scene.walls->max.x - scene.walls->min.x, time = kEnd - kStart;
     return {(stepper.simulation().ledger().wall_impulse - impulse) / (4 * side * time),
-            (count_pair_impacts(stepper) - impacts) / time, kinetic_energy(stepper)};
+            (count_impacts(stepper, false) - impacts) / time, kinetic_energy(stepper)};
 }
 
 Behaviour reference_of(Scene (*scene)(int)) {
@@ -100,7 +96,7 @@ Scene dissipating_gas(int member) {
 std::vector<double> run_cooling(Stepper& stepper, const Scene& scene, int) {
     const double start = kinetic_energy(stepper);
     const Behaviour found = watch(stepper, scene), exact = reference_of(dissipating_gas);
-    const double collisions_a_disc = 2 * count_pair_impacts(stepper) / kDiscs;
+    const double collisions_a_disc = 2 * count_impacts(stepper, false) / kDiscs;
     const double lost = (1 - kCoolingRestitution * kCoolingRestitution) / 2;
     return {found.energy / exact.energy - 1,
             found.energy / (start * std::exp(-lost * collisions_a_disc)) - 1};

@@ -67,6 +67,13 @@ inline Scene gas_of(std::int64_t count, double packing_fraction, double restitut
     return scene;
 }
 
+/// Impacts between discs, walls included or not; not a number if the solver counts none.
+inline double count_impacts(const Stepper& stepper, bool with_walls) {
+    const Profile profile = stepper.simulation().profile();
+    if (profile.impacts == 0) return std::nan("");
+    return static_cast<double>(profile.impacts - (with_walls ? 0 : profile.wall_impacts));
+}
+
 /// Root mean square of what is added.
 class RootMeanSquare {
   public:
