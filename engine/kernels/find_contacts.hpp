@@ -23,16 +23,18 @@ void separate_coincident(const std::int32_t* a, const std::int32_t* b, unsigned 
     nx = Lanes::load(x), ny = Lanes::load(y);
 }
 
-/// When two bodies at relative position d, flying at relative velocity v, come to touch [s]; 0 if they do
-/// already, or not within dt. The smaller root of v² t² + 2 d·v t + d² - reach² = 0.
+/// When two bodies at relative position d, flying at relative velocity v, come to touch, or nearest if they
+/// pass each other, within dt [s]; 0 if they touch already or do not approach. The normal of that moment is
+/// the one along which their separation never falls below zero before they touch. Touching: the smaller root
+/// of v² t² + 2 d·v t + d² - reach² = 0.
 template <class F>
 F time_of_meeting(F dx, F dy, F vx, F vy, F squared, F reach, F dt) {
     const F zero(0);
     const F a = vx * vx + vy * vy, b = dx * vx + dy * vy, c = squared - reach * reach;
     const F discriminant = b * b - a * c;
-    const F t = c / (simd::sqrt(simd::max(discriminant, zero)) - b);
-    const auto meets = (c > zero) & (b < zero) & (discriminant > zero) & (t <= dt);
-    return simd::select(meets, t, zero);
+    const F touching = c / (simd::sqrt(simd::max(discriminant, zero)) - b);
+    const F t = simd::min(simd::select(discriminant > zero, touching, -b / a), dt);
+    return simd::select((c > zero) & (b < zero), t, zero);
 }
 
 /// Candidates whose bodies touch or may come to touch in this step, compressed into contacts.

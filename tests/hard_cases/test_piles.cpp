@@ -1,0 +1,131 @@
+// Piles of rough discs under solver `soft`: overlap, rest, bits, and bodies that come and go.
+#include "support/effort.hpp"
+#include "support/report.hpp"
+#include "support/scenes.hpp"
+#include "support/trial.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+using namespace carom;
+using namespace carom::test;
+
+namespace {
+
+constexpr double kStep = 1.0 / 60;
+
+/// Discs of radius 0.4 to 0.6 on a loose lattice above the floor of a box.
+Scene loose_pile(std::int64_t columns, std::int64_t rows) {
+    Scene scene;
+    scene.gravity = {0, -10};
+    const Material rough{.friction = 0.5};
+    const double width = 1.3 * static_cast<double>(columns);
+    scene.walls = Walls{.min = {0, 0}, .max = {width, 1e4}, .top = false, .material = rough};
+    Lattice lattice;
+    lattice.count_x = columns, lattice.count_y = rows;
+    lattice.origin = {0.65, 0.7}, lattice.spacing = {1.3, 1.3};
+    lattice.jitter = 0.04;
+    lattice.radius_range = RadiusRange{0.4, 0.6};
+    lattice.body.material = rough;
+    add_lattice(scene, lattice);
+    return scene;
+}
+
+template <class Real>
+double rms_speed(const BasicWorld<Real>& world) {
+    const auto bodies = world.bodies();
+    double sum = 0;
+    for (std::size_t i = 0; i < bodies.count; ++i)
+        sum += static_cast<double>(bodies.velocity_x[i]) * static_cast<double>(bodies.velocity_x[i]) +
+               static_cast<double>(bodies.velocity_y[i]) * static_cast<double>(bodies.velocity_y[i]);
+    return std::sqrt(sum / static_cast<double>(bodies.count));
+}
+
+}  // namespace
+
+TEST_SUITE("hard cases/piles") {
+    TEST_CASE_TEMPLATE("a pile comes to rest with overlaps below one percent", Real, float, double) {
+        constexpr int kSteps = scaled(900, 600);
+        const Scene scene = loose_pile(20, 20);
+        BasicWorld<Real> world(scene);
+        CHECK(world.plan().solver == "soft");
+        const double start = world.ledger().energy.total();
+        for (int i = 0; i < kSteps; ++i) {
+            world.step(kStep);
+            if (i % 100 == 0) CHECK(world.ledger().energy.total() < (1 + 1e-3) * start);
+        }
+        const OverlapReport overlaps = world.overlaps();
+        report("overlap ", 100 * overlaps.mean, " % mean, ", 100 * overlaps.max, " % max, speed ",
+               rms_speed(world), " m/s");
+        CHECK(overlaps.touching > 500);
+        CHECK(overlaps.mean < 0.01);
+        CHECK(overlaps.max < 0.06);
+        CHECK(rms_speed(world) < 0.01);
+        CHECK(world.quarantined().empty());
+    }
+
+    TEST_CASE_TEMPLATE("friction that is forced on with coefficients of zero changes no bit", Real, float,
+                       double) {
+        Scene scene = loose_pile(8, 8);
+        for (Body& body : scene.bodies) body.material.friction = 0;
+        scene.walls->material.friction = 0;
+        scene.accuracy.solver = Solver::soft;
+        BasicWorld<Real> without(scene);
+        WorldOptions options;
+        options.effects.friction = options.effects.rotation = true;
+        BasicWorld<Real> with(scene, options);
+        for (int i = 0; i < 200; ++i) without.step(kStep), with.step(kStep);
+        CHECK(with.state_hash() == without.state_hash());
+    }
+
+    TEST_CASE_TEMPLATE("contacts keep what they carry when other bodies come and go", Real, float, double) {
+        Scene scene = loose_pile(8, 8);
+        BasicWorld<Real> world(scene);
+        for (int i = 0; i < 600; ++i) world.step(kStep);
+        const double still = rms_speed(world);
+        // Far above the pile: what is added and removed each step must not disturb it.
+        for (int i = 0; i < 100; ++i) {
+            const BodyId guest = world.add({.shape = Disc{0.5}, .position = {5, 500}});
+            world.step(kStep);
+            world.remove(guest);
+        }
+        report("speed ", still, " m/s before, ", rms_speed(world), " m/s after");
+        CHECK(rms_speed(world) < 0.01);
+        CHECK(world.overlaps().max < 0.06);
+    }
+
+    TEST_CASE_TEMPLATE("contacts that find no colour are not lost: a disc hit from all sides at once", Real,
+                       float, double) {
+        Scene scene;
+        scene.accuracy.solver = Solver::soft;
+        constexpr double kLarge = 20, kSmall = 0.1, kSpeed = 1, kGap = 0.2;
+        constexpr int kCount = 150;  // more than there are colours
+        scene.add({.shape = Disc{kLarge}, .mass = 1000});
+        for (int i = 0; i < kCount; ++i) {
+            const double angle = 2 * std::numbers::pi * i / kCount, from = kLarge + kSmall + kGap;
+            const Vec2 out{std::cos(angle), std::sin(angle)};
+            scene.add({.shape = Disc{kSmall},
+                       .position = {from * out.x, from * out.y},
+                       .velocity = {-kSpeed * out.x, -kSpeed * out.y}});
+        }
+        BasicWorld<Real> world(scene);
+        std::int64_t overflow = 0;
+        for (int i = 0; i < 30; ++i) {
+            world.step(kStep);
+            overflow = std::max(overflow, world.profile().overflow);
+        }
+        CHECK(overflow == kCount - 64);
+        double nearest = 1e9, fastest = 0;
+        for (std::uint32_t i = 1; i <= kCount; ++i) {
+            const BodyState state = world.state({i, 0});
+            nearest = std::fmin(nearest, std::hypot(state.position.x, state.position.y));
+            fastest = std::fmax(fastest, std::hypot(state.velocity.x, state.velocity.y));
+        }
+        report("nearest ", nearest - kLarge - kSmall, " m, fastest ", fastest, " m/s");
+        CHECK(nearest > kLarge + 0.99 * kSmall);
+        CHECK(fastest < 1e-3 * kSpeed);
+    }
+}
