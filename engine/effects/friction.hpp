@@ -1,11 +1,13 @@
 #pragma once
 
+#include <cmath>
+
 namespace carom {
 
-/// A pair's Coulomb coefficient from those of the two materials, squared: the geometric mean is its root.
-/// Taken as a root by whoever uses it, because lanes and scalars have different ones.
-constexpr double pair_friction_squared(double a, double b) {
-    return a * b;
+/// A pair's Coulomb coefficient: the geometric mean of the two materials'. kernels/find_contacts.hpp has it
+/// for lanes.
+inline double pair_friction(double a, double b) {
+    return std::sqrt(a * b);
 }
 
 }  // namespace carom

@@ -177,8 +177,7 @@ Surface surface_of(const WorldState<Real>& world, std::size_t row, std::int32_t 
 }  // namespace
 
 template <class Real>
-void SoftSolver<Real>::find_supports(const WorldState<Real>& world, const Column<Real>& motion) {
-    static_cast<void>(motion);
+void SoftSolver<Real>::find_supports(const WorldState<Real>& world) {
     ContactCandidates<Real>& candidates = graph.supports;
     const Bodies<Real>& bodies = world.bodies;
     const std::size_t colours = candidates.colours();
@@ -209,8 +208,7 @@ void SoftSolver<Real>::find_supports(const WorldState<Real>& world, const Column
             supports_.surface_tangent[at] = real(cross(s.normal, s.velocity));
             if (is_rough_) {
                 supports_.friction_impulse[at] = candidates.friction_impulse[i];
-                supports_.friction[at] =
-                    real(std::sqrt(pair_friction_squared(bodies.friction[row], s.friction)));
+                supports_.friction[at] = real(pair_friction(bodies.friction[row], s.friction));
             }
             if (bounces_) supports_.approach[at] = real(dot(dv, s.normal));
             supports_.candidate[at] = static_cast<std::int32_t>(i);
@@ -245,7 +243,7 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const Candid
     keep_forces(graph.pairs), keep_forces(graph.supports);
     impulses_of_h_ = h_;
     find_pairs(world.bodies, motion);
-    find_supports(world, motion);
+    find_supports(world);
     for (LiveContacts<Real>* live : {&pairs_, &supports_})
         if (bounces_)
             for (Column<Real>* column : {&live->largest_impulse, &live->bounce_impulse})

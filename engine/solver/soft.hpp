@@ -74,7 +74,7 @@ class SoftSolver {
     void keep_forces(ContactCandidates<Real>& candidates) const;
     void derive_masses(const Bodies<Real>& bodies);
     void find_pairs(const Bodies<Real>& bodies, const Column<Real>& motion);
-    void find_supports(const WorldState<Real>& world, const Column<Real>& motion);
+    void find_supports(const WorldState<Real>& world);
     SolveContacts<Real> arguments(LiveContacts<Real>& live);
     void sweep(LiveContacts<Real>& live, Kernel kernel, const SolveContacts<Real>& k);
     const ContactKernels<Real>& contact_kernels() const;

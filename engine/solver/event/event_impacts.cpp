@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "effects/friction.hpp"
 #include "effects/restitution.hpp"
 
 namespace carom {
@@ -38,7 +39,7 @@ EventContact EventImpacts::measure(const EventStore& store, std::int32_t a, std:
         c.normal = -wall.normal;
         c.separation = dot(wall.normal, xa) - wall.offset - ra;
         velocity = -va;
-        c.friction = std::sqrt(sa.friction * store.laws.wall_friction);
+        c.friction = pair_friction(sa.friction, store.laws.wall_friction);
     } else {
         const auto ib = static_cast<std::size_t>(b);
         const EventSurface& sb = store.surfaces[ib];
@@ -51,7 +52,7 @@ EventContact EventImpacts::measure(const EventStore& store, std::int32_t a, std:
         surface_speed += rb * sb.spin;
         inverse_inertia += rb * rb * sb.inverse_inertia;
         c.inverse_mass += sb.inverse_mass;
-        c.friction = std::sqrt(sa.friction * sb.friction);
+        c.friction = pair_friction(sa.friction, sb.friction);
     }
     // The normal's length is 1 but for round-off, whose mean is not zero (of sqrt, where the reach is a power
     // of two). What J changes along it is J k n², and counting that keeps the energy of 1e6 impacts: 1e-13,
