@@ -6,6 +6,7 @@
 
 #include "exit_codes.hpp"
 #include "format.hpp"
+#include "results/whole_file.hpp"
 
 namespace carom::tool {
 namespace {
@@ -27,16 +28,7 @@ void write_page_to(const fs::path& path, const report::Page& page) {
 }
 
 void write_page(const fs::path& path, const report::Page& page) {
-    const fs::path temporary = path.string() + ".part";
-    std::error_code error;
-    try {
-        write_page_to(temporary, page);
-        fs::rename(temporary, path, error);
-        if (error) throw WriteError(joined(path.string(), ": ", error.message()));
-    } catch (...) {
-        fs::remove(temporary, error);
-        throw;
-    }
+    write_then_rename(path, [&](const fs::path& temporary) { write_page_to(temporary, page); });
 }
 
 }  // namespace carom::tool
