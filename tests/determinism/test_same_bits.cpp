@@ -74,8 +74,23 @@ Scene stack_at_rest() {
     return scene;
 }
 
+/// Solver `soft` with all it has: friction, sizes, bodies that do not turn, restitution, a moving obstacle.
+Scene rough_sizes() {
+    Scene scene = moving_obstacles();
+    scene.name = "rough sizes";
+    scene.drag = {.linear = 0.1, .angular = 0.1};
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+        Material& material = scene.bodies[i].material;
+        material.friction = i % 3 == 0 ? 0.2 : 0.6;
+        material.restitution = i % 4 == 0 ? 0.5 : 0;
+        scene.bodies[i].fixed_rotation = i % 7 == 0;
+    }
+    scene.walls->material = {.friction = 0.4};
+    return scene;
+}
+
 std::vector<Scene> scenes() {
-    return {gas(400, {0.5, 0.5}, 1), falling_sizes(), moving_obstacles(), stack_at_rest()};
+    return {gas(400, {0.5, 0.5}, 1), falling_sizes(), moving_obstacles(), stack_at_rest(), rough_sizes()};
 }
 
 template <class Real>
@@ -96,6 +111,7 @@ constexpr Golden kGolden[] = {
     {"falling sizes", 0x3c289ec5db9dcdbe, 0x8ebecc6cbe6c743b},
     {"moving obstacles", 0x40b0a699a54d25d8, 0x8d886382b5915bee},
     {"stack at rest", 0xa436021f760768ad, 0xfd75b447dc578a50},
+    {"rough sizes", 0xd39e745606ad4473, 0x5d90f5df023bd7b6},
 };
 
 }  // namespace
