@@ -69,7 +69,7 @@ OverlapReport measure_overlaps(Simulation<Real>& sim) {
 template <class Real>
 std::size_t bytes_of(Simulation<Real>& sim) {
     std::size_t bytes = sizeof(sim) + sim.world.handles.bytes() + sim.candidates.bytes() +
-                        sim.solver.bytes() + sim.events.bytes() + sim.wall_rows.bytes() +
+                        sim.solver.bytes() + sim.soft.bytes() + sim.events.bytes() + sim.wall_rows.bytes() +
                         sim.displaced_rows.bytes() + sim.lost_rows.bytes() +
                         sim.meetings.capacity() * sizeof(FoundMeeting) +
                         sim.world.immovable_rows.capacity() * sizeof(std::int32_t);
