@@ -17,6 +17,7 @@ void add_run_command(CLI::App& program, Action& action);
 void add_explain_command(CLI::App& program, Action& action);
 void add_check_command(CLI::App& program, Action& action);
 void add_profile_command(CLI::App& program, Action& action);
+void add_prices_command(CLI::App& program, Action& action);
 void add_scaling_command(CLI::App& program, Action& action);
 void add_report_command(CLI::App& program, Action& action);
 void add_accuracy_command(CLI::App& program, Action& action);

@@ -32,6 +32,7 @@ int run_program(int argc, char** argv) {
     add_explain_command(program, action);
     add_check_command(program, action);
     add_profile_command(program, action);
+    add_prices_command(program, action);
     add_scaling_command(program, action);
     add_report_command(program, action);
     add_accuracy_command(program, action);

@@ -26,6 +26,7 @@ constexpr std::array kKinds{
     Kind{"scenes", nullptr, &draw_scenes},
     Kind{"peers", nullptr, &draw_peers},
     Kind{"profile", nullptr, &draw_profile},
+    Kind{"prices", nullptr, &draw_prices},
     Kind{"accuracy", &draw_accuracy},
 };
 

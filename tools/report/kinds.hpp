@@ -33,6 +33,7 @@ void draw_stages(const std::vector<Result>& results, Page& page);
 void draw_scenes(const std::vector<Result>& results, Page& page);
 void draw_peers(const std::vector<Result>& results, Page& page);
 void draw_profile(const std::vector<Result>& results, Page& page);
+void draw_prices(const std::vector<Result>& results, Page& page);
 
 /// The page of some result files, in the order of their kinds, each drawn as its kind is. A folder stands for
 /// the summary.json in it. No part that can be thinned takes more than `page_bytes`.
