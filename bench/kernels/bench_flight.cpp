@@ -92,18 +92,10 @@ void end_flight(benchmark::State& state, const KernelTable<Real>& table) {
     const auto items = static_cast<std::size_t>(state.range(0));
     FlightColumns<Real> columns(items, 0);
     table.begin_flight_uniform_radius(columns.begin_arguments(true), 0, items);
-    const EndFlight<Real> arguments{columns.motion.data(),
-                                    static_cast<Real>(kSubstep),
-                                    1,
-                                    0,
-                                    0,
-                                    0,
-                                    0,
-                                    columns.x.data(),
-                                    columns.y.data(),
-                                    columns.vx.data(),
-                                    columns.vy.data()};
-    const measure::Work work{.bytes = 8 * sizeof(Real), .operations = 10};
+    const EndFlight<Real> arguments{
+        columns.motion.data(), static_cast<Real>(kSubstep), 0, 0, 0, 0, 0, columns.x.data(), columns.y.data(),
+        columns.vx.data(),     columns.vy.data(),           0, 0};
+    const measure::Work work{.bytes = 8 * sizeof(Real), .operations = 16};
     time_kernel(state, {work, items, 8 * sizeof(Real) * items},
                 [&] { table.end_flight(arguments, 0, items); });
 }

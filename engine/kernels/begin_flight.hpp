@@ -30,7 +30,7 @@ FlightCounts<Real> begin_flight(const BeginFlight<Real>& k, std::size_t first, s
 
         fastest = simd::max(fastest, vx * vx + vy * vy);
 
-        const F end_x = x + vx * s + fall_x, end_y = y + vy * s + fall_y;
+        const F end_x = x + (vx * s + fall_x), end_y = y + (vy * s + fall_y);
         F radius(k.uniform_radius);
         if constexpr (!kUniformRadius) radius = Lanes::load(k.radius + i);
         const F touch = radius * touch_ratio;

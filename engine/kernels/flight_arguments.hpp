@@ -79,13 +79,14 @@ template <class Real>
 struct EndFlight {
     const Real* motion;   // [rows][4]
     Real s;               // s
-    Real u;               // e^(-kt)
+    Real loss;            // no unit, what drag takes: 1 - e^(-kt)
     Real fall_x, fall_y;  // m
     Real gain_x, gain_y;  // m/s
     Real* position_x;     // out, m
     Real* position_y;
     Real* velocity_x;  // out, m/s
     Real* velocity_y;
+    Real dither_x, dither_y;  // no unit, of velocity: added before rounding (effects/fair_rounding.hpp)
 };
 
 /// angle += angular velocity * s, angular velocity *= u, with the angular drag's own clock.

@@ -56,6 +56,11 @@ Batch<Real, Isa> max(Batch<Real, Isa> a, Batch<Real, Isa> b) {
     return xsimd::max(a.raw, b.raw);
 }
 template <class Real, class Isa>
+Batch<Real, Isa> binade(Batch<Real, Isa> a) {
+    // Minus infinity has the bits of sign and exponent set, and no others.
+    return a.raw & typename Batch<Real, Isa>::Raw(-__builtin_inf());
+}
+template <class Real, class Isa>
 Batch<Real, Isa> select(xsimd::batch_bool<Real, Isa> mask, Batch<Real, Isa> if_true,
                         Batch<Real, Isa> if_false) {
     return xsimd::select(mask, if_true.raw, if_false.raw);

@@ -24,7 +24,8 @@
 ///
 /// On a Batch: + - * / += -= *=, unary -, < <= > >= ==. As free functions in carom::simd, for scalars too:
 ///   sqrt, abs, min, max (the second operand if one is NaN or both are zeros), select(mask, if_true,
-///   if_false), any(mask), all(mask), bitmask(mask) -> unsigned, lane 0 in bit 0.
+///   if_false), any(mask), all(mask), bitmask(mask) -> unsigned, lane 0 in bit 0,
+///   binade (the power of two at or below |value|, with its sign).
 ///
 /// For Real = float also
 ///   rows_difference(a, b), rows_min(a, b)   of row numbers

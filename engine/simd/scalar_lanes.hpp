@@ -44,6 +44,13 @@ inline float max(float a, float b) {
 inline double max(double a, double b) {
     return a > b ? a : b;
 }
+// The power of two at or below |value|, with its sign; 0 below the normal numbers, infinite for NaN.
+inline float binade(float value) {
+    return __builtin_bit_cast(float, __builtin_bit_cast(std::uint32_t, value) & 0xff800000u);
+}
+inline double binade(double value) {
+    return __builtin_bit_cast(double, __builtin_bit_cast(std::uint64_t, value) & 0xfff0000000000000u);
+}
 inline float select(bool mask, float if_true, float if_false) {
     return mask ? if_true : if_false;
 }

@@ -1,3 +1,4 @@
+#include "effects/fair_rounding.hpp"
 #include "stages/stages.hpp"
 
 namespace carom {
@@ -36,9 +37,10 @@ void end_flight(Simulation<Real>& sim) {
     const FlightClock& end = sim.solver.flights.end;
     const Vec2 g = sim.world.gravity;
     const auto real = [](double value) { return static_cast<Real>(value); };
+    const Real dithered = dither_factor<Real>(++sim.world.falls);
     const EndFlight<Real> k{sim.solver.flights.motion.data(),
                             real(end.s),
-                            real(end.u),
+                            real(end.drag * end.s),
                             real(g.x * end.q),
                             real(g.y * end.q),
                             real(g.x * end.s),
@@ -46,7 +48,9 @@ void end_flight(Simulation<Real>& sim) {
                             bodies.position_x.data(),
                             bodies.position_y.data(),
                             bodies.velocity_x.data(),
-                            bodies.velocity_y.data()};
+                            bodies.velocity_y.data(),
+                            g.x != 0 || end.drag != 0 ? dithered : 0,
+                            g.y != 0 || end.drag != 0 ? dithered : 0};
     sim.executor.for_each_chunk(bodies.count, kRowsPerChunk,
                                 [&](std::size_t, std::size_t first, std::size_t last) {
                                     sim.kernels->end_flight(k, first, padded(last));

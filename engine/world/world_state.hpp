@@ -44,7 +44,8 @@ struct WorldState {
     Drag drag;
     std::optional<Walls> walls;
     Effects effects;
-    double time = 0;  ///< s
+    double time = 0;          ///< s
+    std::uint64_t falls = 0;  ///< flights so far: says how speeds are rounded in the next one
     Books books;
     Sums initial;                              ///< of the bodies there are, at the moment each joined
     double dynamic_mass = 0;                   ///< kg

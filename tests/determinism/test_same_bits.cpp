@@ -108,8 +108,8 @@ struct Golden {
 };
 constexpr Golden kGolden[] = {
     {"gas", 0x680b8eec4001de52, 0x87bedad9b790c353},
-    {"falling sizes", 0x3c289ec5db9dcdbe, 0x8ebecc6cbe6c743b},
-    {"moving obstacles", 0x40b0a699a54d25d8, 0x8d886382b5915bee},
+    {"falling sizes", 0x4fe0c9b61ea50e9c, 0xc84f698047eb650e},
+    {"moving obstacles", 0x9450532e75523df8, 0x81f8d27062c9d725},
     {"stack at rest", 0xa436021f760768ad, 0xfd75b447dc578a50},
     {"rough sizes", 0xd39e745606ad4473, 0x5d90f5df023bd7b6},
 };

@@ -50,7 +50,7 @@ constexpr std::array kModels{
     // two records of velocity and one of displacement in and out, the turn
     StageModel{"advance_bodies", "body and substep", &all_bodies, [](double real) { return 22 * real; }, 38},
     StageModel{"end_substeps", "body", &all_bodies, [](double real) { return 17 * real; }, 13},
-    StageModel{"end_flight", "body", &all_bodies, [](double real) { return 8 * real; }, 10},
+    StageModel{"end_flight", "body", &all_bodies, [](double real) { return 8 * real; }, 16},
 };
 
 }  // namespace

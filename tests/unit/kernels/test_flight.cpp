@@ -192,8 +192,10 @@ TEST_SUITE("kernels/flight") {
             for (const KernelTables* table : runnable_kernel_tables()) {
                 const KernelTable<Real>& kernels = table->of<Real>();
                 Column<Real> x(rows), y(rows), vx(rows), vy(rows), angle = columns.x, spin = columns.vx;
-                kernels.end_flight({columns.motion.data(), Real(0.016), Real(0.98), Real(0.1), Real(-0.2),
-                                    Real(0.3), Real(-0.4), x.data(), y.data(), vx.data(), vy.data()},
+                constexpr Real kUnit = std::numeric_limits<Real>::epsilon();
+                kernels.end_flight({columns.motion.data(), Real(0.016), Real(0.02), Real(0.1), Real(-0.2),
+                                    Real(0.3), Real(-0.4), x.data(), y.data(), vx.data(), vy.data(),
+                                    Real(0.3) * kUnit, Real(-0.4) * kUnit},
                                    0, padded(rows));
                 kernels.advance_rotation({angle.data(), spin.data(), Real(0.016), Real(0.9)}, 0,
                                          padded(rows));

@@ -34,7 +34,7 @@ struct LaneProbe {
     void (*floor)(const float* values, std::size_t count, double* floors, std::int32_t* rows);
 };
 
-inline constexpr std::size_t kArithmetic = 13;
+inline constexpr std::size_t kArithmetic = 14;
 inline constexpr std::size_t kComparisons = 10;
 
 struct LaneProbes {

@@ -24,6 +24,7 @@ void probe_arithmetic(const Real* a, const Real* b, std::size_t count, Real* out
                                             -x,
                                             simd::sqrt(simd::abs(x)),
                                             simd::abs(x),
+                                            simd::binade(x),
                                             simd::min(x, y),
                                             simd::max(x, y),
                                             simd::select(x < y, x, L::broadcast(Real{7})),

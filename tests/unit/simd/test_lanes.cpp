@@ -82,6 +82,12 @@ void make_nans_equal(Column<Real>& values) {
 }
 
 template <class Real>
+Real expected_binade(Real x) {
+    if (!std::isnormal(x)) return std::copysign(std::isfinite(x) ? Real{0} : INFINITY, x);
+    return std::copysign(std::ldexp(Real{1}, std::ilogb(x)), x);
+}
+
+template <class Real>
 Column<Real> expected_arithmetic(const Column<Real>& a, const Column<Real>& b) {
     const std::size_t count = a.size();
     Column<Real> out(kArithmetic * count);
@@ -94,6 +100,7 @@ Column<Real> expected_arithmetic(const Column<Real>& a, const Column<Real>& b) {
                                            -x,
                                            std::sqrt(std::fabs(x)),
                                            std::fabs(x),
+                                           expected_binade(x),
                                            x < y ? x : y,
                                            x > y ? x : y,
                                            x < y ? x : Real{7},
