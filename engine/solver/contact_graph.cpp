@@ -55,8 +55,12 @@ void ContactGraph<Real>::rename_rows() {
                 a = spare_rows_[static_cast<std::size_t>(a)];
                 if (b >= 0) b = spare_rows_[static_cast<std::size_t>(b)];
                 if (a == kGone || b == kGone) contacts->normal_impulse[i] = 0;
-                // The impulses of a pair do not depend on the order of its bodies.
-                if (contacts == &pairs && a > b) std::swap(a, b);
+                // The impulses of a pair do not depend on the order of its bodies, but for the rolling one:
+                // spin_b - spin_a changes its sign.
+                if (contacts == &pairs && a > b) {
+                    std::swap(a, b);
+                    if (keeps_rolling) contacts->rolling_impulse[i] = -contacts->rolling_impulse[i];
+                }
             }
     old_row_.clear();
 }
@@ -73,6 +77,7 @@ void ContactGraph<Real>::remember(std::size_t rows) {
     count(pairs), count(supports);
     for (std::size_t row = 2; row < rows + 2; ++row) first_of_[row] += first_of_[row - 1];
     remembered_.resize(first_of_[rows + 1]);
+    remembered_rolling_.resize(keeps_rolling ? remembered_.size() : 0);
     remember(pairs), remember(supports);
 }
 
@@ -84,17 +89,20 @@ void ContactGraph<Real>::remember(const ContactCandidates<Real>& contacts) {
             const std::uint32_t place = first_of_[static_cast<std::size_t>(contacts.a[i]) + 1]++;
             const Real friction = contacts.friction_impulse.empty() ? Real(0) : contacts.friction_impulse[i];
             remembered_[place] = {contacts.b[i], contacts.normal_impulse[i], friction};
+            if (keeps_rolling) remembered_rolling_[place] = contacts.rolling_impulse[i];
         }
 }
 
 template <class Real>
-void ContactGraph<Real>::recall(Found& found) const {
+void ContactGraph<Real>::recall(Found& found, std::vector<Real>& rolling) const {
     found.normal_impulse = found.friction_impulse = 0;
+    if (keeps_rolling) rolling.push_back(0);
     const auto row = static_cast<std::size_t>(found.a);
     for (std::uint32_t i = first_of_[row]; i < first_of_[row + 1]; ++i)
         if (remembered_[i].b == found.b) {
             found.normal_impulse = remembered_[i].normal_impulse;
             found.friction_impulse = remembered_[i].friction_impulse;
+            if (keeps_rolling) rolling.back() = remembered_rolling_[i];
             return;
         }
 }
@@ -116,8 +124,8 @@ void ContactGraph<Real>::list_walls(const Candidates<Real>& candidates, const Bo
 
 /// Stable, so that bodies near each other stay near each other within a colour.
 template <class Real>
-void ContactGraph<Real>::sort_by_colour(std::vector<Found>& found, ContactCandidates<Real>& sorted,
-                                        std::int32_t dummy) {
+void ContactGraph<Real>::sort_by_colour(std::vector<Found>& found, const std::vector<Real>& rolling,
+                                        ContactCandidates<Real>& sorted, std::int32_t dummy) {
     std::size_t colours = 0;
     std::size_t counts[kColours + 1] = {};
     for (const Found& f : found) {
@@ -139,6 +147,13 @@ void ContactGraph<Real>::sort_by_colour(std::vector<Found>& found, ContactCandid
     }
     sorted.normal_impulse.resize(0), sorted.normal_impulse.resize(place);
     sorted.friction_impulse.resize(0), sorted.friction_impulse.resize(place);
+    sorted.rolling_impulse.resize(0), sorted.rolling_impulse.resize(keeps_rolling ? place : 0);
+    for (std::size_t n = 0; n < rolling.size(); ++n) {
+        std::size_t& i = next[found[n].colour];
+        sorted.rolling_impulse[i++] = rolling[n];
+    }
+    if (keeps_rolling)
+        for (std::size_t c = 0; c < colours; ++c) next[c] = sorted.begin[c];
     for (const Found& f : found) {
         const std::size_t i = next[f.colour]++;
         sorted.a[i] = f.a, sorted.b[i] = f.b;
@@ -153,6 +168,7 @@ void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const Bodies<
     rename_rows();
     remember(rows);
     found_pairs_.clear(), found_supports_.clear();
+    rolling_of_pairs_.clear(), rolling_of_supports_.clear();
     const std::int32_t *pair_a = candidates.pair_a(), *pair_b = candidates.pair_b();
     for (std::size_t p = 0; p < candidates.pair_count(); ++p) {
         const std::int32_t a = std::min(pair_a[p], pair_b[p]), b = std::max(pair_a[p], pair_b[p]);
@@ -170,7 +186,7 @@ void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const Bodies<
         return static_cast<std::uint32_t>(std::countr_one(taken));  // kColours if all are
     };
     for (Found& f : found_pairs_) {
-        recall(f);
+        recall(f, rolling_of_pairs_);
         std::uint64_t &of_a = colours_of_[static_cast<std::size_t>(f.a)],
                       &of_b = colours_of_[static_cast<std::size_t>(f.b)];
         f.colour = lowest_free(of_a | of_b);
@@ -180,14 +196,14 @@ void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const Bodies<
     }
     colours_of_.assign(rows, 0);
     for (Found& f : found_supports_) {
-        recall(f);
+        recall(f, rolling_of_supports_);
         std::uint64_t& of_a = colours_of_[static_cast<std::size_t>(f.a)];
         f.colour = lowest_free(of_a);
         if (f.colour < kColours) of_a |= std::uint64_t{1} << f.colour;
     }
     const auto dummy = static_cast<std::int32_t>(rows);
-    sort_by_colour(found_pairs_, pairs, dummy);
-    sort_by_colour(found_supports_, supports, dummy);
+    sort_by_colour(found_pairs_, rolling_of_pairs_, pairs, dummy);
+    sort_by_colour(found_supports_, rolling_of_supports_, supports, dummy);
     rows_ = rows;
 }
 
@@ -197,6 +213,8 @@ std::size_t ContactGraph<Real>::bytes() const {
            (found_pairs_.capacity() + found_supports_.capacity()) * sizeof(Found) +
            colours_of_.capacity() * sizeof(std::uint64_t) + first_of_.capacity() * sizeof(std::uint32_t) +
            remembered_.capacity() * sizeof(Remembered) +
+           (rolling_of_pairs_.capacity() + rolling_of_supports_.capacity() + remembered_rolling_.capacity()) *
+               sizeof(Real) +
            (old_row_.capacity() + spare_rows_.capacity()) * sizeof(std::int32_t);
 }
 

@@ -18,6 +18,7 @@ struct ContactCandidates {
     Column<std::int32_t> a, b;      // rows; b < 0 is a wall (WallSide). Padding: the row after the last body
     Column<Real> normal_impulse;    // N s, of a substep
     Column<Real> friction_impulse;  // N s
+    Column<Real> rolling_impulse;   // N s; empty without rolling resistance
     /// Colour c is [begin[c], begin[c] + count[c]); begin[c] is a multiple of kRowPadding.
     std::vector<std::size_t> begin, count;
     /// The last colour takes what found no other: its contacts may share bodies and are solved one by one.
@@ -25,7 +26,8 @@ struct ContactCandidates {
 
     std::size_t colours() const { return begin.size(); }
     std::size_t bytes() const {
-        return a.bytes() + b.bytes() + normal_impulse.bytes() + friction_impulse.bytes();
+        return a.bytes() + b.bytes() + normal_impulse.bytes() + friction_impulse.bytes() +
+               rolling_impulse.bytes();
     }
 };
 
@@ -53,6 +55,8 @@ class ContactGraph {
     ContactCandidates<Real>
         supports;  ///< of a body that moves and what nothing moves: walls, immovable bodies
 
+    bool keeps_rolling = false;  ///< rolling impulses, too
+
     std::size_t bytes() const;
 
   private:
@@ -70,14 +74,17 @@ class ContactGraph {
     void rename_rows();
     void remember(std::size_t rows);
     void remember(const ContactCandidates<Real>& contacts);
-    void recall(Found& found) const;
+    void recall(Found& found, std::vector<Real>& rolling) const;
     void list_walls(const Candidates<Real>& candidates, const Bodies<Real>& bodies, const Walls& walls);
-    void sort_by_colour(std::vector<Found>& found, ContactCandidates<Real>& sorted, std::int32_t dummy);
+    void sort_by_colour(std::vector<Found>& found, const std::vector<Real>& rolling,
+                        ContactCandidates<Real>& sorted, std::int32_t dummy);
 
     std::vector<Found> found_pairs_, found_supports_;
     std::vector<std::uint64_t> colours_of_;  // a row, bit a colour
     std::vector<std::uint32_t> first_of_;    // place of a row's remembered contacts
     std::vector<Remembered> remembered_;
+    // Rolling impulses beside the three lists above; empty unless they are kept.
+    std::vector<Real> rolling_of_pairs_, rolling_of_supports_, remembered_rolling_;
     std::size_t rows_ = 0;               // at the last renewal
     std::vector<std::int32_t> old_row_;  // of each present row, or kGone; empty if nothing has moved
     std::vector<std::int32_t> spare_rows_;

@@ -11,6 +11,7 @@ void begin_substeps(Simulation<Real>& sim) {
 template <class Real>
 void update_contacts(Simulation<Real>& sim) {
     if (sim.graph_of_rebuild == sim.candidates.rebuild_count()) return;
+    sim.soft.graph.keeps_rolling = sim.world.effects.rolling_resistance;
     sim.soft.graph.renew(sim.candidates, sim.world.bodies, sim.world.walls ? &*sim.world.walls : nullptr);
     sim.graph_of_rebuild = sim.candidates.rebuild_count();
 }
