@@ -122,7 +122,6 @@ constexpr Golden kGolden[] = {
     {"stack at rest", 0xa436021f760768ad, 0xfd75b447dc578a50},
     {"rough sizes", 0xd39e745606ad4473, 0x5d90f5df023bd7b6},
     {"rolling sizes", 0x81444ef617b22751, 0x20a3839531afc756},
-    logged : scene.name : = rolling sizes
 };
 
 }  // namespace
