@@ -33,8 +33,8 @@ void step(Simulation<Real>& sim, double dt, StageTimes& times) {
         run(StageName::end_flight, plan.end_flight);
         run(StageName::run_events, plan.run_events);
     }
-    run(StageName::begin_substeps, plan.begin_substeps);
     run(StageName::update_contacts, plan.update_contacts);
+    run(StageName::begin_substeps, plan.begin_substeps);
     run(StageName::find_contacts, plan.find_contacts);
     for (sim.substep = 0; sim.substep < plan.contact_substeps; ++sim.substep) {
         run(StageName::solve_contacts, plan.solve_contacts);

@@ -23,8 +23,8 @@ struct StepPlan {
     Stage run_events = nullptr;
 
     // Solver `soft`.
-    Stage begin_substeps = nullptr;
     Stage update_contacts = nullptr;
+    Stage begin_substeps = nullptr;
     Stage find_contacts = nullptr;
     Stage solve_contacts = nullptr;
     Stage advance_bodies = nullptr;

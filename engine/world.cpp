@@ -56,7 +56,6 @@ void check_options(const Scene& scene, const WorldOptions& options) {
             "World: solver \"pairwise\" is the naive reference engine, class carom::Pairwise "
             "(<carom/pairwise.hpp>), not a solver of World. Use \"auto\", \"impulse\" or \"soft\" here.");
     raise_if("World", find_solver_problem(scene, accuracy.solver));
-    raise_if("World: option effects", find_solver_problem(options.effects, accuracy.solver));
     validate_effects(scene, scene.effects, "World");
     validate_effects(scene, options.effects, "World: option effects");
     constexpr int kMostThreads = 1024;
@@ -132,6 +131,7 @@ BasicWorld<Real>::BasicWorld(const Scene& scene, const WorldOptions& options) {
     sim.kernels = &select_kernels(options.isa).template of<Real>();
     sim.executor = Executor(options.threads, options.parallel_for);
     sim.method = accuracy.solver;
+    if (sim.method == Solver::soft) sim.candidates = Candidates<Real>(MarginRule::own);
     sim.substeps = accuracy.substeps.value_or(default_substeps(sim.method));
     implementation_->called = call_effects(scene, options.effects);
     implementation_->called.solver_reason =
@@ -212,7 +212,7 @@ BodyId BasicWorld<Real>::add(const Body& body) {
 template <class Real>
 void BasicWorld<Real>::remove(BodyId body) {
     const std::size_t row = implementation_->row_of(body, "World::remove");
-    implementation_->sim.soft.graph.follow_removed_row(row, body_count() - 1);
+    implementation_->sim.soft.graph.trail.follow_removed(row, body_count() - 1);
     implementation_->world().remove(row);
     implementation_->sim.forget_derived_state();
 }

@@ -18,6 +18,8 @@ constexpr double kOwnMargin = 1.25;
 
 // Strays are looked up one by one while they are fewer than one body in this many.
 constexpr std::size_t kBodiesPerStray = 64;
+// Rule own: all pairs are found anew when so many margins have been renewed.
+constexpr std::size_t kBodiesPerRenewal = 8;
 
 // Rows are sorted by place at the start and then this seldom: bodies drift slowly compared to steps. Columns
 // of fewer bodies fit into the first caches in any order; those of very many leave all caches, and disorder
@@ -37,16 +39,19 @@ void Candidates<Real>::prepare(std::size_t count) {
 }
 
 template <class Real>
+void Candidates<Real>::measure_radii(const Bodies<Real>& bodies) {
+    if (radii_are_known_) return;
+    smallest_radius_ = largest_radius_ = bodies.count > 0 ? bodies.radius[0] : 0;
+    for (std::size_t row = 0; row < bodies.count && !bodies.radius.is_uniform(); ++row) {
+        smallest_radius_ = std::fmin(smallest_radius_, bodies.radius[row]);
+        largest_radius_ = std::fmax(largest_radius_, bodies.radius[row]);
+    }
+    radii_are_known_ = true;
+}
+
+template <class Real>
 void Candidates<Real>::choose_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
                                       double fastest) {
-    if (!radii_are_known_) {
-        smallest_radius_ = largest_radius_ = bodies.count > 0 ? bodies.radius[0] : 0;
-        for (std::size_t row = 0; row < bodies.count && !bodies.radius.is_uniform(); ++row) {
-            smallest_radius_ = std::fmin(smallest_radius_, bodies.radius[row]);
-            largest_radius_ = std::fmax(largest_radius_, bodies.radius[row]);
-        }
-        radii_are_known_ = true;
-    }
     const double fall = std::sqrt(length_squared(gravity)) * end.q;
     const double most = fastest * end.s + fall;
     const double common = std::fmax(kSmallestMargin * smallest_radius_,
@@ -89,7 +94,14 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
                               std::span<const std::int32_t> displaced, double fastest,
                               const KernelTable<Real>& kernels, const Executor& executor) {
     strays_.clear(), overshoot_ = 0;
-    if (is_valid_ && displaced.size() * kBodiesPerStray <= bodies.count) {
+    new_pairs_.clear();
+    if (rule_ == MarginRule::own && is_valid_ &&
+        (renewed_count_ + displaced.size()) * kBodiesPerRenewal <= bodies.count) {
+        strays_.assign(displaced.begin(), displaced.end());
+        renew_margins(bodies, end, gravity);
+        return;
+    }
+    if (rule_ == MarginRule::common && is_valid_ && displaced.size() * kBodiesPerStray <= bodies.count) {
         strays_.assign(displaced.begin(), displaced.end());
         for (const std::int32_t row : strays_) {
             const auto i = static_cast<std::size_t>(row);
@@ -100,7 +112,11 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
         }
         return;
     }
-    choose_margins(bodies, end, gravity, fastest);
+    measure_radii(bodies);
+    if (rule_ == MarginRule::own)
+        choose_own_margins(bodies, end, gravity);
+    else
+        choose_margins(bodies, end, gravity, fastest);
     grid_.build({bodies.count, bodies.position_x.data(), bodies.position_y.data(), reach_.data(),
                  bodies.has_flags ? bodies.flags.data() : nullptr},
                 kernels, executor);
@@ -112,7 +128,8 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
 
 template <class Real>
 std::size_t Candidates<Real>::bytes() const {
-    return grid_.bytes() + reach_.bytes();
+    return grid_.bytes() + reach_.bytes() + own_x_.bytes() + own_y_.bytes() + first_reach_.bytes() +
+           (new_pairs_.capacity() + added_pairs_.capacity() + spare_pairs_.capacity()) * sizeof(Pair);
 }
 
 template class Candidates<float>;

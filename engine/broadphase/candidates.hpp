@@ -12,6 +12,15 @@
 
 namespace carom {
 
+/// How bodies get their margins, and what becomes of a body that leaves its own.
+enum class MarginRule : std::uint8_t {
+    /// One for most, by the fastest body. Strays are left to the solver, which looks around them.
+    common,
+    /// Each body's own, by its own speed. Strays get new margins, and the pairs that come with them are
+    /// added.
+    own,
+};
+
 /// The candidate pairs of a world, with margins, reused from step to step.
 ///
 /// Each body has a margin of its own: a pair is a candidate if its bodies, grown by their margins, overlap.
@@ -23,6 +32,8 @@ namespace carom {
 template <class Real>
 class Candidates {
   public:
+    explicit Candidates(MarginRule rule = MarginRule::common) : rule_(rule) {}
+
     /// Makes the columns fit; a change of their length makes the pairs void.
     void prepare(std::size_t count);
 
@@ -54,15 +65,23 @@ class Candidates {
                                static_cast<Real>(reach * kRoundingUp), out);
     }
 
+    /// Pairs that have been added in this step since `update`, rule `own`: not among pair_a and pair_b.
+    struct Pair {
+        std::int32_t a, b;
+        friend auto operator<=>(const Pair&, const Pair&) = default;
+    };
+    std::span<const Pair> new_pairs() const { return new_pairs_; }
+    /// The reach a row had when the pairs were found anew, and its place [m].
+    Real first_reach(std::size_t row) const { return first_reach_[row]; }
+
     std::size_t pair_count() const { return grid_.candidates().count; }
     const std::int32_t* pair_a() const { return grid_.candidates().a.data(); }  ///< [padded(pair_count)]
     const std::int32_t* pair_b() const { return grid_.candidates().b.data(); }
 
     bool is_valid() const { return is_valid_; }
-    const Column<Real>& built_x() const {
-        return grid_.built_x();
-    }  ///< m, where the pairs were found, if valid
-    const Column<Real>& built_y() const { return grid_.built_y(); }
+    /// m, where each body got its margin, if valid
+    const Column<Real>& built_x() const { return rule_ == MarginRule::own ? own_x_ : grid_.built_x(); }
+    const Column<Real>& built_y() const { return rule_ == MarginRule::own ? own_y_ : grid_.built_y(); }
     const Column<Real>& reach() const { return reach_; }  ///< m, radius plus margin
     const UniformGrid<Real>& grid() const { return grid_; }
     double largest_radius() const { return largest_radius_; }
@@ -82,11 +101,25 @@ class Candidates {
     static constexpr double kRoundingUp = 1 + 1e-6;  // reach and place are rounded to Real
 
     void choose_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity, double fastest);
+    void measure_radii(const Bodies<Real>& bodies);
+    Real own_reach(const Bodies<Real>& bodies, std::size_t row, const FlightClock& end, double fall) const;
+    void choose_own_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity);
+    void renew_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity);
+    void add_pairs_of(const Bodies<Real>& bodies, std::int32_t row);
+    bool was_pair(std::size_t a, std::size_t b) const;
+    bool is_pair(std::size_t a, std::size_t b) const;
 
+    MarginRule rule_;
     UniformGrid<Real> grid_;
     std::vector<std::int32_t> strays_;
     double overshoot_ = 0;
     Column<Real> reach_;
+    // Rule `own`, since the pairs were found anew.
+    Column<Real> own_x_, own_y_, first_reach_;  // m
+    std::vector<Pair> new_pairs_, added_pairs_, spare_pairs_;
+    std::size_t renewed_count_ = 0;
+    double farthest_ = 0;  // m, that a renewed margin reaches beyond the first one
+    Column<std::int32_t> near_;
     double largest_radius_ = 0, smallest_radius_ = 0;
     bool is_valid_ = false;
     bool radii_are_known_ = false;

@@ -10,6 +10,8 @@ namespace carom {
 inline constexpr std::size_t kRowsPerChunk = 2048;  // 8 KiB a float column
 // From here on the cheapest loop of a step gains by a second thread: docs/decisions/0007-when-threads-pay.md.
 inline constexpr std::size_t kSmallestParallelRows = 16384;
+// ns: likewise, for loops that say how long they take.
+inline constexpr double kShortestParallelLoop = 4000;
 
 /// Runs chunks of rows, on several threads if there are any and the rows are many. Chunks depend on the rows
 /// alone, never on the threads: work that writes by chunk gives the same result for any number of them.
@@ -38,12 +40,24 @@ class Executor {
                      }});
     }
 
+    /// Calls fn(task) for every task below `tasks`, as for_each_chunk does for chunks.
+    /// @param nanoseconds  about what all of them take on one thread: short loops stay on it
+    template <class Fn>
+    void for_each_task(std::size_t tasks, double nanoseconds, const Fn& fn) const {
+        if (tasks < 2 || nanoseconds < kShortestParallelLoop || !has_threads()) {
+            for (std::size_t task = 0; task < tasks; ++task) fn(task);
+            return;
+        }
+        run(tasks, {&fn, [](const void* call, std::size_t task) { (*static_cast<const Fn*>(call))(task); }});
+    }
+
     /// Whether for_each_chunk would use more than the caller's thread.
     bool is_parallel(std::size_t rows) const noexcept {
-        return rows >= kSmallestParallelRows && (threads_ > 1 || (threads_ == 0 && parallel_for_));
+        return rows >= kSmallestParallelRows && has_threads();
     }
 
   private:
+    bool has_threads() const noexcept { return threads_ > 1 || (threads_ == 0 && parallel_for_); }
     struct Call {
         const void* function;
         void (*invoke)(const void*, std::size_t);

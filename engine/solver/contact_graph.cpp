@@ -2,220 +2,387 @@
 
 #include <algorithm>
 #include <bit>
-#include <numeric>
+#include <cstdlib>
+
+#include "solver/flights.hpp"
 
 namespace carom {
 
 namespace {
 
-constexpr std::int32_t kGone = -100;  // a row that no longer exists; no WallSide
+constexpr std::size_t kPieces = 32;               // of the pair list, which threads take up
+constexpr std::size_t kPairsPerSample = 64;       // every so many pairs one is looked at to choose the groups
+constexpr std::size_t kFewestChunks = 8;          // or one: four tasks for the threads to share
+constexpr std::size_t kFewestRowsOfChunk = 1024;  // fewer: too many short colours
+
+// ns a pair on one thread, for the executor.
+constexpr double kNanosecondsToGroup = 2, kNanosecondsToColour = 3, kNanosecondsToSort = 5;
+
+constexpr std::size_t kOverflow = 64;  // the colour of what found none
 
 }  // namespace
-
-/// Starts the list of old rows, if nothing has moved so far.
-template <class Real>
-std::size_t ContactGraph<Real>::kept_rows() {
-    if (old_row_.empty()) {
-        old_row_.resize(rows_);
-        std::iota(old_row_.begin(), old_row_.end(), 0);
-    }
-    return old_row_.size();
-}
-
-template <class Real>
-void ContactGraph<Real>::follow_sorted_rows(const std::int32_t* order, std::size_t count) {
-    kept_rows();
-    old_row_.resize(count, kGone);  // rows that were appended
-    spare_rows_.resize(count);
-    for (std::size_t row = 0; row < count; ++row)
-        spare_rows_[row] = old_row_[static_cast<std::size_t>(order[row])];
-    old_row_.swap(spare_rows_);
-}
-
-template <class Real>
-void ContactGraph<Real>::follow_removed_row(std::size_t row, std::size_t last) {
-    if (kept_rows() <= last) old_row_.resize(last + 1, kGone);
-    old_row_[row] = old_row_[last];
-    old_row_.resize(last);
-    if (old_row_.empty()) rows_ = 0;
-}
 
 /// The contacts of the last renewal in terms of today's rows.
 template <class Real>
 void ContactGraph<Real>::rename_rows() {
-    if (old_row_.empty()) return;
-    spare_rows_.assign(rows_, kGone);
-    for (std::size_t row = 0; row < old_row_.size(); ++row)
-        if (old_row_[row] != kGone)
-            spare_rows_[static_cast<std::size_t>(old_row_[row])] = static_cast<std::int32_t>(row);
+    const std::vector<std::int32_t>& now = trail.new_rows();
     for (ContactCandidates<Real>* contacts : {&pairs, &supports})
-        for (std::size_t c = 0; c < contacts->colours(); ++c)
-            for (std::size_t i = contacts->begin[c]; i < contacts->begin[c] + contacts->count[c]; ++i) {
-                std::int32_t &a = contacts->a[i], &b = contacts->b[i];
-                a = spare_rows_[static_cast<std::size_t>(a)];
-                if (b >= 0) b = spare_rows_[static_cast<std::size_t>(b)];
-                if (a == kGone || b == kGone) contacts->normal_impulse[i] = 0;
-                // The impulses of a pair do not depend on the order of its bodies, but for the rolling one:
-                // spin_b - spin_a changes its sign.
-                if (contacts == &pairs && a > b) {
-                    std::swap(a, b);
-                    if (keeps_rolling) contacts->rolling_impulse[i] = -contacts->rolling_impulse[i];
-                }
-            }
-    old_row_.clear();
+        contacts->for_each([&](std::size_t i) {
+            std::int32_t &a = contacts->a[i], &b = contacts->b[i];
+            a = now[static_cast<std::size_t>(a)];
+            if (b >= 0) b = now[static_cast<std::size_t>(b)];
+            if (a == RowTrail::kGone || b == RowTrail::kGone) contacts->normal_impulse[i] = 0;
+            // The impulses of a pair do not depend on the order of its bodies.
+            if (contacts == &pairs && a > b) std::swap(a, b);
+        });
 }
 
-/// Files the contacts that carry an impulse by their row a.
+/// Share of the pairs that would be far, by a sample.
 template <class Real>
-void ContactGraph<Real>::remember(std::size_t rows) {
-    first_of_.assign(rows + 2, 0);
-    const auto count = [&](const ContactCandidates<Real>& contacts) {
-        for (std::size_t c = 0; c < contacts.colours(); ++c)
-            for (std::size_t i = contacts.begin[c]; i < contacts.begin[c] + contacts.count[c]; ++i)
-                if (contacts.normal_impulse[i] > 0) ++first_of_[static_cast<std::size_t>(contacts.a[i]) + 2];
-    };
-    count(pairs), count(supports);
-    for (std::size_t row = 2; row < rows + 2; ++row) first_of_[row] += first_of_[row - 1];
-    remembered_.resize(first_of_[rows + 1]);
-    remembered_rolling_.resize(keeps_rolling ? remembered_.size() : 0);
-    remember(pairs), remember(supports);
+double ContactGraph<Real>::far_share(const Candidates<Real>& candidates, const ContactGroups& tried) const {
+    std::size_t far = 0, samples = 0;
+    for (std::size_t p = 0; p < candidates.pair_count(); p += kPairsPerSample, ++samples) {
+        const std::int32_t a = candidates.pair_a()[p], b = candidates.pair_b()[p];
+        far += tried.group_of(std::min(a, b), std::max(a, b)) == tried.far();
+    }
+    return static_cast<double>(far) / static_cast<double>(std::max<std::size_t>(samples, 1));
 }
 
+/// Chunks small enough for the nearest caches, but so large that most pairs stay in a chunk or reach the
+/// next.
 template <class Real>
-void ContactGraph<Real>::remember(const ContactCandidates<Real>& contacts) {
-    for (std::size_t c = 0; c < contacts.colours(); ++c)
-        for (std::size_t i = contacts.begin[c]; i < contacts.begin[c] + contacts.count[c]; ++i) {
-            if (!(contacts.normal_impulse[i] > 0)) continue;
-            const std::uint32_t place = first_of_[static_cast<std::size_t>(contacts.a[i]) + 1]++;
-            const Real friction = contacts.friction_impulse.empty() ? Real(0) : contacts.friction_impulse[i];
-            remembered_[place] = {contacts.b[i], contacts.normal_impulse[i], friction};
-            if (keeps_rolling) remembered_rolling_[place] = contacts.rolling_impulse[i];
+void ContactGraph<Real>::choose_groups(const Candidates<Real>& candidates, std::size_t rows) {
+    groups = {};
+    double least = 1;
+    for (std::size_t chunks = kFewestChunks; rows / chunks >= kFewestRowsOfChunk; chunks *= 2) {
+        const ContactGroups tried{padded((rows + chunks - 1) / chunks), chunks};
+        const double cost = far_share(candidates, tried) + 2 / static_cast<double>(chunks);
+        if (cost < least) least = cost, groups = tried;
+    }
+}
+
+/// Calls pair(piece, group, a, b) for all pairs, a < b; the group of pairs with an immovable body is the one
+/// beyond the last.
+template <class Real>
+template <class Pair>
+void ContactGraph<Real>::for_each_piece(const Candidates<Real>& candidates, const Bodies<Real>& bodies,
+                                        const Executor& executor, const Pair& pair) {
+    const std::size_t count = candidates.pair_count(), piece_size = (count + kPieces - 1) / kPieces;
+    const double work = kNanosecondsToGroup * static_cast<double>(count);
+    executor.for_each_task(kPieces, work, [&](std::size_t piece) {
+        const std::int32_t *pair_a = candidates.pair_a(), *pair_b = candidates.pair_b();
+        const std::size_t last = std::min(count, (piece + 1) * piece_size);
+        for (std::size_t p = piece * piece_size; p < last; ++p) {
+            const std::int32_t a = std::min(pair_a[p], pair_b[p]), b = std::max(pair_a[p], pair_b[p]);
+            if (bodies.has_flags && bodies.is_immovable(static_cast<std::size_t>(a)))
+                pair(piece, groups.count(), b, a);
+            else if (bodies.has_flags && bodies.is_immovable(static_cast<std::size_t>(b)))
+                pair(piece, groups.count(), a, b);
+            else
+                pair(piece, groups.group_of(a, b), a, b);
         }
+    });
 }
 
+/// Sorts the pairs by group, stable; lists those that are supports.
 template <class Real>
-void ContactGraph<Real>::recall(Found& found, std::vector<Real>& rolling) const {
-    found.normal_impulse = found.friction_impulse = 0;
-    if (keeps_rolling) rolling.push_back(0);
-    const auto row = static_cast<std::size_t>(found.a);
-    for (std::uint32_t i = first_of_[row]; i < first_of_[row + 1]; ++i)
-        if (remembered_[i].b == found.b) {
-            found.normal_impulse = remembered_[i].normal_impulse;
-            found.friction_impulse = remembered_[i].friction_impulse;
-            if (keeps_rolling) rolling.back() = remembered_rolling_[i];
-            return;
+void ContactGraph<Real>::group_pairs(const Candidates<Real>& candidates, const Bodies<Real>& bodies,
+                                     const Executor& executor) {
+    const std::size_t buckets = groups.count() + 1;
+    piece_counts_.assign(kPieces * buckets, 0);
+    for_each_piece(candidates, bodies, executor,
+                   [&](std::size_t piece, std::size_t group, std::int32_t, std::int32_t) {
+                       ++piece_counts_[piece * buckets + group];
+                   });
+    std::uint32_t place = 0;
+    found_pairs_.begin.resize(buckets + 1);
+    for (std::size_t group = 0; group < buckets; ++group) {
+        found_pairs_.begin[group] = place;
+        for (std::size_t piece = 0; piece < kPieces; ++piece) {
+            std::uint32_t& of_piece = piece_counts_[piece * buckets + group];
+            place += std::exchange(of_piece, place);
         }
+    }
+    found_pairs_.begin[buckets] = place;
+    found_pairs_.resize(place);
+    for_each_piece(candidates, bodies, executor,
+                   [&](std::size_t piece, std::size_t group, std::int32_t a, std::int32_t b) {
+                       const std::uint32_t i = piece_counts_[piece * buckets + group]++;
+                       found_pairs_.a[i] = a, found_pairs_.b[i] = b;
+                   });
+    listed_a_.assign(found_pairs_.a.data() + found_pairs_.begin[groups.count()],
+                     found_pairs_.a.data() + place);
+    listed_b_.assign(found_pairs_.b.data() + found_pairs_.begin[groups.count()],
+                     found_pairs_.b.data() + place);
+    found_pairs_.begin.pop_back();
+}
+
+/// Calls fn(side) for the sides that a body at (x, y) reaches.
+template <class Real, class Fn>
+void for_each_side(const Walls& walls, Real x, Real y, Real reach, const Fn& fn) {
+    const auto min_x = static_cast<Real>(walls.min.x), min_y = static_cast<Real>(walls.min.y);
+    const auto max_x = static_cast<Real>(walls.max.x), max_y = static_cast<Real>(walls.max.y);
+    const bool near[] = {walls.left && x - min_x < reach, walls.right && max_x - x < reach,
+                         walls.bottom && y - min_y < reach, walls.top && max_y - y < reach};
+    for (std::int32_t side = 0; side < 4; ++side)
+        if (near[side]) fn(-1 - side);
 }
 
 template <class Real>
 void ContactGraph<Real>::list_walls(const Candidates<Real>& candidates, const Bodies<Real>& bodies,
                                     const Walls& walls) {
-    const auto min_x = static_cast<Real>(walls.min.x), min_y = static_cast<Real>(walls.min.y);
-    const auto max_x = static_cast<Real>(walls.max.x), max_y = static_cast<Real>(walls.max.y);
-    for (std::size_t row = 0; row < bodies.count; ++row) {
-        const Real x = bodies.position_x[row], y = bodies.position_y[row], reach = candidates.reach()[row];
-        const bool near[] = {walls.left && x - min_x < reach, walls.right && max_x - x < reach,
-                             walls.bottom && y - min_y < reach, walls.top && max_y - y < reach};
-        for (std::int32_t side = 0; side < 4; ++side)
-            if (near[side] && !bodies.is_immovable(row))
-                found_supports_.push_back({static_cast<std::int32_t>(row), -1 - side, 0, 0, 0});
+    for (std::size_t row = 0; row < bodies.count; ++row)
+        for_each_side(walls, bodies.position_x[row], bodies.position_y[row], candidates.reach()[row],
+                      [&](std::int32_t side) {
+                          if (bodies.is_immovable(row)) return;
+                          listed_a_.push_back(static_cast<std::int32_t>(row));
+                          listed_b_.push_back(side);
+                      });
+}
+
+/// Sorts the listed supports by the chunk of their body, stable.
+template <class Real>
+void ContactGraph<Real>::group_supports() {
+    Found& found = found_supports_;
+    const std::size_t count = listed_a_.size();
+    found.begin.assign(groups.support_count() + 1, 0);
+    for (const std::int32_t a : listed_a_) ++found.begin[groups.chunk_of(a) + 1];
+    for (std::size_t group = 1; group < found.begin.size(); ++group)
+        found.begin[group] += found.begin[group - 1];
+    found.resize(count);
+    next_.assign(found.begin.begin(), found.begin.end());
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t place = next_[groups.chunk_of(listed_a_[i])]++;
+        found.a[place] = listed_a_[i], found.b[place] = listed_b_[i];
     }
+}
+
+/// Recalls what each contact of a group carried and gives it the lowest colour that is free: first to those
+/// that carry something, so that what touches fills few colours and the rest stays out of their way.
+/// @param of_b  the same as of_a where both bodies count; null where only a does
+template <class Real>
+void ContactGraph<Real>::colour_group(Found& found, std::size_t group, std::uint64_t* of_a,
+                                      std::uint64_t* of_b) {
+    std::uint32_t* counts = colour_counts_.data() + group * (kColours + 1);
+    const auto colour = [&](std::size_t i) {
+        const auto a = static_cast<std::size_t>(found.a[i]), b = static_cast<std::size_t>(found.b[i]);
+        std::uint64_t taken = of_a[a];
+        if (of_b) taken |= of_b[b];
+        const auto lowest = static_cast<unsigned>(std::countr_one(taken));  // kColours if all are taken
+        found.colour[i] = static_cast<std::uint8_t>(lowest);
+        ++counts[lowest];
+        if (lowest == kColours) return;
+        of_a[a] |= std::uint64_t{1} << lowest;
+        if (of_b) of_b[b] |= std::uint64_t{1} << lowest;
+    };
+    const std::size_t first = found.begin[group], last = found.begin[group + 1];
+    for (std::size_t i = first; i < last; ++i) {
+        const auto impulses = memory_.recall(found.a[i], found.b[i]);
+        found.normal_impulse[i] = impulses.normal, found.friction_impulse[i] = impulses.friction;
+        if (impulses.normal > 0) colour(i);
+    }
+    for (std::size_t i = first; i < last; ++i)
+        if (!(found.normal_impulse[i] > 0)) colour(i);
+}
+
+template <class Real>
+void ContactGraph<Real>::colour_pairs(std::size_t rows, const Executor& executor) {
+    colour_counts_.assign(groups.count() * (kColours + 1), 0);
+    std::uint64_t *low = colours_of_[0].data(), *high = colours_of_[1].data();
+    const std::size_t far = groups.far();
+    const double work = kNanosecondsToColour * static_cast<double>(found_pairs_.a.size());
+    // A border's bodies are a in one chunk and b in the next, where another task has its own a.
+    executor.for_each_task(groups.chunks, work, [&](std::size_t chunk) {
+        const std::size_t first = chunk * groups.rows_per_chunk,
+                          last = std::min(rows, first + groups.rows_per_chunk);
+        std::fill(low + first, low + last, 0);
+        colour_group(found_pairs_, ContactGroups::inside(chunk), low, low);
+        if (!groups.has_border(chunk)) return;
+        std::fill(low + first, low + last, 0);
+        std::fill(high + last, high + std::min(rows, last + groups.rows_per_chunk), 0);
+        colour_group(found_pairs_, ContactGroups::across(chunk), low, high);
+    });
+    if (found_pairs_.begin[far] == found_pairs_.begin[far + 1]) return;
+    std::fill(low, low + rows, 0);
+    colour_group(found_pairs_, far, low, low);
+}
+
+template <class Real>
+void ContactGraph<Real>::colour_supports(std::size_t rows) {
+    colour_counts_.assign(groups.support_count() * (kColours + 1), 0);
+    std::uint64_t* taken = colours_of_[0].data();
+    std::fill(taken, taken + rows, 0);
+    for (std::size_t group = 0; group < groups.support_count(); ++group)
+        colour_group(found_supports_, group, taken, nullptr);
+}
+
+/// Fills the last batch of each colour from `first` on.
+template <class Real>
+void pad_colours(ContactCandidates<Real>& sorted, std::size_t first, std::int32_t dummy) {
+    for (std::size_t c = first; c < sorted.colours(); ++c)
+        for (std::size_t i = sorted.begin[c] + sorted.count[c]; i < sorted.begin[c] + padded(sorted.count[c]);
+             ++i)
+            sorted.a[i] = sorted.b[i] = dummy, sorted.normal_impulse[i] = sorted.friction_impulse[i] = 0;
+}
+
+/// Places of all colours, and their padding.
+template <class Real>
+void ContactGraph<Real>::lay_out_colours(const Found& found, ContactCandidates<Real>& sorted,
+                                         std::int32_t dummy) {
+    const std::size_t group_count = found.begin.size() - 1;
+    sorted.begin.clear(), sorted.count.clear(), sorted.first_colour.clear();
+    next_.clear();
+    std::size_t place = 0, overflow = 0;
+    const auto open = [&](std::size_t count) {
+        sorted.begin.push_back(place), sorted.count.push_back(count);
+        place += padded(count);
+    };
+    for (std::size_t group = 0; group < group_count; ++group) {
+        const std::uint32_t* counts = colour_counts_.data() + group * (kColours + 1);
+        sorted.first_colour.push_back(sorted.begin.size());
+        for (std::size_t colour = 0; colour < kColours && counts[colour] > 0; ++colour) open(counts[colour]);
+        next_.push_back(overflow);
+        overflow += counts[kOverflow];
+    }
+    sorted.has_overflow = overflow > 0;
+    if (overflow > 0) open(overflow);
+    sorted.first_colour.push_back(sorted.begin.size());
+
+    sorted.a.resize_for_overwrite(place), sorted.b.resize_for_overwrite(place);
+    sorted.normal_impulse.resize_for_overwrite(place), sorted.friction_impulse.resize_for_overwrite(place);
+    pad_colours(sorted, 0, dummy);
 }
 
 /// Stable, so that bodies near each other stay near each other within a colour.
 template <class Real>
-void ContactGraph<Real>::sort_by_colour(std::vector<Found>& found, const std::vector<Real>& rolling,
-                                        ContactCandidates<Real>& sorted, std::int32_t dummy) {
-    std::size_t colours = 0;
-    std::size_t counts[kColours + 1] = {};
-    for (const Found& f : found) {
-        ++counts[f.colour];
-        colours = std::max<std::size_t>(colours, f.colour + 1);
-    }
-    sorted.begin.resize(colours), sorted.count.resize(colours);
-    std::size_t next[kColours + 1] = {}, place = 0;
-    for (std::size_t c = 0; c < colours; ++c) {
-        sorted.begin[c] = next[c] = place;
-        sorted.count[c] = counts[c];
-        place += padded(counts[c]);
-    }
-    sorted.has_overflow = colours == kColours + 1;
-    for (Column<std::int32_t>* rows : {&sorted.a, &sorted.b}) {
-        rows->resize_for_overwrite(place);
-        for (std::size_t c = 0; c < colours; ++c)
-            std::fill(rows->data() + next[c] + counts[c], rows->data() + next[c] + padded(counts[c]), dummy);
-    }
-    sorted.normal_impulse.resize(0), sorted.normal_impulse.resize(place);
-    sorted.friction_impulse.resize(0), sorted.friction_impulse.resize(place);
-    sorted.rolling_impulse.resize(0), sorted.rolling_impulse.resize(keeps_rolling ? place : 0);
-    for (std::size_t n = 0; n < rolling.size(); ++n) {
-        std::size_t& i = next[found[n].colour];
-        sorted.rolling_impulse[i++] = rolling[n];
-    }
-    if (keeps_rolling)
-        for (std::size_t c = 0; c < colours; ++c) next[c] = sorted.begin[c];
-    for (const Found& f : found) {
-        const std::size_t i = next[f.colour]++;
-        sorted.a[i] = f.a, sorted.b[i] = f.b;
-        sorted.normal_impulse[i] = f.normal_impulse, sorted.friction_impulse[i] = f.friction_impulse;
-    }
+void ContactGraph<Real>::sort_by_colour(const Found& found, ContactCandidates<Real>& sorted,
+                                        std::int32_t dummy, const Executor& executor) {
+    lay_out_colours(found, sorted, dummy);
+    const double work = kNanosecondsToSort * static_cast<double>(found.a.size());
+    executor.for_each_task(sorted.groups(), work, [&](std::size_t group) {
+        std::size_t next[kColours + 1];
+        const std::size_t first = sorted.first_colour[group], last = sorted.first_colour[group + 1];
+        for (std::size_t c = first; c < std::min(last, first + kColours); ++c)
+            next[c - first] = sorted.begin[c];
+        next[kOverflow] = sorted.has_overflow ? sorted.begin.back() + next_[group] : 0;
+        for (std::size_t i = found.begin[group]; i < found.begin[group + 1]; ++i) {
+            const std::size_t place = next[found.colour[i]]++;
+            sorted.a[place] = found.a[i], sorted.b[place] = found.b[i];
+            sorted.normal_impulse[place] = found.normal_impulse[i];
+            sorted.friction_impulse[place] = found.friction_impulse[i];
+        }
+    });
 }
 
 template <class Real>
 void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const Bodies<Real>& bodies,
-                               const Walls* walls) {
+                               const Walls* walls, const Executor& executor) {
     const std::size_t rows = bodies.count;
-    rename_rows();
-    remember(rows);
-    found_pairs_.clear(), found_supports_.clear();
-    rolling_of_pairs_.clear(), rolling_of_supports_.clear();
-    const std::int32_t *pair_a = candidates.pair_a(), *pair_b = candidates.pair_b();
-    for (std::size_t p = 0; p < candidates.pair_count(); ++p) {
-        const std::int32_t a = std::min(pair_a[p], pair_b[p]), b = std::max(pair_a[p], pair_b[p]);
-        if (bodies.has_flags && bodies.is_immovable(static_cast<std::size_t>(a)))
-            found_supports_.push_back({b, a, 0, 0, 0});
-        else if (bodies.has_flags && bodies.is_immovable(static_cast<std::size_t>(b)))
-            found_supports_.push_back({a, b, 0, 0, 0});
-        else
-            found_pairs_.push_back({a, b, 0, 0, 0});
-    }
-    if (walls) list_walls(candidates, bodies, *walls);
+    const bool is_moved = trail.has_moved();
+    if (is_moved) rename_rows();
+    memory_.file(pairs, supports, rows, is_moved || pairs.groups() == 0 ? nullptr : &groups, executor);
 
-    colours_of_.assign(rows, 0);
-    const auto lowest_free = [](std::uint64_t taken) {
-        return static_cast<std::uint32_t>(std::countr_one(taken));  // kColours if all are
-    };
-    for (Found& f : found_pairs_) {
-        recall(f, rolling_of_pairs_);
-        std::uint64_t &of_a = colours_of_[static_cast<std::size_t>(f.a)],
-                      &of_b = colours_of_[static_cast<std::size_t>(f.b)];
-        f.colour = lowest_free(of_a | of_b);
-        if (f.colour == kColours) continue;
-        of_a |= std::uint64_t{1} << f.colour;
-        of_b |= std::uint64_t{1} << f.colour;
-    }
-    colours_of_.assign(rows, 0);
-    for (Found& f : found_supports_) {
-        recall(f, rolling_of_supports_);
-        std::uint64_t& of_a = colours_of_[static_cast<std::size_t>(f.a)];
-        f.colour = lowest_free(of_a);
-        if (f.colour < kColours) of_a |= std::uint64_t{1} << f.colour;
-    }
+    choose_groups(candidates, rows);
+    group_pairs(candidates, bodies, executor);
+    if (walls) list_walls(candidates, bodies, *walls);
+    group_supports();
+
+    for (Column<std::uint64_t>& colours : colours_of_) colours.resize_for_overwrite(rows);
     const auto dummy = static_cast<std::int32_t>(rows);
-    sort_by_colour(found_pairs_, rolling_of_pairs_, pairs, dummy);
-    sort_by_colour(found_supports_, rolling_of_supports_, supports, dummy);
-    rows_ = rows;
+    colour_pairs(rows, executor);
+    sort_by_colour(found_pairs_, pairs, dummy, executor);
+    colour_supports(rows);
+    sort_by_colour(found_supports_, supports, dummy, executor);
+    trail.start(rows);
+}
+
+/// Lays the last group of `sorted` out anew, with what is in late_ besides.
+template <class Real>
+void ContactGraph<Real>::add_late(ContactCandidates<Real>& sorted, std::int32_t dummy, bool both_move) {
+    const std::size_t group = sorted.groups() - 1, first = sorted.first_colour[group];
+    std::size_t place = first < sorted.colours() ? sorted.begin[first] : sorted.a.size();
+    sorted.for_each(group, group + 1, [&](std::size_t i) {
+        late_.push_back({sorted.a[i], sorted.b[i], sorted.normal_impulse[i], sorted.friction_impulse[i], 0});
+    });
+    std::uint64_t* taken = colours_of_[0].data();
+    for (const Late& late : late_) {
+        taken[late.a] = 0;
+        if (both_move) taken[late.b] = 0;
+    }
+    std::size_t counts[kColours + 1] = {};
+    for (Late& late : late_) {
+        const std::uint64_t both = both_move ? taken[late.a] | taken[late.b] : taken[late.a];
+        late.colour = static_cast<unsigned>(std::countr_one(both));
+        ++counts[late.colour];
+        if (late.colour == kOverflow) continue;
+        taken[late.a] |= std::uint64_t{1} << late.colour;
+        if (both_move) taken[late.b] |= std::uint64_t{1} << late.colour;
+    }
+    sorted.begin.resize(first), sorted.count.resize(first);
+    for (std::size_t colour = 0; colour <= kColours; ++colour) {
+        const std::size_t count = counts[colour];
+        if (count == 0) continue;
+        sorted.begin.push_back(place), sorted.count.push_back(count);
+        place += padded(count);
+    }
+    sorted.has_overflow = counts[kOverflow] > 0;
+    sorted.first_colour.back() = sorted.colours();
+    for (Column<std::int32_t>* rows : {&sorted.a, &sorted.b}) rows->resize(place);
+    for (Column<Real>* impulses : {&sorted.normal_impulse, &sorted.friction_impulse}) impulses->resize(place);
+    std::size_t next[kColours + 1] = {};
+    for (std::size_t colour = 0, c = first; colour <= kColours; ++colour)
+        if (counts[colour] > 0) next[colour] = sorted.begin[c++];
+    for (const Late& late : late_) {
+        const std::size_t i = next[late.colour]++;
+        sorted.a[i] = late.a, sorted.b[i] = late.b;
+        sorted.normal_impulse[i] = late.normal_impulse, sorted.friction_impulse[i] = late.friction_impulse;
+    }
+    pad_colours(sorted, first, dummy);
+}
+
+template <class Real>
+void ContactGraph<Real>::add(const Candidates<Real>& candidates, const Bodies<Real>& bodies,
+                             const Walls* walls) {
+    new_pairs_.clear(), new_supports_.clear();
+    for (const auto& [a, b] : candidates.new_pairs()) {
+        if (bodies.is_immovable(static_cast<std::size_t>(a)))
+            new_supports_.push_back({b, a, 0, 0, 0});
+        else if (bodies.is_immovable(static_cast<std::size_t>(b)))
+            new_supports_.push_back({a, b, 0, 0, 0});
+        else
+            new_pairs_.push_back({a, b, 0, 0, 0});
+    }
+    const auto is_known = [&](std::int32_t row, std::int32_t side) {
+        bool found = false;
+        const std::size_t groups_of_supports = supports.groups();
+        supports.for_each(groups_of_supports - 1, groups_of_supports,
+                          [&](std::size_t i) { found |= supports.a[i] == row && supports.b[i] == side; });
+        const auto row_index = static_cast<std::size_t>(row);
+        for_each_side(*walls, candidates.grid().built_x()[row_index], candidates.grid().built_y()[row_index],
+                      candidates.first_reach(row_index), [&](std::int32_t first) { found |= first == side; });
+        return found;
+    };
+    for (const std::int32_t stray : candidates.strays()) {
+        const auto row = static_cast<std::size_t>(stray);
+        if (!walls || bodies.is_immovable(row)) continue;
+        for_each_side(*walls, bodies.position_x[row], bodies.position_y[row], candidates.reach()[row],
+                      [&](std::int32_t side) {
+                          if (!is_known(stray, side)) new_supports_.push_back({stray, side, 0, 0, 0});
+                      });
+    }
+    const auto dummy = static_cast<std::int32_t>(bodies.count);
+    late_ = new_pairs_;
+    if (!late_.empty()) add_late(pairs, dummy, true);
+    late_ = new_supports_;
+    if (!late_.empty()) add_late(supports, dummy, false);
 }
 
 template <class Real>
 std::size_t ContactGraph<Real>::bytes() const {
-    return pairs.bytes() + supports.bytes() +
-           (found_pairs_.capacity() + found_supports_.capacity()) * sizeof(Found) +
-           colours_of_.capacity() * sizeof(std::uint64_t) + first_of_.capacity() * sizeof(std::uint32_t) +
-           remembered_.capacity() * sizeof(Remembered) +
-           (rolling_of_pairs_.capacity() + rolling_of_supports_.capacity() + remembered_rolling_.capacity()) *
-               sizeof(Real) +
-           (old_row_.capacity() + spare_rows_.capacity()) * sizeof(std::int32_t);
+    return pairs.bytes() + supports.bytes() + found_pairs_.bytes() + found_supports_.bytes() +
+           memory_.bytes() + colours_of_[0].bytes() + colours_of_[1].bytes() + trail.bytes() +
+           (listed_a_.capacity() + listed_b_.capacity()) * sizeof(std::int32_t) +
+           (piece_counts_.capacity() + colour_counts_.capacity()) * sizeof(std::uint32_t);
 }
 
 template class ContactGraph<float>;

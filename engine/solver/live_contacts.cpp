@@ -1,12 +1,17 @@
 #include "solver/live_contacts.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace carom {
 
 template <class Real>
-void LiveContacts<Real>::resize(std::size_t contacts, bool is_support, bool is_rough, bool friction_varies,
-                                bool bounces) {
+void LiveContacts<Real>::resize(const ContactCandidates<Real>& candidates, bool is_support, bool is_rough,
+                                bool friction_varies, bool bounces) {
+    const std::size_t contacts = candidates.a.size() + kRowPadding * candidates.overflow();
+    begin.assign(candidates.colours(), 0);
+    count.assign(candidates.colours(), 0);
+    has_overflow_ = candidates.has_overflow;
     const auto fit = [contacts](auto& column, bool is_used) {
         column.resize_for_overwrite(is_used ? contacts : 0);
     };
@@ -18,17 +23,6 @@ void LiveContacts<Real>::resize(std::size_t contacts, bool is_support, bool is_r
     for (Column<Real>* column : {&largest_impulse, &approach, &bounce_impulse, &spare}) fit(*column, bounces);
     fit(bounce_friction, bounces && is_rough);
     fit(candidate, true);
-}
-
-template <class Real>
-void LiveContacts<Real>::resize_rolling(bool is_rolling, bool coefficient_varies, bool radius_varies) {
-    const bool is_support = b.empty();
-    const auto fit = [this](auto& column, bool is_used) {
-        column.resize_for_overwrite(is_used ? a.size() : 0);
-    };
-    fit(rolling_impulse, is_rolling), fit(rolling, is_rolling && coefficient_varies);
-    fit(rolling_share, is_rolling && radius_varies), fit(surface_rolling, is_rolling && is_support);
-    fit(bounce_rolling, is_rolling && !bounce_impulse.empty());
 }
 
 template <class Real>
@@ -46,22 +40,16 @@ ContactColumns<Real> LiveContacts<Real>::columns() {
             floor.data(),
             data(largest_impulse),
             data(surface_normal),
-            data(surface_tangent),
-            data(rolling_impulse),
-            data(rolling),
-            data(rolling_share),
-            data(surface_rolling)};
+            data(surface_tangent)};
 }
 
 template <class Real>
 std::size_t LiveContacts<Real>::bytes() const {
     std::size_t bytes = a.bytes() + b.bytes() + candidate.bytes();
     for (const Column<Real>* column :
-         {&normal_x,        &normal_y,         &separation,      &mass,
-          &normal_impulse,  &friction_impulse, &friction,        &floor,
-          &largest_impulse, &surface_normal,   &surface_tangent, &approach,
-          &bounce_impulse,  &bounce_friction,  &spare,           &rolling_impulse,
-          &rolling,         &rolling_share,    &surface_rolling, &bounce_rolling})
+         {&normal_x, &normal_y, &separation, &mass, &normal_impulse, &friction_impulse, &friction, &floor,
+          &largest_impulse, &surface_normal, &surface_tangent, &approach, &bounce_impulse, &bounce_friction,
+          &spare})
         bytes += column->bytes();
     return bytes;
 }
@@ -76,14 +64,19 @@ void LiveContacts<Real>::pad(std::size_t first, std::size_t contacts, std::int32
     fill(a, dummy), fill(b, dummy), fill(candidate, -1);
     for (Column<Real>* column :
          {&normal_x, &normal_y, &separation, &mass, &normal_impulse, &friction_impulse, &friction, &floor,
-          &largest_impulse, &surface_normal, &surface_tangent, &approach, &bounce_impulse, &bounce_friction,
-          &rolling_impulse, &rolling, &rolling_share, &surface_rolling, &bounce_rolling})
+          &largest_impulse, &surface_normal, &surface_tangent, &approach, &bounce_impulse, &bounce_friction})
         fill(*column, Real(0));
 }
 
 template <class Real>
-std::size_t LiveContacts<Real>::close_colour(std::size_t colour, std::int32_t dummy) {
-    const std::size_t first = begin[colour], contacts = count[colour];
+std::size_t LiveContacts<Real>::contacts() const {
+    return std::accumulate(count.begin(), count.end(), std::size_t{0});
+}
+
+template <class Real>
+std::size_t LiveContacts<Real>::close_colour(std::size_t colour, std::size_t first, std::size_t contacts,
+                                             std::int32_t dummy) {
+    begin[colour] = first, count[colour] = contacts;
     if (!is_serial(colour)) {
         pad(first, contacts, dummy);
         return first + padded(contacts);
@@ -96,8 +89,7 @@ std::size_t LiveContacts<Real>::close_colour(std::size_t colour, std::int32_t du
         move(a), move(b), move(candidate);
         for (Column<Real>* column :
              {&normal_x, &normal_y, &separation, &mass, &normal_impulse, &friction_impulse, &friction,
-              &approach, &surface_normal, &surface_tangent, &rolling_impulse, &rolling, &rolling_share,
-              &surface_rolling})
+              &approach, &surface_normal, &surface_tangent})
             move(*column);
     }
     for (std::size_t i = 0; i < contacts; ++i) pad(first + kRowPadding * i, 1, dummy);

@@ -21,6 +21,9 @@ constexpr int kFirstSweeps = 32;
 /// Impulses of substeps that were longer or shorter by this factor are of no use.
 constexpr double kOtherLength = 2;
 
+// ns a contact on one thread, for the executor: docs/decisions/0012-threads-of-soft.md.
+constexpr double kNanosecondsToFind = 3, kNanosecondsToSweep = 2, kNanosecondsToKeep = 0.5;
+
 }  // namespace
 
 template <class Real>
@@ -40,8 +43,7 @@ void SoftSolver<Real>::derive_masses(const Bodies<Real>& bodies) {
 
 template <class Real>
 const ContactKernels<Real>& SoftSolver<Real>::contact_kernels() const {
-    if (!is_rough_) return kernels_->contacts[0];
-    return kernels_->contacts[(rolls_ ? 3u : 1u) + (some_are_fixed_ ? 1u : 0u)];
+    return kernels_->contacts[is_rough_ ? (some_are_fixed_ ? 2 : 1) : 0];
 }
 
 template <class Real>
@@ -56,15 +58,13 @@ void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Colum
     friction_varies_ = is_rough_ && !bodies.friction.is_uniform();
     uniform_friction_ =
         bodies.friction.is_uniform() ? static_cast<double>(bodies.friction.uniform_value()) : 0;
-    rolls_ = world.effects.rolling_resistance;
-    rolling_varies_ = rolls_ && !bodies.rolling_resistance.is_uniform();
-    uniform_rolling_ = static_cast<double>(bodies.rolling_resistance.uniform_value());
     derive_masses(bodies);
     const FlightClock clock = flight_clock_at(h, world.drag.linear);
     gain_ = clock.s * gravity, decay_ = clock.u;
     spin_decay_ = flight_clock_at(h, world.drag.angular).u;
 
-    const std::size_t rows = padded(count_ + kRowPadding);
+    // Beyond the bodies a record for the padding of each group, so that no two tasks write to the same.
+    const std::size_t rows = padded(count_ + graph.groups.count() + graph.groups.support_count());
     velocity_.resize(4 * rows), start_velocity_.resize(4 * rows), displacement_.resize(2 * rows);
     turn_.resize(turns_ ? rows : 0);
     const auto real = [](double value) { return static_cast<Real>(value); };
@@ -93,33 +93,20 @@ SolveContacts<Real> SoftSolver<Real>::arguments(LiveContacts<Real>& live) {
     k.contacts = live.columns();
     k.velocity = velocity_.data(), k.displacement = displacement_.data();
     k.uniform_friction = static_cast<Real>(uniform_friction_);
-    k.uniform_rolling = static_cast<Real>(uniform_rolling_);
     k.inverse_h = static_cast<Real>(1 / h_), k.h = static_cast<Real>(h_);
     k.elapsed = static_cast<Real>(elapsed_);
     k.recovery = static_cast<Real>(kRecovery), k.push = static_cast<Real>(push_);
     return k;
 }
 
+/// Contacts of one group of pairs that can touch in this step.
 template <class Real>
-void SoftSolver<Real>::find_pairs(const Bodies<Real>& bodies, const Column<Real>& motion) {
+void SoftSolver<Real>::find_group(const FindContacts<Real>& all, std::size_t group) {
     ContactCandidates<Real>& candidates = graph.pairs;
-    const std::size_t colours = candidates.colours();
-    const std::size_t serial = candidates.has_overflow ? candidates.count.back() : 0;
-    pairs_.resize(candidates.a.size() + kRowPadding * (colours + 1 + serial), false, is_rough_,
-                  friction_varies_, bounces_);
-    pairs_.resize_rolling(rolls_, rolling_varies_, !bodies.radius.is_uniform());
-    pairs_.begin.resize(colours), pairs_.count.resize(colours);
-    FindContacts<Real> all{};
-    all.motion = motion.data();
-    all.radius = bodies.radius.data(), all.uniform_radius = bodies.radius.uniform_value();
-    all.inverse_mass = masses_vary_ ? inverse_mass_.data() : nullptr;
-    all.uniform_inverse_mass = bodies.count > 0 ? static_cast<Real>(bodies.inverse_mass(0)) : Real(0);
-    all.friction = friction_varies_ ? bodies.friction.data() : nullptr;
-    all.rolling = rolling_varies_ ? bodies.rolling_resistance.data() : nullptr;
-    all.dt = static_cast<Real>(dt_), all.near = static_cast<Real>(near_);
     const ContactColumns<Real> out = pairs_.columns();
-    std::size_t place = 0;
-    for (std::size_t c = 0; c < colours; ++c) {
+    const auto find = contact_kernels().find;
+    std::size_t place = pairs_.first_place(candidates, group);
+    for (std::size_t c = candidates.first_colour[group]; c < candidates.first_colour[group + 1]; ++c) {
         const std::size_t begin = candidates.begin[c];
         FindContacts<Real> k = all;
         k.a = candidates.a.data() + begin, k.b = candidates.b.data() + begin;
@@ -131,22 +118,28 @@ void SoftSolver<Real>::find_pairs(const Bodies<Real>& bodies, const Column<Real>
             *column += place;
         if (to.friction_impulse) to.friction_impulse += place;
         if (to.friction) to.friction += place;
-        if (rolls_) k.rolling_impulse = candidates.rolling_impulse.data() + begin;
-        for (Real** column : {&to.rolling_impulse, &to.rolling, &to.rolling_share})
-            if (*column) *column += place;
         k.candidate = pairs_.candidate.data() + place;
         k.approach = bounces_ ? pairs_.approach.data() + place : nullptr;
-        std::size_t count = contact_kernels().find(k, 0, padded(candidates.count[c]));
+        std::size_t count = find(k, 0, padded(candidates.count[c]));
         while (count > 0 && to.a[count - 1] == static_cast<std::int32_t>(count_))
             --count;  // padding touches itself
         for (std::size_t i = 0; i < count; ++i) k.candidate[i] += static_cast<std::int32_t>(begin);
-        pairs_.begin[c] = place, pairs_.count[c] = count;
-        place = pairs_.close_colour(c, static_cast<std::int32_t>(count_));
+        place = pairs_.close_colour(c, place, count, padding_row(group));
     }
-    counters.contacts = 0;
-    for (const std::size_t count : pairs_.count) counters.contacts += static_cast<std::int64_t>(count);
-    counters.colours = static_cast<std::int64_t>(colours);
-    counters.overflow = candidates.has_overflow ? static_cast<std::int64_t>(pairs_.count.back()) : 0;
+}
+
+template <class Real>
+void SoftSolver<Real>::find_pairs(const Bodies<Real>& bodies, const Column<Real>& motion) {
+    pairs_.resize(graph.pairs, false, is_rough_, friction_varies_, bounces_);
+    FindContacts<Real> all{};
+    all.motion = motion.data();
+    all.radius = bodies.radius.data(), all.uniform_radius = bodies.radius.uniform_value();
+    all.inverse_mass = masses_vary_ ? inverse_mass_.data() : nullptr;
+    all.uniform_inverse_mass = bodies.count > 0 ? static_cast<Real>(bodies.inverse_mass(0)) : Real(0);
+    all.friction = friction_varies_ ? bodies.friction.data() : nullptr;
+    all.dt = static_cast<Real>(dt_), all.near = static_cast<Real>(near_);
+    const double work = kNanosecondsToFind * static_cast<double>(graph.pairs.a.size());
+    executor_->for_each_task(graph.groups.count(), work, [&](std::size_t group) { find_group(all, group); });
 }
 
 /// What lasts from step to step is force: after substeps of another length the impulses are of another size.
@@ -156,8 +149,7 @@ void SoftSolver<Real>::keep_forces(ContactCandidates<Real>& candidates) const {
     if (h_ == impulses_of_h_) return;
     const double ratio = impulses_of_h_ > 0 ? h_ / impulses_of_h_ : 0;
     const auto kept = static_cast<Real>(are_impulses_known_ ? ratio : 0);
-    for (Column<Real>* impulses :
-         {&candidates.normal_impulse, &candidates.friction_impulse, &candidates.rolling_impulse})
+    for (Column<Real>* impulses : {&candidates.normal_impulse, &candidates.friction_impulse})
         for (Real& impulse : *impulses) impulse *= kept;
 }
 
@@ -177,15 +169,47 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const Candid
         if (bounces_)
             for (Column<Real>* column : {&live->largest_impulse, &live->bounce_impulse})
                 std::fill(column->begin(), column->end(), Real(0));
-    sweep(supports_, contact_kernels().warm_start_supports, arguments(supports_));
-    sweep(pairs_, contact_kernels().warm_start_pairs, arguments(pairs_));
+    counters.contacts = static_cast<std::int64_t>(pairs_.contacts() + supports_.contacts());
+    counters.colours = static_cast<std::int64_t>(pairs_.count.size());
+    counters.overflow = static_cast<std::int64_t>(pairs_.overflow());
+    sweep({contact_kernels().warm_start_pairs, arguments(pairs_)},
+          {contact_kernels().warm_start_supports, arguments(supports_)});
 }
 
 /// One colour after the other; within a colour no two contacts share a body that moves.
 template <class Real>
-void SoftSolver<Real>::sweep(LiveContacts<Real>& live, Kernel kernel, const SolveContacts<Real>& k) {
-    for (std::size_t c = 0; c < live.begin.size(); ++c)
-        kernel(k, live.begin[c], live.begin[c] + live.length(c));
+void SoftSolver<Real>::sweep_group(const LiveContacts<Real>& live, const ContactCandidates<Real>& candidates,
+                                   std::size_t group, const Sweep& sweep) {
+    for (std::size_t c = candidates.first_colour[group]; c < candidates.first_colour[group + 1]; ++c)
+        sweep.kernel(sweep.arguments, live.begin[c], live.begin[c] + live.length(c));
+}
+
+/// All contacts once, in the order that contact_groups.hpp explains.
+template <class Real>
+void SoftSolver<Real>::sweep(const Sweep& over_pairs, const Sweep& over_supports) {
+    const ContactGroups& groups = graph.groups;
+    const double work = kNanosecondsToSweep * static_cast<double>(counters.contacts);
+    const auto pair_group = [&](std::size_t group) { sweep_group(pairs_, graph.pairs, group, over_pairs); };
+    const auto support_group = [&](std::size_t group) {
+        sweep_group(supports_, graph.supports, group, over_supports);
+    };
+    executor_->for_each_task(groups.tasks_of_part_1(), work, [&](std::size_t task) {
+        const std::size_t chunk = 2 * task;
+        pair_group(ContactGroups::inside(chunk));
+        if (!groups.has_border(chunk)) return;
+        pair_group(ContactGroups::across(chunk));
+        pair_group(ContactGroups::inside(chunk + 1));
+    });
+    pair_group(groups.far());
+    executor_->for_each_task(groups.tasks_of_part_2(), work / 4, [&](std::size_t task) {
+        const std::size_t chunk = 2 * task;
+        if (chunk > 0) {
+            if (groups.has_border(chunk - 1)) pair_group(ContactGroups::across(chunk - 1));
+            support_group(chunk - 1);
+        }
+        if (chunk < groups.chunks) support_group(chunk);
+    });
+    support_group(groups.chunks);
 }
 
 template <class Real>
@@ -193,13 +217,10 @@ void SoftSolver<Real>::solve_contacts(int number) {
     elapsed_ = number * h_;
     const ContactKernels<Real>& kernels = contact_kernels();
     const SolveContacts<Real> on_supports = arguments(supports_), on_pairs = arguments(pairs_);
-    sweep(pairs_, kernels.first_pairs, on_pairs);
-    sweep(supports_, kernels.first_supports, on_supports);
+    sweep({kernels.first_pairs, on_pairs}, {kernels.first_supports, on_supports});
     const int sweeps = number == 0 && !are_impulses_known_ ? kFirstSweeps : 1;
-    for (int i = 0; i < sweeps; ++i) {
-        sweep(pairs_, kernels.next_pairs, on_pairs);
-        sweep(supports_, kernels.next_supports, on_supports);
-    }
+    for (int i = 0; i < sweeps; ++i)
+        sweep({kernels.next_pairs, on_pairs}, {kernels.next_supports, on_supports});
 }
 
 template <class Real>
@@ -216,6 +237,21 @@ void SoftSolver<Real>::advance_bodies(bool is_last) {
     });
 }
 
+/// Impulses back to the candidates.
+template <class Real>
+void SoftSolver<Real>::keep_impulses(const LiveContacts<Real>& live,
+                                     ContactCandidates<Real>& candidates) const {
+    const double work = kNanosecondsToKeep * static_cast<double>(live.a.size());
+    executor_->for_each_task(candidates.groups(), work, [&](std::size_t group) {
+        live.for_each(candidates.first_colour[group], candidates.first_colour[group + 1], [&](std::size_t i) {
+            const auto candidate = static_cast<std::size_t>(live.candidate[i]);
+            candidates.normal_impulse[candidate] = live.normal_impulse[i];
+            if (!live.friction_impulse.empty())
+                candidates.friction_impulse[candidate] = live.friction_impulse[i];
+        });
+    });
+}
+
 template <class Real>
 void SoftSolver<Real>::end_contacts(const WorldState<Real>& world, Books& books) {
     if (bounces_) {
@@ -227,17 +263,7 @@ void SoftSolver<Real>::end_contacts(const WorldState<Real>& world, Books& books)
             book_bounces(books);
         }
     }
-    const auto keep = [](const LiveContacts<Real>& live, ContactCandidates<Real>& candidates) {
-        live.for_each([&](std::size_t i) {
-            const auto candidate = static_cast<std::size_t>(live.candidate[i]);
-            candidates.normal_impulse[candidate] = live.normal_impulse[i];
-            if (!live.friction_impulse.empty())
-                candidates.friction_impulse[candidate] = live.friction_impulse[i];
-            if (!live.rolling_impulse.empty())
-                candidates.rolling_impulse[candidate] = live.rolling_impulse[i];
-        });
-    };
-    keep(pairs_, graph.pairs), keep(supports_, graph.supports);
+    keep_impulses(pairs_, graph.pairs), keep_impulses(supports_, graph.supports);
 }
 
 template <class Real>

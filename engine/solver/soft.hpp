@@ -69,14 +69,27 @@ class SoftSolver {
     std::size_t bytes() const;
 
   private:
-    using Kernel = void (*)(const SolveContacts<Real>&, std::size_t, std::size_t);
+    /// What a sweep does to each contact of a kind.
+    struct Sweep {
+        void (*kernel)(const SolveContacts<Real>&, std::size_t, std::size_t);
+        SolveContacts<Real> arguments;
+    };
 
     void keep_forces(ContactCandidates<Real>& candidates) const;
     void derive_masses(const Bodies<Real>& bodies);
     void find_pairs(const Bodies<Real>& bodies, const Column<Real>& motion);
+    void find_group(const FindContacts<Real>& all, std::size_t group);
     void find_supports(const WorldState<Real>& world);
     SolveContacts<Real> arguments(LiveContacts<Real>& live);
-    void sweep(LiveContacts<Real>& live, Kernel kernel, const SolveContacts<Real>& k);
+    void sweep(const Sweep& over_pairs, const Sweep& over_supports);
+    static void sweep_group(const LiveContacts<Real>& live, const ContactCandidates<Real>& candidates,
+                            std::size_t group, const Sweep& sweep);
+    void keep_impulses(const LiveContacts<Real>& live, ContactCandidates<Real>& candidates) const;
+    /// Row that the padding of a group of pairs, or of supports, names.
+    std::int32_t padding_row(std::size_t group) const { return static_cast<std::int32_t>(count_ + group); }
+    std::int32_t padding_row_of_supports(std::size_t group) const {
+        return padding_row(graph.groups.count() + group);
+    }
     const ContactKernels<Real>& contact_kernels() const;
     bool find_bounces(LiveContacts<Real>& live, const WorldState<Real>& world);
     double restitution_of(const LiveContacts<Real>& live, std::size_t contact,
@@ -84,9 +97,10 @@ class SoftSolver {
     double impact_speed(const LiveContacts<Real>& live, std::size_t contact) const;
     void bounce();
     void book_bounces(Books& books) const;
-    struct Impulses;
-    void book_pairs(const Impulses& impulses, const Column<Real>& from, Books& books) const;
-    void book_supports(const Impulses& impulses, const Column<Real>& from, Books& books) const;
+    void book_pairs(const Column<Real>& normal, const Column<Real>& friction, const Column<Real>& from,
+                    Books& books) const;
+    void book_supports(const Column<Real>& normal, const Column<Real>& friction, const Column<Real>& from,
+                       Books& books) const;
     void book_free_flight(const WorldState<Real>& world, Books& books);
     double change_of_bounces(LiveContacts<Real>& live) const;
 
@@ -98,8 +112,8 @@ class SoftSolver {
     Vec2 gain_;
     double decay_ = 1, spin_decay_ = 1;
     bool is_rough_ = false, turns_ = false, some_are_fixed_ = false, bounces_ = false;
-    bool friction_varies_ = false, rolls_ = false, rolling_varies_ = false;
-    double uniform_friction_ = 0, uniform_rolling_ = 0;
+    bool friction_varies_ = false;
+    double uniform_friction_ = 0;
 
     bool masses_are_known_ = false;
     bool masses_vary_ = false;

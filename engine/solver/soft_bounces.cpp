@@ -70,11 +70,11 @@ bool SoftSolver<Real>::find_bounces(LiveContacts<Real>& live, const WorldState<R
 template <class Real>
 double SoftSolver<Real>::change_of_bounces(LiveContacts<Real>& live) const {
     double largest = 0;
-    for (std::size_t i = 0; i < live.bounce_impulse.size(); ++i) {
+    live.for_each([&](std::size_t i) {
         const double mass = live.mass[i], change = std::fabs(live.bounce_impulse[i] - live.spare[i]);
         if (mass > 0) largest = std::fmax(largest, change / mass);
         live.spare[i] = live.bounce_impulse[i];
-    }
+    });
     return largest;
 }
 
@@ -83,20 +83,17 @@ double SoftSolver<Real>::change_of_bounces(LiveContacts<Real>& live) const {
 template <class Real>
 void SoftSolver<Real>::bounce() {
     const auto arguments_for = [&](LiveContacts<Real>& live) {
-        for (Column<Real>* column :
-             {&live.bounce_impulse, &live.bounce_friction, &live.bounce_rolling, &live.spare})
+        for (Column<Real>* column : {&live.bounce_impulse, &live.bounce_friction, &live.spare})
             std::fill(column->begin(), column->end(), Real(0));
         SolveContacts<Real> k = arguments(live);
         k.contacts.normal_impulse = live.bounce_impulse.data();
         k.contacts.friction_impulse = live.bounce_friction.data();
-        k.contacts.rolling_impulse = live.bounce_rolling.data();
         k.contacts.largest_impulse = nullptr;
         return k;
     };
     const SolveContacts<Real> on_pairs = arguments_for(pairs_), on_supports = arguments_for(supports_);
     for (int sweeps = 0; sweeps < kMostBounceSweeps; ++sweeps) {
-        sweep(pairs_, contact_kernels().next_pairs, on_pairs);
-        sweep(supports_, contact_kernels().next_supports, on_supports);
+        sweep({contact_kernels().next_pairs, on_pairs}, {contact_kernels().next_supports, on_supports});
         const double change = std::fmax(change_of_bounces(pairs_), change_of_bounces(supports_));
         if (change <= kBounceTolerance<Real> * fastest_bounce_) break;
     }

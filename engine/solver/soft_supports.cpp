@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "effects/friction.hpp"
-#include "effects/rolling_resistance.hpp"
 #include "math/vec2_math.hpp"
 #include "solver/flights.hpp"
 
@@ -16,9 +15,7 @@ struct Surface {
     Vec2 normal;        // from the body into the support
     double separation;  // m
     Vec2 velocity;      // m/s, of the surface
-    double friction, rolling;
-    double rolling_share;     // of the body's rim speed in the rolling velocity
-    double rolling_velocity;  // m/s, the support's share of it
+    double friction, restitution;
 };
 
 template <class Real>
@@ -30,9 +27,7 @@ Surface surface_of(const WorldState<Real>& world, std::size_t row, std::int32_t 
         const Walls& walls = *world.walls;
         const Vec2 n = Flights<Real>::wall_normal(support);
         const Vec2 corner = support == kLeft || support == kBottom ? walls.min : walls.max;
-        return {
-            n, dot(corner - x, n) - radius, {}, walls.material.friction, walls.material.rolling_resistance, 1,
-            0};
+        return {n, dot(corner - x, n) - radius, {}, walls.material.friction, walls.material.restitution};
     }
     const auto other = static_cast<std::size_t>(support);
     const Vec2 d = Vec2{bodies.position_x[other], bodies.position_y[other]} - x;
@@ -40,16 +35,12 @@ Surface surface_of(const WorldState<Real>& world, std::size_t row, std::int32_t 
     const Vec2 n = distance > 0 ? (1 / distance) * d : Vec2{0, -1};
     const double support_radius = bodies.radius[other];
     Vec2 velocity{bodies.velocity_x[other], bodies.velocity_y[other]};
-    const double rim = bodies.has_rotation ? bodies.angular_velocity[other] * support_radius : 0;
-    if (bodies.has_rotation) velocity += rim * Vec2{n.y, -n.x};  // spin times the arm -r n
-    const double share = rolling_share(radius, support_radius);
-    return {n,
-            distance - radius - support_radius,
-            velocity,
-            bodies.friction[other],
-            bodies.rolling_resistance[other],
-            share,
-            (1 - share) * rim};
+    if (bodies.has_rotation) {
+        const double rim = bodies.angular_velocity[other] * support_radius;
+        velocity += rim * Vec2{n.y, -n.x};  // spin times the arm -r n
+    }
+    return {n, distance - radius - support_radius, velocity, bodies.friction[other],
+            bodies.restitution[other]};
 }
 
 }  // namespace
@@ -58,15 +49,10 @@ template <class Real>
 void SoftSolver<Real>::find_supports(const WorldState<Real>& world) {
     ContactCandidates<Real>& candidates = graph.supports;
     const Bodies<Real>& bodies = world.bodies;
-    const std::size_t colours = candidates.colours();
-    const std::size_t serial = candidates.has_overflow ? candidates.count.back() : 0;
-    supports_.resize(candidates.a.size() + kRowPadding * (colours + 1 + serial), true, is_rough_, is_rough_,
-                     bounces_);
-    supports_.resize_rolling(rolls_, true, true);
-    supports_.begin.resize(colours), supports_.count.resize(colours);
-    std::size_t place = 0;
+    supports_.resize(candidates, true, is_rough_, is_rough_, bounces_);
     const auto real = [](double value) { return static_cast<Real>(value); };
-    for (std::size_t c = 0; c < colours; ++c) {
+    for (std::size_t group = 0, place = 0, c = 0; c < candidates.colours(); ++c) {
+        while (c >= candidates.first_colour[group + 1]) ++group;
         std::size_t at = place;
         for (std::size_t i = candidates.begin[c]; i < candidates.begin[c] + candidates.count[c]; ++i) {
             const auto row = static_cast<std::size_t>(candidates.a[i]);
@@ -89,22 +75,12 @@ void SoftSolver<Real>::find_supports(const WorldState<Real>& world) {
                 supports_.friction_impulse[at] = candidates.friction_impulse[i];
                 supports_.friction[at] = real(pair_friction(bodies.friction[row], s.friction));
             }
-            if (rolls_) {
-                supports_.rolling_impulse[at] = candidates.rolling_impulse[i];
-                supports_.rolling[at] =
-                    real(pair_rolling_resistance(bodies.rolling_resistance[row], s.rolling));
-                supports_.rolling_share[at] = real(s.rolling_share);
-                supports_.surface_rolling[at] = real(s.rolling_velocity);
-            }
             if (bounces_) supports_.approach[at] = real(dot(dv, s.normal));
             supports_.candidate[at] = static_cast<std::int32_t>(i);
             ++at;
         }
-        const std::size_t count = at - place;
-        supports_.begin[c] = place, supports_.count[c] = count;
-        place = supports_.close_colour(c, static_cast<std::int32_t>(count_));
+        place = supports_.close_colour(c, place, at - place, padding_row_of_supports(group));
     }
-    for (const std::size_t count : supports_.count) counters.contacts += static_cast<std::int64_t>(count);
 }
 
 template void SoftSolver<float>::find_supports(const WorldState<float>&);

@@ -10,9 +10,11 @@ void begin_substeps(Simulation<Real>& sim) {
 
 template <class Real>
 void update_contacts(Simulation<Real>& sim) {
-    if (sim.graph_of_rebuild == sim.candidates.rebuild_count()) return;
-    sim.soft.graph.keeps_rolling = sim.world.effects.rolling_resistance;
-    sim.soft.graph.renew(sim.candidates, sim.world.bodies, sim.world.walls ? &*sim.world.walls : nullptr);
+    const Walls* walls = sim.world.walls ? &*sim.world.walls : nullptr;
+    if (sim.graph_of_rebuild == sim.candidates.rebuild_count())
+        sim.soft.graph.add(sim.candidates, sim.world.bodies, walls);
+    else
+        sim.soft.graph.renew(sim.candidates, sim.world.bodies, walls, sim.executor);
     sim.graph_of_rebuild = sim.candidates.rebuild_count();
 }
 

@@ -6,7 +6,7 @@ template <class Real>
 void sort_rows(Simulation<Real>& sim) {
     if (!sim.candidates.wants_sorted_rows()) return;
     if (sim.method == Solver::soft) {
-        sim.soft.graph.follow_sorted_rows(sim.candidates.order(), sim.world.bodies.count);
+        sim.soft.graph.trail.follow_sorted(sim.candidates.order(), sim.world.bodies.count);
         sim.soft.forget_rows();
     }
     sim.world.reorder(sim.candidates.order());
@@ -19,8 +19,6 @@ void update_candidates(Simulation<Real>& sim) {
     const Bodies<Real>& bodies = sim.world.bodies;
     sim.displaced.clear();
     sim.displaced_rows.for_each_below(bodies.count, [&](std::int32_t row) { sim.displaced.push_back(row); });
-    // Impulse looks strays up one by one; soft wants all its contacts in one list.
-    if (sim.method == Solver::soft && !sim.displaced.empty()) sim.candidates.invalidate_pairs();
     sim.candidates.update(bodies, sim.solver.flights.end, sim.world.gravity, sim.displaced, sim.fastest,
                           *sim.kernels, sim.executor);
 }

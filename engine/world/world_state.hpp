@@ -22,7 +22,6 @@ struct Effects {
     bool restitution = false;
     bool rotation = false;
     bool friction = false;
-    bool rolling_resistance = false;
     bool ledger = false;
 };
 

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace carom {
+
+/// How contacts are shared out among threads.
+///
+/// Rows lie in the order of cells, line by line, so that a chunk of consecutive rows is a strip of the plane
+/// and most contacts are inside one chunk or across the border to the next. Then a sweep over all contacts
+/// has two parts, within each of which no two tasks touch the same body:
+///
+///   part 1, task t:  inside chunk 2t, across 2t | 2t+1, inside 2t+1
+///   part 2, task t:  across 2t-1 | 2t, supports of 2t-1 and of 2t
+///
+/// What is left, contacts of chunks that are no neighbours, is far: solved alone between the two. The groups
+/// depend on rows and pairs, never on threads.
+struct ContactGroups {
+    std::size_t rows_per_chunk = SIZE_MAX;
+    std::size_t chunks = 1;
+
+    std::size_t chunk_of(std::int32_t row) const { return static_cast<std::size_t>(row) / rows_per_chunk; }
+
+    // Groups of pairs. The last chunk has no next one: the number of its border is that of the far group.
+    std::size_t count() const { return 2 * chunks; }
+    static std::size_t inside(std::size_t chunk) { return 2 * chunk; }
+    static std::size_t across(std::size_t chunk) { return 2 * chunk + 1; }
+    bool has_border(std::size_t chunk) const { return chunk + 1 < chunks; }
+    std::size_t far() const { return 2 * chunks - 1; }
+    /// @param a, b  rows, a < b
+    std::size_t group_of(std::int32_t a, std::int32_t b) const {
+        const std::size_t chunk = chunk_of(a), steps = chunk_of(b) - chunk;
+        return steps < 2 ? 2 * chunk + steps : far();
+    }
+
+    // Groups of supports: one a chunk, and one for those that found no colour.
+    std::size_t support_count() const { return chunks + 1; }
+
+    std::size_t tasks_of_part_1() const { return (chunks + 1) / 2; }
+    std::size_t tasks_of_part_2() const { return chunks / 2 + 1; }
+};
+
+}  // namespace carom

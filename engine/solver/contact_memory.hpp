@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+
+#include "parallel/executor.hpp"
+#include "solver/contact_candidates.hpp"
+#include "solver/contact_groups.hpp"
+
+namespace carom {
+
+/// The impulses of all contacts by their rows, while the contacts are put into a new order. What carries no
+/// impulse need not be remembered.
+template <class Real>
+class ContactMemory {
+  public:
+    struct Impulses {
+        Real normal = 0, friction = 0;  // N s, of a substep
+    };
+
+    /// Files contacts of rows below `rows`.
+    /// @param groups  of `pairs`, if the rows are still those that `pairs` was grouped by; else null
+    /// Cost: O(rows + contacts), shared among threads if there are groups.
+    void file(const ContactCandidates<Real>& pairs, const ContactCandidates<Real>& supports, std::size_t rows,
+              const ContactGroups* groups, const Executor& executor);
+
+    /// What contact (a, b) had; nothing if it was none.
+    Impulses recall(std::int32_t a, std::int32_t b) const {
+        const Impulses* found = grouped_.find(a, b);
+        if (!found) found = others_.find(a, b);
+        return found ? *found : Impulses{};
+    }
+
+    std::size_t bytes() const { return grouped_.bytes() + others_.bytes(); }
+
+  private:
+    struct Filed {
+        std::int32_t b;
+        Impulses impulses;
+    };
+    struct Range {
+        std::uint32_t begin, end;
+    };
+    /// Contacts by their row a.
+    struct File {
+        Column<Range> of_row;
+        Column<Filed> filed;
+        bool is_empty = true;
+
+        const Impulses* find(std::int32_t a, std::int32_t b) const {
+            if (is_empty) return nullptr;
+            const Range range = of_row[static_cast<std::size_t>(a)];
+            for (std::uint32_t i = range.begin; i < range.end; ++i)
+                if (filed[i].b == b) return &filed[i].impulses;
+            return nullptr;
+        }
+        std::size_t bytes() const { return of_row.bytes() + filed.bytes(); }
+    };
+
+    /// Calls each(fn) twice; it calls fn(contacts, i) for the contacts of rows [first, last).
+    template <class Each>
+    static void file_rows(File& file, std::size_t first, std::size_t last, std::uint32_t place,
+                          const Each& each);
+
+    File grouped_, others_;
+};
+
+extern template class ContactMemory<float>;
+extern template class ContactMemory<double>;
+
+}  // namespace carom

@@ -1,0 +1,44 @@
+#include "solver/row_trail.hpp"
+
+#include <numeric>
+
+namespace carom {
+
+void RowTrail::start(std::size_t rows) {
+    rows_ = rows;
+    has_moved_ = false;
+}
+
+/// Starts the list of old rows, if nothing has moved so far.
+void RowTrail::keep() {
+    if (has_moved_) return;
+    has_moved_ = true;
+    old_row_.resize(rows_);
+    std::iota(old_row_.begin(), old_row_.end(), 0);
+}
+
+void RowTrail::follow_sorted(const std::int32_t* order, std::size_t count) {
+    keep();
+    old_row_.resize(count, kGone);  // rows that were appended
+    new_row_.resize(count);
+    for (std::size_t row = 0; row < count; ++row)
+        new_row_[row] = old_row_[static_cast<std::size_t>(order[row])];
+    old_row_.swap(new_row_);
+}
+
+void RowTrail::follow_removed(std::size_t row, std::size_t last) {
+    keep();
+    if (old_row_.size() <= last) old_row_.resize(last + 1, kGone);
+    old_row_[row] = old_row_[last];
+    old_row_.resize(last);
+}
+
+const std::vector<std::int32_t>& RowTrail::new_rows() {
+    new_row_.assign(rows_, kGone);
+    for (std::size_t row = 0; row < old_row_.size(); ++row)
+        if (old_row_[row] != kGone)
+            new_row_[static_cast<std::size_t>(old_row_[row])] = static_cast<std::int32_t>(row);
+    return new_row_;
+}
+
+}  // namespace carom
