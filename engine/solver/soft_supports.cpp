@@ -60,7 +60,10 @@ void SoftSolver<Real>::find_supports(const WorldState<Real>& world) {
             const Vec2 v{bodies.velocity_x[row], bodies.velocity_y[row]};
             const Vec2 dv = s.velocity - v;
             const double fall = length_squared(gain_) > 0 ? std::sqrt(length_squared(gain_)) * dt_ / h_ : 0;
-            if (s.separation > near_ + dt_ * (std::fabs(dv.x) + std::fabs(dv.y) + fall)) {
+            // A wall is a wall everywhere, so it is kept however slowly a body nears it: in a crowd another
+            // one may yet throw it there within this step. What is round only holds where it is met.
+            const bool is_wall = candidates.b[i] < 0;
+            if (!is_wall && s.separation > near_ + dt_ * (std::fabs(dv.x) + std::fabs(dv.y) + fall)) {
                 candidates.normal_impulse[i] = 0;
                 continue;
             }

@@ -1,0 +1,86 @@
+// B16 of the design notes: crowds.
+#include "support/effort.hpp"
+#include "support/report.hpp"
+#include "support/scenes.hpp"
+
+#include <carom/world.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace carom;
+using namespace carom::test;
+
+namespace {
+
+constexpr double kStep = 1.0 / 60;  // s
+
+struct Crowded {
+    double while_driven = 0, after = 0;  // largest overlap, as a fraction of the smaller radius
+    double bytes_per_body = 0;
+};
+
+/// Pulls the first `count` bodies to the origin with acceleration `pull` [m/s²] for a while, then leaves them
+/// alone for two seconds.
+template <class Real>
+Crowded crowd(const Scene& scene, std::size_t count, double pull, int driven_steps) {
+    BasicWorld<Real> world(scene);
+    Crowded result;
+    for (int i = 0; i < driven_steps; ++i) {
+        for (std::uint32_t b = 0; b < count; ++b) {
+            const BodyState s = world.state({b, 0});
+            const double r = std::hypot(s.position.x, s.position.y);
+            if (r == 0) continue;
+            const double dv = -pull * kStep / r;
+            world.set_velocity({b, 0}, {s.velocity.x + dv * s.position.x, s.velocity.y + dv * s.position.y});
+        }
+        world.step(kStep);
+        result.while_driven = std::fmax(result.while_driven, world.overlaps().max);
+    }
+    for (int i = 0; i < 120; ++i) world.step(kStep);
+    result.after = world.overlaps().max;
+    result.bytes_per_body =
+        static_cast<double>(world.profile().bytes) / static_cast<double>(scene.bodies.size());
+    CHECK(world.quarantined().empty());
+    report(scene.bodies.size(), " bodies: overlap ", result.while_driven, " while driven, ", result.after,
+           " two seconds later, ", result.bytes_per_body, " bytes a body");
+    return result;
+}
+
+Scene lattice_around_origin(std::int64_t side, double spacing, double jitter, double radius) {
+    Scene scene;
+    scene.accuracy.solver = Solver::soft;
+    Lattice lattice;
+    lattice.count_x = lattice.count_y = side;
+    const double corner = -0.5 * spacing * static_cast<double>(side - 1);
+    lattice.origin = {corner, corner}, lattice.spacing = {spacing, spacing};
+    lattice.jitter = jitter;
+    lattice.body.shape = Disc{radius};
+    add_lattice(scene, lattice);
+    return scene;
+}
+
+}  // namespace
+
+TEST_SUITE("hard cases/crowds") {
+    TEST_CASE_TEMPLATE("B16: four hundred discs that rush to a point", Real, float, double) {
+        const Crowded found = crowd<Real>(lattice_around_origin(20, 2, 0.3, 0.5), 400, 10, scaled(300, 150));
+        CHECK(found.while_driven < 0.2);
+        CHECK(found.after < 0.01);
+    }
+
+    // A cell of the grid is as large as the bodies of its level: the large disc's cell holds all the others.
+    TEST_CASE_TEMPLATE("B16: ten thousand discs in one cell of a large one's level, pulled together", Real,
+                       float, double) {
+        constexpr int kSide = scaled(100, 40);
+        constexpr double kRadius = 0.05, kLarge = 10;
+        Scene scene = lattice_around_origin(kSide, 2.4 * kRadius, 0.1 * kRadius, kRadius);
+        scene.add({.shape = Disc{kLarge}, .position = {kLarge + 10, 0}});
+        const Crowded found = crowd<Real>(scene, kSide * kSide, 0.25, scaled(600, 100));
+        CHECK(found.while_driven < 0.2);
+        CHECK(found.after < 0.01);
+        CHECK(found.bytes_per_body < 2000);
+    }
+}

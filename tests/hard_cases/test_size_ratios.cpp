@@ -1,0 +1,105 @@
+// B6 and B20 of the design notes: very large beside very small.
+#include "support/effort.hpp"
+#include "support/passive_run.hpp"
+#include "support/report.hpp"
+#include "support/scenes.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+using namespace carom;
+using namespace carom::test;
+
+namespace {
+
+constexpr double kStep = 1.0 / 60;
+
+}  // namespace
+
+TEST_SUITE("hard cases/size ratios") {
+    // Small ones roll off the large one and fall past it, up to 3 of their radii a step. Faster ones than
+    // that can still be in each other when a step ends, if another body has thrown them there within it.
+    TEST_CASE_TEMPLATE("B6: small discs heap up on and around one that is a thousand times larger", Real,
+                       float, double) {
+        constexpr double kLarge = 10, kSmall = 0.01, kGravity = 0.1, kSide = 12;
+        constexpr int kOnTop = 100, kBeside = 100;
+        Scene scene;
+        scene.gravity = {0, -kGravity};
+        const Material rough{.friction = 0.3};
+        scene.walls = Walls{.min = {-kSide, 0}, .max = {kSide, 60}, .material = rough};
+        scene.accuracy.solver = Solver::soft;
+        scene.add({.shape = Disc{kLarge}, .position = {0, kLarge}, .material = rough});
+        const auto add = [&](double x, double y) {
+            scene.add({.shape = Disc{kSmall}, .position = {x, y}, .material = rough});
+        };
+        for (int i = 0; i < kOnTop; ++i) {
+            const double x = -2 + 4.0 * i / kOnTop;
+            add(x, kLarge + std::sqrt((kLarge + kSmall) * (kLarge + kSmall) - x * x) + 0.03 * (i % 3));
+        }
+        for (int i = 0; i < kBeside; ++i)
+            add((i % 2 == 0 ? 1 : -1) * (10.6 + 0.027 * (i / 2)), 0.02 + 0.03 * (i % 5));
+        PassiveRun<Real> run(scene);
+        double deepest = 0, fastest = 0;
+        for (int i = 0; i < scaled(2400, 600); ++i) {
+            run.step(kStep);
+            deepest = std::fmax(deepest, run.world.overlaps().max);
+            const BodyState large = run.state(0);
+            for (std::uint32_t b = 1; b <= kOnTop + kBeside; ++b) {
+                const Vec2 x = run.state(b).position, v = run.state(b).velocity;
+                const double distance = std::hypot(x.x - large.position.x, x.y - large.position.y);
+                deepest = std::fmax(deepest, (kLarge + kSmall - distance) / kSmall);
+                fastest = std::fmax(fastest, std::hypot(v.x, v.y));
+            }
+        }
+        report("overlap ", deepest, " of the small radius, fastest ", fastest * kStep / kSmall,
+               " radii a step");
+        CHECK(deepest < 0.1);
+        if (!kIsSlowBuild) CHECK(fastest * kStep > 2 * kSmall);
+        run.check();
+    }
+
+    TEST_CASE_TEMPLATE("B20: five thousand discs carry one of a hundred times their radius", Real, float,
+                       double) {
+        constexpr double kLarge = 50, kSmall = 0.5, kGravity = 10, kPitch = 0.9;
+        constexpr int kColumns = 100, kRows = 50;
+        constexpr double kSettling = scaled(40.0, 4.0), kMeasured = scaled(20.0, 2.0);  // s
+        Scene scene;
+        scene.gravity = {0, -kGravity};
+        const Material rough{.friction = 0.5};
+        scene.walls = Walls{.min = {0, 0}, .max = {104, 1000}, .top = false, .material = rough};
+        Lattice lattice;
+        lattice.count_x = kColumns, lattice.count_y = kRows;
+        lattice.origin = {0.52, 0.51}, lattice.spacing = {1.035, kPitch};
+        lattice.stagger = true, lattice.jitter = 0.005;
+        lattice.body = {.shape = Disc{kSmall}, .material = rough};
+        add_lattice(scene, lattice);
+        const double top = 0.51 + kPitch * (kRows - 1) + kSmall;
+        const BodyId large =
+            scene.add({.shape = Disc{kLarge}, .position = {52, top + kLarge + 0.01}, .material = rough});
+        BasicWorld<Real> world(scene);
+        const auto run = [&](double seconds) {
+            for (int i = 0; i < seconds / kStep; ++i) world.step(kStep);
+        };
+        run(kSettling);
+        const double start = world.time(), speed = world.state(large).velocity.y;
+        const double floor_impulse = world.ledger().wall_impulse;
+        double deepest = 0, overflow = 0;
+        const auto steps = static_cast<int>(kMeasured / kStep);
+        for (int i = 0; i < steps; ++i) {
+            world.step(kStep);
+            if (i % 60 == 0) deepest = std::fmax(deepest, world.overlaps().max);
+            overflow = std::fmax(overflow, static_cast<double>(world.profile().overflow));
+        }
+        const double seconds = world.time() - start;
+        const double missing = (world.state(large).velocity.y - speed) / (kGravity * seconds);
+        report("force on it differs from its weight by ", missing, "; overlap ", deepest, ", overflow ",
+               overflow, ", wall impulse ", (world.ledger().wall_impulse - floor_impulse) / seconds, " y ",
+               world.state(large).position.y, " v ", world.state(large).velocity.y);
+        CHECK(overflow > 0);  // more contacts than there are colours
+        CHECK(std::fabs(missing) < scaled(1e-3, 0.2));
+        CHECK(deepest < scaled(0.2, 1.0));
+        CHECK(world.state(large).position.y > top - 5 + kLarge - 10);
+        CHECK(world.quarantined().empty());
+    }
+}
