@@ -18,7 +18,13 @@ inline constexpr double kRounding = std::numeric_limits<Real>::epsilon() / 2;
 
 /// Every effect that can be forced on.
 inline EffectOverrides all_effects() {
-    return {.ledger = true, .gravity = true, .drag = true, .rotation = true, .restitution = true};
+    return {.continuous = true,
+            .ledger = true,
+            .gravity = true,
+            .drag = true,
+            .rotation = true,
+            .restitution = true,
+            .friction = true};
 }
 
 inline double dynamic_mass(const Scene& scene) {  // kg
