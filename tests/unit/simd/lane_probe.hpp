@@ -26,6 +26,9 @@ struct LaneProbe {
     void (*gather)(const Real* column, const std::int32_t* rows, std::size_t count, Real* out);
     void (*gather_at)(const Real* column, const std::int32_t* rows, std::size_t count, Real* out);
     std::size_t (*compress)(const std::int32_t* values, unsigned bits, std::int32_t* out);  // one batch
+    void (*compress_reals)(const Real* values, unsigned bits, Real* out);                   // one batch
+    void (*rows2)(const Real* packed, const std::int32_t* rows, std::size_t count, Real* out,
+                  Real* packed_out);  // out[2][count], and scattered back to packed_out
     void (*rows4)(const Real* packed, const std::int32_t* rows, std::size_t count, Real* out,
                   Real* packed_out);  // out[4][count], and scattered back to packed_out
     void (*differences4)(const Real* packed, const std::int32_t* of, const std::int32_t* from,

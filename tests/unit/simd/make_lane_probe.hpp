@@ -79,6 +79,23 @@ std::size_t probe_compress(const std::int32_t* values, unsigned bits, std::int32
 }
 
 template <class Real, class Isa>
+void probe_compress_reals(const Real* values, unsigned bits, Real* out) {
+    using L = simd::Lanes<Real, Isa>;
+    L::compress_store(out, L::load(values), bits);
+}
+
+template <class Real, class Isa>
+void probe_rows2(const Real* packed, const std::int32_t* rows, std::size_t count, Real* out,
+                 Real* packed_out) {
+    using L = simd::Lanes<Real, Isa>;
+    for (std::size_t i = 0; i < count; i += L::size) {
+        const typename L::Batch2 two = L::load_rows2(packed, rows + i);
+        for (std::size_t k = 0; k < 2; ++k) L::store(out + k * count + i, two[k]);
+        L::store_rows2(packed_out, rows + i, two);
+    }
+}
+
+template <class Real, class Isa>
 void probe_rows4(const Real* packed, const std::int32_t* rows, std::size_t count, Real* out,
                  Real* packed_out) {
     using L = simd::Lanes<Real, Isa>;
@@ -149,6 +166,8 @@ constexpr LaneProbe<Real> make_lane_probe() {
             &probe_gather<Real, Isa>,
             &probe_gather_at<Real, Isa>,
             &probe_compress<Real, Isa>,
+            &probe_compress_reals<Real, Isa>,
+            &probe_rows2<Real, Isa>,
             &probe_rows4<Real, Isa>,
             &probe_differences4<Real, Isa>,
             &probe_row_sums<Real, Isa>,

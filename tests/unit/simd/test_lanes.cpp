@@ -215,6 +215,55 @@ TEST_SUITE("simd/lanes") {
         }
     }
 
+    TEST_CASE_TEMPLATE(
+        "compress_store of numbers keeps the bits of the marked lanes in order, for every mask", Real, float,
+        double) {
+        Column<Real> values(16);
+        for (std::size_t i = 0; i < 16; ++i) values[i] = static_cast<Real>(0.1 * static_cast<double>(i) - 1);
+        values[5] = Real(-0.0), values[9] = std::numeric_limits<Real>::infinity();
+        for (const LaneProbes* probes : runnable_lane_probes()) {
+            CAPTURE(probes->isa);
+            const LaneProbe<Real>& probe = probe_of<Real>(*probes);
+            bool all_equal = true;
+            for (unsigned bits = 0; bits < (1u << probe.lanes); ++bits) {
+                Column<Real> expected(17), actual(17);
+                std::fill(actual.begin(), actual.end(), Real(-12345));
+                std::size_t count = 0;
+                for (std::size_t lane = 0; lane < probe.lanes; ++lane)
+                    if ((bits >> lane) & 1u) expected[count++] = values[lane];
+                probe.compress_reals(values.data(), bits, actual.data());
+                // A whole batch may be written, and nothing behind it.
+                all_equal = all_equal && actual[probe.lanes] == Real(-12345) &&
+                            std::memcmp(expected.data(), actual.data(), count * sizeof(Real)) == 0;
+            }
+            CHECK(all_equal);
+        }
+    }
+
+    TEST_CASE_TEMPLATE("load_rows2 splits records of two and store_rows2 puts them back", Real, float,
+                       double) {
+        constexpr std::size_t kRecords = 100, kRows = 64;
+        Column<Real> packed(2 * kRecords);
+        for (std::size_t i = 0; i < packed.size(); ++i) packed[i] = static_cast<Real>(i) + Real(0.5);
+        Column<std::int32_t> rows(kRows);
+        for (std::size_t i = 0; i < kRows; ++i) rows[i] = static_cast<std::int32_t>((37 * i) % kRecords);
+        Column<Real> expected(2 * kRows), expected_packed(packed.size());
+        for (std::size_t i = 0; i < kRows; ++i)
+            for (std::size_t k = 0; k < 2; ++k) {
+                const std::size_t at = 2 * static_cast<std::size_t>(rows[i]) + k;
+                expected[k * kRows + i] = packed[at];
+                expected_packed[at] = packed[at];
+            }
+        for (const LaneProbes* probes : runnable_lane_probes()) {
+            CAPTURE(probes->isa);
+            Column<Real> actual(expected.size()), actual_packed(packed.size());
+            probe_of<Real>(*probes).rows2(packed.data(), rows.data(), kRows, actual.data(),
+                                          actual_packed.data());
+            CHECK(same_bits(expected, actual));
+            CHECK(same_bits(expected_packed, actual_packed));  // rows that were not named stay as they are
+        }
+    }
+
     TEST_CASE_TEMPLATE("load_rows4 transposes records and store_rows4 puts them back", Real, float, double) {
         constexpr std::size_t kRecords = 100, kRows = 64;
         Column<Real> packed(4 * kRecords);
