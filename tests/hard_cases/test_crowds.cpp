@@ -26,7 +26,7 @@ struct Crowded {
 /// alone for two seconds.
 template <class Real>
 Crowded crowd(const Scene& scene, std::size_t count, double pull, int driven_steps) {
-    BasicWorld<Real> world(scene);
+    BasicWorld<Real> world(scene, {.threads = 1});
     Crowded result;
     for (int i = 0; i < driven_steps; ++i) {
         for (std::uint32_t b = 0; b < count; ++b) {

@@ -77,13 +77,12 @@ TEST_SUITE("hard cases/size ratios") {
         const double top = 0.51 + kPitch * (kRows - 1) + kSmall;
         const BodyId large =
             scene.add({.shape = Disc{kLarge}, .position = {52, top + kLarge + 0.01}, .material = rough});
-        BasicWorld<Real> world(scene);
+        BasicWorld<Real> world(scene, {.threads = 1});
         const auto run = [&](double seconds) {
             for (int i = 0; i < seconds / kStep; ++i) world.step(kStep);
         };
         run(kSettling);
         const double start = world.time(), speed = world.state(large).velocity.y;
-        const double floor_impulse = world.ledger().wall_impulse;
         double deepest = 0, overflow = 0;
         const auto steps = static_cast<int>(kMeasured / kStep);
         for (int i = 0; i < steps; ++i) {
@@ -93,13 +92,12 @@ TEST_SUITE("hard cases/size ratios") {
         }
         const double seconds = world.time() - start;
         const double missing = (world.state(large).velocity.y - speed) / (kGravity * seconds);
-        report("force on it differs from its weight by ", missing, "; overlap ", deepest, ", overflow ",
-               overflow, ", wall impulse ", (world.ledger().wall_impulse - floor_impulse) / seconds, " y ",
-               world.state(large).position.y, " v ", world.state(large).velocity.y);
+        report("force on it differs from its weight by ", missing, " of it; overlap ", deepest, ", overflow ",
+               overflow);
         CHECK(overflow > 0);  // more contacts than there are colours
         CHECK(std::fabs(missing) < scaled(1e-3, 0.2));
         CHECK(deepest < scaled(0.2, 1.0));
-        CHECK(world.state(large).position.y > top - 5 + kLarge - 10);
+        CHECK(world.state(large).position.y > kLarge + 0.5 * top);  // it lies in a dent, not on the floor
         CHECK(world.quarantined().empty());
     }
 }

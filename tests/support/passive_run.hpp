@@ -27,7 +27,6 @@ class PassiveRun {
         }
         if (walls_) low = walls_->min.y;
         largest_speed_ = 1.05 * std::sqrt(fastest + 2 * gravity * (high - low)) + 1e-6;
-        gravity_ = scene.gravity;
     }
 
     void step(double dt) {
@@ -52,7 +51,6 @@ class PassiveRun {
     void run(double seconds, double dt = 1.0 / 60) {
         for (double end = world.time() + seconds - 0.5 * dt; world.time() < end;) step(dt);
     }
-    /// @param scale  J, what potential energy is measured from; 0: the floor
     void check() {
         CHECK(failures_ == 0);
         CHECK(world.quarantined().empty());
@@ -77,7 +75,6 @@ class PassiveRun {
     BasicWorld<Real> again_;
     std::optional<Walls> walls_;
     Energy start_;
-    Vec2 gravity_;
     double largest_speed_ = 0;
     int failures_ = 0;
 };
