@@ -82,8 +82,17 @@ CalledEffects call_effects(const Scene& scene, const EffectOverrides& overrides)
                             "every restitution is zero");
     std::string rubs = first_body(
         scene, [](const Body& b) { return b.material.friction > 0; }, " has friction");
+    std::string resists = first_body(
+        scene, [](const Body& b) { return b.material.rolling_resistance > 0; }, " has rolling resistance");
+    if (resists.empty() && scene.walls && scene.walls->material.rolling_resistance > 0)
+        resists = "the walls have rolling resistance";
+    const auto rolling = either(overrides.rolling_resistance, own.rolling_resistance);
+    if (rubs.empty() && (!resists.empty() || rolling == true))
+        rubs = "rolling resistance needs contacts that turn bodies";
     on.friction = decide(reports, "friction", either(overrides.friction, own.friction), rubs,
                          "every friction coefficient is zero");
+    on.rolling_resistance =
+        decide(reports, "rolling resistance", rolling, resists, "every rolling resistance is zero");
     std::string turns = first_body(
         scene, [](const Body& b) { return b.angular_velocity != 0 || b.angle != 0; },
         " has an angle or a spin");
@@ -200,8 +209,9 @@ Plan describe_plan(Simulation<Real>& sim, const CalledEffects& called) {
     list(stages.advance_rotation, StageName::advance_rotation, plan.isa);
     list(stages.end_flight, StageName::end_flight, plan.isa);
     list(stages.run_events, StageName::run_events, "scalar, in double precision");
-    const std::string contact =
-        plan.isa + (sim.world.effects.friction ? ", friction" : ", no friction") + variant;
+    const std::string contact = plan.isa + (sim.world.effects.friction ? ", friction" : ", no friction") +
+                                (sim.world.effects.rolling_resistance ? ", rolling resistance" : "") +
+                                variant;
     list(stages.update_contacts, StageName::update_contacts, "");
     list(stages.begin_substeps, StageName::begin_substeps, plan.isa);
     list(stages.find_contacts, StageName::find_contacts, contact);

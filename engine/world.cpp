@@ -56,6 +56,7 @@ void check_options(const Scene& scene, const WorldOptions& options) {
             "World: solver \"pairwise\" is the naive reference engine, class carom::Pairwise "
             "(<carom/pairwise.hpp>), not a solver of World. Use \"auto\", \"impulse\" or \"soft\" here.");
     raise_if("World", find_solver_problem(scene, accuracy.solver));
+    raise_if("World: option effects", find_solver_problem(options.effects, accuracy.solver));
     validate_effects(scene, scene.effects, "World");
     validate_effects(scene, options.effects, "World: option effects");
     constexpr int kMostThreads = 1024;

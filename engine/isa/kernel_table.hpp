@@ -37,7 +37,8 @@ struct KernelTable {
     std::size_t (*find_impacts_near)(const GridLevel<Real>&, const FindImpactsNear<Real>&);
     std::size_t (*find_impacts_near_uniform_radius)(const GridLevel<Real>&, const FindImpactsNear<Real>&);
     void (*end_flight)(const EndFlight<Real>&, std::size_t first, std::size_t last);
-    std::array<ContactKernels<Real>, 3> contacts;  // smooth; rough; rough, and some bodies do not turn
+    // smooth; rough; rough, and some bodies do not turn; the last two with rolling resistance
+    std::array<ContactKernels<Real>, 5> contacts;
     // The last three: without and with rotation.
     std::array<void (*)(const BeginSubsteps<Real>&, std::size_t first, std::size_t last), 2> begin_substeps;
     std::array<void (*)(const AdvanceBodies<Real>&, std::size_t first, std::size_t last), 2> advance_bodies;

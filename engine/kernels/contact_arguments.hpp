@@ -18,6 +18,7 @@ namespace carom {
 enum ContactVariant : unsigned {
     kRough = 1,        // friction, and with it rotation
     kFixedAngles = 2,  // some bodies do not turn (only with kRough)
+    kRolling = 4,      // rolling resistance (only with kRough): effects/rolling_resistance.hpp
 };
 
 /// Contacts of one kind as the solver streams them, sorted by colour: a body is in one contact of a colour.
@@ -37,6 +38,11 @@ struct ContactColumns {
     Real* largest_impulse;   // N s, of the substeps so far; null without restitution
     Real* surface_normal;    // m/s, velocity of b along the normal; only where b is null
     Real* surface_tangent;   // m/s, velocity of b's surface along the tangent; only where b is null
+    // Only with kRolling.
+    Real* rolling_impulse;  // N s
+    Real* rolling;          // coefficient; null: uniform_rolling serves all
+    Real* rolling_share;    // weight of a's rim speed; null: one half, as for two discs of the same radius
+    Real* surface_rolling;  // m/s, b's share of the rolling velocity; only where b is null
 };
 
 /// One Gauss-Seidel sweep over the contacts of a colour.
@@ -46,6 +52,7 @@ struct SolveContacts {
     Real* velocity;      // [rows][4]
     Real* displacement;  // [rows][2]
     Real uniform_friction;
+    Real uniform_rolling;
     Real inverse_h;  // 1/s, of the substep
     Real h;          // s
     Real elapsed;    // s, since the start of the step, at the start of the substep
@@ -61,9 +68,11 @@ struct FindContacts {
     const std::int32_t* b;  //
     Real* normal_impulse;   // N s, of the candidates, from the step before; zeroed where there is no contact
     const Real* friction_impulse;  // null without friction
+    const Real* rolling_impulse;   // null without rolling resistance
     const Real* radius;            // m, or null: uniform_radius serves all
     const Real* inverse_mass;      // 1/kg, >= 0, or null: uniform_inverse_mass serves all
     const Real* friction;          // Coulomb coefficient, or null
+    const Real* rolling;           // coefficient of rolling resistance, or null
     Real uniform_radius;
     Real uniform_inverse_mass;
     Real dt;                   // s, of the step

@@ -87,6 +87,16 @@ std::size_t find_contacts(const FindContacts<Real>& k, std::size_t first, std::s
                 Lanes::compress_store(
                     out.friction + count,
                     simd::sqrt(Lanes::gather(k.friction, rows_a) * Lanes::gather(k.friction, rows_b)), bits);
+            if constexpr ((kVariant & kRolling) != 0) {
+                Lanes::compress_store(out.rolling_impulse + count, Lanes::load(k.rolling_impulse + p), bits);
+                if (k.rolling)
+                    Lanes::compress_store(
+                        out.rolling + count,
+                        simd::max(Lanes::gather(k.rolling, rows_a), Lanes::gather(k.rolling, rows_b)), bits);
+                if (k.radius)
+                    Lanes::compress_store(out.rolling_share + count, Lanes::gather(k.radius, rows_b) / reach,
+                                          bits);
+            }
             if (k.approach) Lanes::compress_store(k.approach + count, dvx * nx + dvy * ny, bits);
             Lanes::compress_store(out.a + count, rows_a, bits);
             Lanes::compress_store(out.b + count, rows_b, bits);

@@ -42,37 +42,65 @@ struct BodyLanes {
     }
 };
 
-/// Impulses of a batch of contacts before this sweep, and what the sweep adds.
+/// An impulse of a batch of contacts after this sweep, and what the sweep added to it.
 template <class F>
-struct Increments {
-    F normal, tangent;
+struct Held {
+    F impulse, added;
 };
 
-/// The contact laws. Signorini: the relative normal velocity is at least `floor`, the impulse pushes.
-/// Coulomb: the tangential impulse stops the surfaces' relative motion, within friction times the normal one.
-/// For discs the two do not couple: a normal impulse does not change the tangential velocity.
-template <unsigned kVariant, class Lanes, class Real>
-Increments<typename Lanes::Batch> solve_laws(const SolveContacts<Real>& k, std::size_t c,
-                                             typename Lanes::Batch mass, typename Lanes::Batch tangent_mass,
-                                             typename Lanes::Batch normal_velocity,
-                                             typename Lanes::Batch tangent_velocity,
-                                             typename Lanes::Batch floor) {
+// The contact laws. For discs the normal one does not couple with the others: a normal impulse changes
+// neither the tangential velocity nor a spin.
+
+/// Signorini: the relative normal velocity is at least `floor`, the impulse pushes.
+template <class Lanes, class Real>
+Held<typename Lanes::Batch> solve_normal(const SolveContacts<Real>& k, std::size_t c,
+                                         typename Lanes::Batch mass, typename Lanes::Batch velocity,
+                                         typename Lanes::Batch floor) {
     using F = typename Lanes::Batch;
-    Increments<F> add{F(0), F(0)};
     const F before = Lanes::load(k.contacts.normal_impulse + c);
-    const F impulse = simd::max(before + mass * (floor - normal_velocity), F(0));
-    add.normal = impulse - before;
+    const F impulse = simd::max(before + mass * (floor - velocity), F(0));
     Lanes::store(k.contacts.normal_impulse + c, impulse);
-    if constexpr ((kVariant & kRough) != 0) {
-        const F friction = k.contacts.friction ? Lanes::load(k.contacts.friction + c) : F(k.uniform_friction);
-        const F limit = friction * impulse;
-        const F friction_before = Lanes::load(k.contacts.friction_impulse + c);
-        const F wanted = friction_before - tangent_mass * tangent_velocity;
-        const F held = simd::max(simd::min(wanted, limit), -limit);
-        add.tangent = held - friction_before;
-        Lanes::store(k.contacts.friction_impulse + c, held);
-    }
-    return add;
+    return {impulse, impulse - before};
+}
+
+/// Coulomb, of sliding and of rolling alike: the impulse stops the motion, within `limit`. Returns what is
+/// added.
+template <class Lanes, class Real>
+typename Lanes::Batch solve_limited(Real* impulses, typename Lanes::Batch mass,
+                                    typename Lanes::Batch velocity, typename Lanes::Batch limit) {
+    using F = typename Lanes::Batch;
+    const F before = Lanes::load(impulses);
+    const F held = simd::max(simd::min(before - mass * velocity, limit), -limit);
+    Lanes::store(impulses, held);
+    return held - before;
+}
+
+/// The tangential impulse that is added, for a normal impulse after this sweep.
+template <unsigned kVariant, class Lanes, class Real>
+typename Lanes::Batch solve_friction(const SolveContacts<Real>& k, std::size_t c,
+                                     typename Lanes::Batch normal, typename Lanes::Batch mass,
+                                     typename Lanes::Batch velocity) {
+    using F = typename Lanes::Batch;
+    if constexpr ((kVariant & kRough) == 0) return F(0);
+    const F friction = k.contacts.friction ? Lanes::load(k.contacts.friction + c) : F(k.uniform_friction);
+    return solve_limited<Lanes>(k.contacts.friction_impulse + c, mass, velocity, friction * normal);
+}
+
+/// The weight of body a's rim speed in the velocity at which two bodies roll on each other.
+template <class Lanes, class Real>
+typename Lanes::Batch share_of(const SolveContacts<Real>& k, std::size_t c) {
+    using F = typename Lanes::Batch;
+    return k.contacts.rolling_share ? Lanes::load(k.contacts.rolling_share + c) : F(Real(0.5));
+}
+
+/// The rolling impulse that is added. `inverse_mass` is zero if neither body turns.
+template <class Lanes, class Real>
+typename Lanes::Batch solve_rolling(const SolveContacts<Real>& k, std::size_t c, typename Lanes::Batch normal,
+                                    typename Lanes::Batch inverse_mass, typename Lanes::Batch velocity) {
+    using F = typename Lanes::Batch;
+    const F rolling = k.contacts.rolling ? Lanes::load(k.contacts.rolling + c) : F(k.uniform_rolling);
+    const F mass = simd::select(inverse_mass > F(0), F(1) / inverse_mass, F(0));
+    return solve_limited<Lanes>(k.contacts.rolling_impulse + c, mass, velocity, rolling * normal);
 }
 
 /// The first sweep over contacts also takes overlaps away, by displacement alone, and notes the floor: bodies
@@ -144,10 +172,20 @@ void solve_pairs(const SolveContacts<Real>& k, std::size_t first, std::size_t la
                     mass * F(Real(1) / Real(3));  // 1/ma + 1/mb + ra²/Ia + rb²/Ib = 3 (1/ma + 1/mb)
             }
         }
-        const auto add = solve_laws<kVariant, Lanes>(k, c, mass, tangent_mass, dvx * nx + dvy * ny,
-                                                     tangent_velocity, floor);
-        a.template take<kVariant>(add.normal, add.tangent, nx, ny, F(-1));
-        b.template take<kVariant>(add.normal, add.tangent, nx, ny, F(1));
+        const auto normal = solve_normal<Lanes>(k, c, mass, dvx * nx + dvy * ny, floor);
+        if constexpr ((kVariant & kRolling) != 0) {
+            const F of_a = share_of<Lanes>(k, c), of_b = F(1) - of_a;
+            const F inverse_a = of_a * a.template inverse_inertia<kVariant>();
+            const F inverse_b = of_b * b.template inverse_inertia<kVariant>();
+            const F roll = solve_rolling<Lanes>(k, c, normal.impulse, of_a * inverse_a + of_b * inverse_b,
+                                                of_b * b.record[2] - of_a * a.record[2]);
+            a.record[2] -= inverse_a * roll, b.record[2] += inverse_b * roll;
+            tangent_velocity += (inverse_a - inverse_b) * roll;
+        }
+        const F tangent =
+            solve_friction<kVariant, Lanes>(k, c, normal.impulse, tangent_mass, tangent_velocity);
+        a.template take<kVariant>(normal.added, tangent, nx, ny, F(-1));
+        b.template take<kVariant>(normal.added, tangent, nx, ny, F(1));
         Lanes::store_rows4(k.velocity, row_a, a.record);
         Lanes::store_rows4(k.velocity, row_b, b.record);
         if constexpr (!kFirst) note_largest_impulse<Lanes>(k, c);
@@ -195,9 +233,19 @@ void solve_supports(const SolveContacts<Real>& k, std::size_t first, std::size_t
             }
         }
         const F normal_velocity = surface - (body.record[0] * nx + body.record[1] * ny);
-        const auto add =
-            solve_laws<kVariant, Lanes>(k, c, mass, tangent_mass, normal_velocity, tangent_velocity, floor);
-        body.template take<kVariant>(add.normal, add.tangent, nx, ny, F(-1));
+        const auto normal = solve_normal<Lanes>(k, c, mass, normal_velocity, floor);
+        if constexpr ((kVariant & kRolling) != 0) {
+            const F share = share_of<Lanes>(k, c);
+            const F inverse = share * body.template inverse_inertia<kVariant>();
+            const F roll =
+                solve_rolling<Lanes>(k, c, normal.impulse, share * inverse,
+                                     Lanes::load(k.contacts.surface_rolling + c) - share * body.record[2]);
+            body.record[2] -= inverse * roll;
+            tangent_velocity += inverse * roll;
+        }
+        const F tangent =
+            solve_friction<kVariant, Lanes>(k, c, normal.impulse, tangent_mass, tangent_velocity);
+        body.template take<kVariant>(normal.added, tangent, nx, ny, F(-1));
         Lanes::store_rows4(k.velocity, row, body.record);
         if constexpr (!kFirst) note_largest_impulse<Lanes>(k, c);
     }
@@ -217,6 +265,11 @@ void warm_start_pairs(const SolveContacts<Real>& k, std::size_t first, std::size
         if constexpr ((kVariant & kRough) != 0) tangent = Lanes::load(k.contacts.friction_impulse + c);
         a.template take<kVariant>(normal, tangent, nx, ny, F(-1));
         b.template take<kVariant>(normal, tangent, nx, ny, F(1));
+        if constexpr ((kVariant & kRolling) != 0) {
+            const F roll = Lanes::load(k.contacts.rolling_impulse + c), of_a = share_of<Lanes>(k, c);
+            a.record[2] -= of_a * a.template inverse_inertia<kVariant>() * roll;
+            b.record[2] += (F(1) - of_a) * b.template inverse_inertia<kVariant>() * roll;
+        }
         Lanes::store_rows4(k.velocity, row_a, a.record);
         Lanes::store_rows4(k.velocity, row_b, b.record);
     }
@@ -233,6 +286,9 @@ void warm_start_supports(const SolveContacts<Real>& k, std::size_t first, std::s
         body.template take<kVariant>(Lanes::load(k.contacts.normal_impulse + c), tangent,
                                      Lanes::load(k.contacts.normal_x + c),
                                      Lanes::load(k.contacts.normal_y + c), F(-1));
+        if constexpr ((kVariant & kRolling) != 0)
+            body.record[2] -= share_of<Lanes>(k, c) * body.template inverse_inertia<kVariant>() *
+                              Lanes::load(k.contacts.rolling_impulse + c);
         Lanes::store_rows4(k.velocity, k.contacts.a + c, body.record);
     }
 }

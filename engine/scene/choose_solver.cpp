@@ -12,21 +12,27 @@ namespace {
 constexpr double kBouncy = 0.5;
 
 bool is_rough(const Material& material) {
-    return material.friction > 0;
+    return material.friction > 0 || material.rolling_resistance > 0;
+}
+
+std::string_view roughness_of(const Material& material) {
+    return material.friction > 0 ? "friction" : "rolling resistance";
 }
 
 /// What in the scene is rough, in words; empty if nothing is.
 std::string what_is_rough(const Scene& scene) {
-    if (scene.walls && is_rough(scene.walls->material)) return "the walls have friction";
+    if (scene.walls && is_rough(scene.walls->material))
+        return join("the walls have ", roughness_of(scene.walls->material));
     const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(),
                                    [](const Body& b) { return is_rough(b.material); });
     if (body == scene.bodies.end()) return {};
-    return join("body ", body - scene.bodies.begin(), " has friction");
+    return join("body ", body - scene.bodies.begin(), " has ", roughness_of(body->material));
 }
 
 SolverChoice choose(const Scene& scene) {
     if (const std::string rough = what_is_rough(scene); !rough.empty()) return {Solver::soft, rough};
     if (scene.effects.friction == true) return {Solver::soft, "friction is forced on"};
+    if (scene.effects.rolling_resistance == true) return {Solver::soft, "rolling resistance is forced on"};
     if (scene.bodies.size() <= 1 && !scene.walls)
         return {Solver::impulse, "there is nothing to touch: free flight is exact"};
     if (scene.gravity == Vec2{})
@@ -45,8 +51,12 @@ SolverChoice choose(const Scene& scene) {
 }
 
 std::optional<Problem> find_roughness_problem(const Item& item, const Material& material, Solver solver) {
-    if (solver == Solver::soft || solver == Solver::event) return std::nullopt;
-    if (material.friction > 0)
+    if (solver == Solver::soft) return std::nullopt;
+    if (material.rolling_resistance > 0)
+        return problem(ErrorCode::inconsistent, item, "/material/rolling_resistance", "rolling resistance ",
+                       material.rolling_resistance, ", but the solver ", quoted(name_of(solver)),
+                       " has none. Use \"soft\" or \"auto\", or set it to 0.");
+    if (solver != Solver::event && material.friction > 0)
         return problem(ErrorCode::inconsistent, item, "/material/friction", "friction ", material.friction,
                        ", but the solver ", quoted(name_of(solver)),
                        " has no friction. Use \"soft\" or \"auto\", or set it to 0.");
@@ -60,11 +70,19 @@ SolverChoice choose_solver(const Scene& scene, Solver asked_for) {
     return {asked_for, "asked for"};
 }
 
+std::optional<Problem> find_solver_problem(const EffectOverrides& effects, Solver solver) {
+    if (solver == Solver::soft || effects.rolling_resistance != true) return std::nullopt;
+    return problem(ErrorCode::inconsistent, {"the scene has", "/effects", -1, ""}, "/rolling_resistance",
+                   "the effect rolling_resistance forced on, but the solver ", quoted(name_of(solver)),
+                   " does not have it. Use \"soft\" or \"auto\", or leave \"rolling_resistance\" out.");
+}
+
 std::optional<Problem> find_solver_problem(const Item& item, const Body& body, Solver solver) {
     return find_roughness_problem(item, body.material, solver);
 }
 
 std::optional<Problem> find_solver_problem(const Scene& scene, Solver solver) {
+    if (auto found = find_solver_problem(scene.effects, solver)) return found;
     if (solver == Solver::event)
         if (auto found = find_event_problem(scene)) return found;
     if (scene.walls)

@@ -20,6 +20,8 @@ SolverChoice choose_solver(const Scene& scene, Solver asked_for);
 
 /// The first thing in the scene that `solver`, as chosen, cannot do. Cost: O(bodies).
 std::optional<Problem> find_solver_problem(const Scene& scene, Solver solver);
+/// Of effects that are forced on.
+std::optional<Problem> find_solver_problem(const EffectOverrides& effects, Solver solver);
 /// The same of one body, for whoever adds it later.
 std::optional<Problem> find_solver_problem(const Item& item, const Body& body, Solver solver);
 

@@ -30,7 +30,8 @@ inline constexpr Quantity kDensity{"density", "kg/m²", kSmallestMass, kLargestM
 inline constexpr Quantity kFriction{"friction", "", 0, 1e9, "Give a Coulomb coefficient, 0 for none."};
 inline constexpr Quantity kRestitution{"restitution", "", 0, 1,
                                        "It is the normal speed after an impact over the one before."};
-inline constexpr Quantity kRollingResistance{"rolling resistance", "", 0, 1e9, "Give 0 for none."};
+inline constexpr Quantity kRollingResistance{"rolling resistance", "", 0, 1e9,
+                                             "Give the lever arm as a share of the radius, 0 for none."};
 
 inline constexpr Quantity kGravityX{"gravity x", "m/s²", -kLargestAcceleration, kLargestAcceleration,
                                     "Give accelerations in metres a second squared."};

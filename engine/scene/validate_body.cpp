@@ -91,11 +91,7 @@ std::optional<Problem> find_material_problem(const Item& item, std::string_view 
         return check(item, in("/restitution"), material.restitution, kRestitution);
     if (material.friction == 0 && material.rolling_resistance == 0) return std::nullopt;
     if (auto found = check(item, in("/friction"), material.friction, kFriction)) return found;
-    if (auto found = check(item, in("/rolling_resistance"), material.rolling_resistance, kRollingResistance))
-        return found;
-    if (material.rolling_resistance == 0) return std::nullopt;
-    return problem(ErrorCode::not_built_yet, item, in("/rolling_resistance"), "rolling resistance ",
-                   material.rolling_resistance, "; rolling resistance is not built yet. Set it to 0.");
+    return check(item, in("/rolling_resistance"), material.rolling_resistance, kRollingResistance);
 }
 
 std::optional<Problem> find_problem(const Material& material) {

@@ -44,6 +44,21 @@ bool rubs(const Body& body) {
     return body.material.friction > 0;
 }
 
+/// Forced on, it needs contacts with friction that turn bodies; forced off, no body may have any.
+std::optional<Problem> find_rolling_problem(const Scene& scene, const EffectOverrides& effects) {
+    const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(),
+                                   [](const Body& b) { return b.material.rolling_resistance > 0; });
+    const bool is_called = body != scene.bodies.end();
+    const std::string has = is_called ? join("body ", body - scene.bodies.begin(),
+                                             " with rolling resistance ", body->material.rolling_resistance)
+                                      : "rolling_resistance forced on";
+    if (effects.rolling_resistance == false && is_called) return forced_off("rolling_resistance", has);
+    if (!is_called && effects.rolling_resistance != true) return std::nullopt;
+    if (effects.friction == false) return forced_off("friction", has);
+    if (effects.rotation == false) return forced_off("rotation", has);
+    return std::nullopt;
+}
+
 std::optional<Problem> find_friction_problem(const Scene& scene, const EffectOverrides& effects) {
     if (effects.friction == true && effects.rotation == false)
         return problem(
@@ -77,7 +92,8 @@ std::optional<Problem> find_effects_problem(const Scene& scene, const EffectOver
         if (auto found = find_rotation_problem(scene.bodies)) return found;
     if (effects.restitution == false)
         if (auto found = find_restitution_problem(scene)) return found;
-    return find_friction_problem(scene, effects);
+    if (auto found = find_friction_problem(scene, effects)) return found;
+    return find_rolling_problem(scene, effects);
 }
 
 void validate_effects(const Scene& scene, const EffectOverrides& effects, std::string_view where) {

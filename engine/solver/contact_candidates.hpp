@@ -15,6 +15,7 @@ struct ContactCandidates {
     Column<std::int32_t> a, b;      // rows; b < 0 is a wall (WallSide). Padding: the row after the last body
     Column<Real> normal_impulse;    // N s, of a substep
     Column<Real> friction_impulse;  // N s
+    Column<Real> rolling_impulse;   // N s; empty without rolling resistance
     /// Colour c is [begin[c], begin[c] + count[c]); begin[c] is a multiple of kRowPadding.
     std::vector<std::size_t> begin, count;
     /// Group g has the colours [first_colour[g], first_colour[g + 1]).
@@ -40,6 +41,7 @@ struct ContactCandidates {
 
     std::size_t bytes() const {
         return a.bytes() + b.bytes() + normal_impulse.bytes() + friction_impulse.bytes() +
+               rolling_impulse.bytes() +
                (begin.capacity() + count.capacity() + first_colour.capacity()) * sizeof(std::size_t);
     }
 };

@@ -32,8 +32,13 @@ void ContactGraph<Real>::rename_rows() {
             a = now[static_cast<std::size_t>(a)];
             if (b >= 0) b = now[static_cast<std::size_t>(b)];
             if (a == RowTrail::kGone || b == RowTrail::kGone) contacts->normal_impulse[i] = 0;
-            // The impulses of a pair do not depend on the order of its bodies.
-            if (contacts == &pairs && a > b) std::swap(a, b);
+            // The impulses of a pair do not depend on the order of its bodies, but for the rolling one:
+            // spin_b - spin_a changes its sign.
+            if (contacts == &pairs && a > b) {
+                std::swap(a, b);
+                if (!contacts->rolling_impulse.empty())
+                    contacts->rolling_impulse[i] = -contacts->rolling_impulse[i];
+            }
         });
 }
 
@@ -280,6 +285,7 @@ void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const Bodies<
     const std::size_t rows = bodies.count;
     const bool is_moved = trail.has_moved();
     if (is_moved) rename_rows();
+    if (keeps_rolling) rolling_of_pairs_.file(pairs, rows), rolling_of_supports_.file(supports, rows);
     memory_.file(pairs, supports, rows, is_moved || pairs.groups() == 0 ? nullptr : &groups, executor);
 
     choose_groups(candidates, rows);
@@ -293,6 +299,7 @@ void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const Bodies<
     sort_by_colour(found_pairs_, pairs, dummy, executor);
     colour_supports(rows);
     sort_by_colour(found_supports_, supports, dummy, executor);
+    if (keeps_rolling) rolling_of_pairs_.recall(pairs), rolling_of_supports_.recall(supports);
     trail.start(rows);
 }
 
@@ -371,16 +378,22 @@ void ContactGraph<Real>::add(const Candidates<Real>& candidates, const Bodies<Re
                       });
     }
     const auto dummy = static_cast<std::int32_t>(bodies.count);
-    late_ = new_pairs_;
-    if (!late_.empty()) add_late(pairs, dummy, true);
-    late_ = new_supports_;
-    if (!late_.empty()) add_late(supports, dummy, false);
+    const auto add_to = [&](ContactCandidates<Real>& contacts, const std::vector<Late>& added,
+                            RollingMemory<Real>& rolling) {
+        if (added.empty()) return;
+        if (keeps_rolling) rolling.file(contacts, bodies.count);
+        late_ = added;
+        add_late(contacts, dummy, &contacts == &pairs);
+        if (keeps_rolling) rolling.recall(contacts);
+    };
+    add_to(pairs, new_pairs_, rolling_of_pairs_), add_to(supports, new_supports_, rolling_of_supports_);
 }
 
 template <class Real>
 std::size_t ContactGraph<Real>::bytes() const {
     return pairs.bytes() + supports.bytes() + found_pairs_.bytes() + found_supports_.bytes() +
-           memory_.bytes() + colours_of_[0].bytes() + colours_of_[1].bytes() + trail.bytes() +
+           memory_.bytes() + rolling_of_pairs_.bytes() + rolling_of_supports_.bytes() +
+           colours_of_[0].bytes() + colours_of_[1].bytes() + trail.bytes() +
            (listed_a_.capacity() + listed_b_.capacity()) * sizeof(std::int32_t) +
            (piece_counts_.capacity() + colour_counts_.capacity()) * sizeof(std::uint32_t);
 }

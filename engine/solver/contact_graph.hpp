@@ -8,6 +8,7 @@
 #include "solver/contact_candidates.hpp"
 #include "solver/contact_groups.hpp"
 #include "solver/contact_memory.hpp"
+#include "solver/rolling_memory.hpp"
 #include "solver/row_trail.hpp"
 #include "state/bodies.hpp"
 
@@ -32,6 +33,7 @@ class ContactGraph {
     /// Cost: O(contacts of those groups) if there are any.
     void add(const Candidates<Real>& candidates, const Bodies<Real>& bodies, const Walls* walls);
 
+    bool keeps_rolling = false;     ///< rolling impulses, too
     RowTrail trail;                 ///< to be told of rows that change between renewals
     ContactGroups groups;           ///< of the last renewal
     ContactCandidates<Real> pairs;  ///< of two bodies that move, a < b
@@ -91,6 +93,7 @@ class ContactGraph {
     std::vector<std::uint32_t> colour_counts_;  // by group and colour
     std::vector<std::size_t> next_;             // place of each group's next contact without a colour
     ContactMemory<Real> memory_;
+    RollingMemory<Real> rolling_of_pairs_, rolling_of_supports_;
 };
 
 extern template class ContactGraph<float>;

@@ -26,6 +26,17 @@ void LiveContacts<Real>::resize(const ContactCandidates<Real>& candidates, bool 
 }
 
 template <class Real>
+void LiveContacts<Real>::resize_rolling(bool is_rolling, bool coefficient_varies, bool radius_varies) {
+    const bool is_support = b.empty();
+    const auto fit = [this](auto& column, bool is_used) {
+        column.resize_for_overwrite(is_used ? a.size() : 0);
+    };
+    fit(rolling_impulse, is_rolling), fit(rolling, is_rolling && coefficient_varies);
+    fit(rolling_share, is_rolling && radius_varies), fit(surface_rolling, is_rolling && is_support);
+    fit(bounce_rolling, is_rolling && !bounce_impulse.empty());
+}
+
+template <class Real>
 ContactColumns<Real> LiveContacts<Real>::columns() {
     const auto data = [](auto& column) { return column.empty() ? nullptr : column.data(); };
     return {a.data(),
@@ -40,16 +51,22 @@ ContactColumns<Real> LiveContacts<Real>::columns() {
             floor.data(),
             data(largest_impulse),
             data(surface_normal),
-            data(surface_tangent)};
+            data(surface_tangent),
+            data(rolling_impulse),
+            data(rolling),
+            data(rolling_share),
+            data(surface_rolling)};
 }
 
 template <class Real>
 std::size_t LiveContacts<Real>::bytes() const {
     std::size_t bytes = a.bytes() + b.bytes() + candidate.bytes();
     for (const Column<Real>* column :
-         {&normal_x, &normal_y, &separation, &mass, &normal_impulse, &friction_impulse, &friction, &floor,
-          &largest_impulse, &surface_normal, &surface_tangent, &approach, &bounce_impulse, &bounce_friction,
-          &spare})
+         {&normal_x,        &normal_y,         &separation,      &mass,
+          &normal_impulse,  &friction_impulse, &friction,        &floor,
+          &largest_impulse, &surface_normal,   &surface_tangent, &approach,
+          &bounce_impulse,  &bounce_friction,  &spare,           &rolling_impulse,
+          &rolling,         &rolling_share,    &surface_rolling, &bounce_rolling})
         bytes += column->bytes();
     return bytes;
 }
@@ -64,7 +81,8 @@ void LiveContacts<Real>::pad(std::size_t first, std::size_t contacts, std::int32
     fill(a, dummy), fill(b, dummy), fill(candidate, -1);
     for (Column<Real>* column :
          {&normal_x, &normal_y, &separation, &mass, &normal_impulse, &friction_impulse, &friction, &floor,
-          &largest_impulse, &surface_normal, &surface_tangent, &approach, &bounce_impulse, &bounce_friction})
+          &largest_impulse, &surface_normal, &surface_tangent, &approach, &bounce_impulse, &bounce_friction,
+          &rolling_impulse, &rolling, &rolling_share, &surface_rolling, &bounce_rolling})
         fill(*column, Real(0));
 }
 
@@ -89,7 +107,8 @@ std::size_t LiveContacts<Real>::close_colour(std::size_t colour, std::size_t fir
         move(a), move(b), move(candidate);
         for (Column<Real>* column :
              {&normal_x, &normal_y, &separation, &mass, &normal_impulse, &friction_impulse, &friction,
-              &approach, &surface_normal, &surface_tangent})
+              &approach, &surface_normal, &surface_tangent, &rolling_impulse, &rolling, &rolling_share,
+              &surface_rolling})
             move(*column);
     }
     for (std::size_t i = 0; i < contacts; ++i) pad(first + kRowPadding * i, 1, dummy);

@@ -18,10 +18,13 @@ struct LiveContacts {
     Column<std::int32_t> candidate;  // number among the candidates
     Column<Real> approach;           // m/s, relative normal velocity at the start of the step
     Column<Real> bounce_impulse, bounce_friction, spare;
+    Column<Real> rolling_impulse, rolling, rolling_share, surface_rolling, bounce_rolling;
     std::vector<std::size_t> begin, count;  // of each colour
 
     void resize(const ContactCandidates<Real>& candidates, bool is_support, bool is_rough,
                 bool friction_varies, bool bounces);
+    /// The columns of rolling resistance; none of them without it. After `resize`.
+    void resize_rolling(bool is_rolling, bool coefficient_varies, bool radius_varies);
     ContactColumns<Real> columns();
     std::size_t bytes() const;
 

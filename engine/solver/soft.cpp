@@ -43,7 +43,8 @@ void SoftSolver<Real>::derive_masses(const Bodies<Real>& bodies) {
 
 template <class Real>
 const ContactKernels<Real>& SoftSolver<Real>::contact_kernels() const {
-    return kernels_->contacts[is_rough_ ? (some_are_fixed_ ? 2 : 1) : 0];
+    if (!is_rough_) return kernels_->contacts[0];
+    return kernels_->contacts[(rolls_ ? 3u : 1u) + (some_are_fixed_ ? 1u : 0u)];
 }
 
 template <class Real>
@@ -58,6 +59,9 @@ void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Colum
     friction_varies_ = is_rough_ && !bodies.friction.is_uniform();
     uniform_friction_ =
         bodies.friction.is_uniform() ? static_cast<double>(bodies.friction.uniform_value()) : 0;
+    rolls_ = world.effects.rolling_resistance;
+    rolling_varies_ = rolls_ && !bodies.rolling_resistance.is_uniform();
+    uniform_rolling_ = static_cast<double>(bodies.rolling_resistance.uniform_value());
     derive_masses(bodies);
     const FlightClock clock = flight_clock_at(h, world.drag.linear);
     gain_ = clock.s * gravity, decay_ = clock.u;
@@ -93,6 +97,7 @@ SolveContacts<Real> SoftSolver<Real>::arguments(LiveContacts<Real>& live) {
     k.contacts = live.columns();
     k.velocity = velocity_.data(), k.displacement = displacement_.data();
     k.uniform_friction = static_cast<Real>(uniform_friction_);
+    k.uniform_rolling = static_cast<Real>(uniform_rolling_);
     k.inverse_h = static_cast<Real>(1 / h_), k.h = static_cast<Real>(h_);
     k.elapsed = static_cast<Real>(elapsed_);
     k.recovery = static_cast<Real>(kRecovery), k.push = static_cast<Real>(push_);
@@ -118,6 +123,9 @@ void SoftSolver<Real>::find_group(const FindContacts<Real>& all, std::size_t gro
             *column += place;
         if (to.friction_impulse) to.friction_impulse += place;
         if (to.friction) to.friction += place;
+        if (rolls_) k.rolling_impulse = candidates.rolling_impulse.data() + begin;
+        for (Real** column : {&to.rolling_impulse, &to.rolling, &to.rolling_share})
+            if (*column) *column += place;
         k.candidate = pairs_.candidate.data() + place;
         k.approach = bounces_ ? pairs_.approach.data() + place : nullptr;
         std::size_t count = find(k, 0, padded(candidates.count[c]));
@@ -131,12 +139,14 @@ void SoftSolver<Real>::find_group(const FindContacts<Real>& all, std::size_t gro
 template <class Real>
 void SoftSolver<Real>::find_pairs(const Bodies<Real>& bodies, const Column<Real>& motion) {
     pairs_.resize(graph.pairs, false, is_rough_, friction_varies_, bounces_);
+    pairs_.resize_rolling(rolls_, rolling_varies_, !bodies.radius.is_uniform());
     FindContacts<Real> all{};
     all.motion = motion.data();
     all.radius = bodies.radius.data(), all.uniform_radius = bodies.radius.uniform_value();
     all.inverse_mass = masses_vary_ ? inverse_mass_.data() : nullptr;
     all.uniform_inverse_mass = bodies.count > 0 ? static_cast<Real>(bodies.inverse_mass(0)) : Real(0);
     all.friction = friction_varies_ ? bodies.friction.data() : nullptr;
+    all.rolling = rolling_varies_ ? bodies.rolling_resistance.data() : nullptr;
     all.dt = static_cast<Real>(dt_), all.near = static_cast<Real>(near_);
     const double work = kNanosecondsToFind * static_cast<double>(graph.pairs.a.size());
     executor_->for_each_task(graph.groups.count(), work, [&](std::size_t group) { find_group(all, group); });
@@ -149,7 +159,8 @@ void SoftSolver<Real>::keep_forces(ContactCandidates<Real>& candidates) const {
     if (h_ == impulses_of_h_) return;
     const double ratio = impulses_of_h_ > 0 ? h_ / impulses_of_h_ : 0;
     const auto kept = static_cast<Real>(are_impulses_known_ ? ratio : 0);
-    for (Column<Real>* impulses : {&candidates.normal_impulse, &candidates.friction_impulse})
+    for (Column<Real>* impulses :
+         {&candidates.normal_impulse, &candidates.friction_impulse, &candidates.rolling_impulse})
         for (Real& impulse : *impulses) impulse *= kept;
 }
 
@@ -248,6 +259,7 @@ void SoftSolver<Real>::keep_impulses(const LiveContacts<Real>& live,
             candidates.normal_impulse[candidate] = live.normal_impulse[i];
             if (!live.friction_impulse.empty())
                 candidates.friction_impulse[candidate] = live.friction_impulse[i];
+            if (rolls_) candidates.rolling_impulse[candidate] = live.rolling_impulse[i];
         });
     });
 }

@@ -97,10 +97,9 @@ class SoftSolver {
     double impact_speed(const LiveContacts<Real>& live, std::size_t contact) const;
     void bounce();
     void book_bounces(Books& books) const;
-    void book_pairs(const Column<Real>& normal, const Column<Real>& friction, const Column<Real>& from,
-                    Books& books) const;
-    void book_supports(const Column<Real>& normal, const Column<Real>& friction, const Column<Real>& from,
-                       Books& books) const;
+    struct Impulses;
+    void book_pairs(const Impulses& impulses, const Column<Real>& from, Books& books) const;
+    void book_supports(const Impulses& impulses, const Column<Real>& from, Books& books) const;
     void book_free_flight(const WorldState<Real>& world, Books& books);
     double change_of_bounces(LiveContacts<Real>& live) const;
 
@@ -112,8 +111,8 @@ class SoftSolver {
     Vec2 gain_;
     double decay_ = 1, spin_decay_ = 1;
     bool is_rough_ = false, turns_ = false, some_are_fixed_ = false, bounces_ = false;
-    bool friction_varies_ = false;
-    double uniform_friction_ = 0;
+    bool friction_varies_ = false, rolls_ = false, rolling_varies_ = false;
+    double uniform_friction_ = 0, uniform_rolling_ = 0;
 
     bool masses_are_known_ = false;
     bool masses_vary_ = false;

@@ -29,9 +29,15 @@ MeanTwice mean_twice(const Column<Real>& from, const Column<Real>& to, std::int3
 
 }  // namespace
 
+/// Of the contacts of one kind.
 template <class Real>
-void SoftSolver<Real>::book_pairs(const Column<Real>& normal, const Column<Real>& friction,
-                                  const Column<Real>& from, Books& books) const {
+struct SoftSolver<Real>::Impulses {
+    const Column<Real>&normal, &friction, &rolling;
+};
+
+template <class Real>
+void SoftSolver<Real>::book_pairs(const Impulses& impulses, const Column<Real>& from, Books& books) const {
+    const auto& [normal, friction, rolling] = impulses;
     pairs_.for_each([&](std::size_t i) {
         const Vec2 n{pairs_.normal_x[i], pairs_.normal_y[i]};
         const MeanTwice a = mean_twice(from, velocity_, pairs_.a[i]),
@@ -40,12 +46,16 @@ void SoftSolver<Real>::book_pairs(const Column<Real>& normal, const Column<Real>
         books.restitution += 0.5 * static_cast<double>(normal[i]) * dot(v, n);
         if (!friction.empty())
             books.friction += 0.5 * static_cast<double>(friction[i]) * (cross(n, v) - a.rim - b.rim);
+        if (rolling.empty()) return;
+        const double share =
+            pairs_.rolling_share.empty() ? 0.5 : static_cast<double>(pairs_.rolling_share[i]);
+        books.friction += 0.5 * static_cast<double>(rolling[i]) * ((1 - share) * b.rim - share * a.rim);
     });
 }
 
 template <class Real>
-void SoftSolver<Real>::book_supports(const Column<Real>& normal, const Column<Real>& friction,
-                                     const Column<Real>& from, Books& books) const {
+void SoftSolver<Real>::book_supports(const Impulses& impulses, const Column<Real>& from, Books& books) const {
+    const auto& [normal, friction, rolling] = impulses;
     supports_.for_each([&](std::size_t i) {
         const Vec2 n{supports_.normal_x[i], supports_.normal_y[i]}, t{-n.y, n.x};
         const double jn = normal[i], jt = friction.empty() ? 0 : static_cast<double>(friction[i]);
@@ -59,6 +69,10 @@ void SoftSolver<Real>::book_supports(const Column<Real>& normal, const Column<Re
         books.restitution += jn * (surface_n - 0.5 * dot(body.v, n));
         books.friction += jt * (surface_t - 0.5 * (dot(body.v, t) + body.rim));
         books.drive -= jn * surface_n + jt * surface_t;
+        if (rolling.empty()) return;
+        const double jr = rolling[i], surface_r = supports_.surface_rolling[i];
+        books.friction += jr * (surface_r - 0.5 * static_cast<double>(supports_.rolling_share[i]) * body.rim);
+        books.drive -= jr * surface_r;
     });
 }
 
@@ -83,16 +97,21 @@ void SoftSolver<Real>::book_free_flight(const WorldState<Real>& world, Books& bo
 
 template <class Real>
 void SoftSolver<Real>::book_substep(const WorldState<Real>& world, Books& books) {
-    book_supports(supports_.normal_impulse, supports_.friction_impulse, start_velocity_, books);
+    book_supports({supports_.normal_impulse, supports_.friction_impulse, supports_.rolling_impulse},
+                  start_velocity_, books);
     if (!books.is_open) return;
-    book_pairs(pairs_.normal_impulse, pairs_.friction_impulse, start_velocity_, books);
+    book_pairs({pairs_.normal_impulse, pairs_.friction_impulse, pairs_.rolling_impulse}, start_velocity_,
+               books);
     book_free_flight(world, books);
 }
 
 template <class Real>
 void SoftSolver<Real>::book_bounces(Books& books) const {
-    book_supports(supports_.bounce_impulse, supports_.bounce_friction, before_bounce_, books);
-    if (books.is_open) book_pairs(pairs_.bounce_impulse, pairs_.bounce_friction, before_bounce_, books);
+    book_supports({supports_.bounce_impulse, supports_.bounce_friction, supports_.bounce_rolling},
+                  before_bounce_, books);
+    if (books.is_open)
+        book_pairs({pairs_.bounce_impulse, pairs_.bounce_friction, pairs_.bounce_rolling}, before_bounce_,
+                   books);
 }
 
 template <class Real>
@@ -110,15 +129,11 @@ void SoftSolver<Real>::book_displacements(const WorldState<Real>& world, const C
     gravity_work_ = 0;
 }
 
-template void SoftSolver<float>::book_pairs(const Column<float>&, const Column<float>&, const Column<float>&,
-                                            Books&) const;
-template void SoftSolver<float>::book_supports(const Column<float>&, const Column<float>&,
-                                               const Column<float>&, Books&) const;
+template void SoftSolver<float>::book_pairs(const Impulses&, const Column<float>&, Books&) const;
+template void SoftSolver<float>::book_supports(const Impulses&, const Column<float>&, Books&) const;
 template void SoftSolver<float>::book_free_flight(const WorldState<float>&, Books&);
-template void SoftSolver<double>::book_pairs(const Column<double>&, const Column<double>&,
-                                             const Column<double>&, Books&) const;
-template void SoftSolver<double>::book_supports(const Column<double>&, const Column<double>&,
-                                                const Column<double>&, Books&) const;
+template void SoftSolver<double>::book_pairs(const Impulses&, const Column<double>&, Books&) const;
+template void SoftSolver<double>::book_supports(const Impulses&, const Column<double>&, Books&) const;
 template void SoftSolver<double>::book_free_flight(const WorldState<double>&, Books&);
 template void SoftSolver<float>::book_substep(const WorldState<float>&, Books&);
 template void SoftSolver<double>::book_substep(const WorldState<double>&, Books&);

@@ -83,11 +83,13 @@ double SoftSolver<Real>::change_of_bounces(LiveContacts<Real>& live) const {
 template <class Real>
 void SoftSolver<Real>::bounce() {
     const auto arguments_for = [&](LiveContacts<Real>& live) {
-        for (Column<Real>* column : {&live.bounce_impulse, &live.bounce_friction, &live.spare})
+        for (Column<Real>* column :
+             {&live.bounce_impulse, &live.bounce_friction, &live.bounce_rolling, &live.spare})
             std::fill(column->begin(), column->end(), Real(0));
         SolveContacts<Real> k = arguments(live);
         k.contacts.normal_impulse = live.bounce_impulse.data();
         k.contacts.friction_impulse = live.bounce_friction.data();
+        k.contacts.rolling_impulse = live.bounce_rolling.data();
         k.contacts.largest_impulse = nullptr;
         return k;
     };

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "effects/friction.hpp"
+#include "effects/rolling_resistance.hpp"
 #include "math/vec2_math.hpp"
 #include "solver/flights.hpp"
 
@@ -15,7 +16,9 @@ struct Surface {
     Vec2 normal;        // from the body into the support
     double separation;  // m
     Vec2 velocity;      // m/s, of the surface
-    double friction, restitution;
+    double friction, rolling;
+    double rolling_share;     // of the body's rim speed in the rolling velocity
+    double rolling_velocity;  // m/s, the support's share of it
 };
 
 template <class Real>
@@ -27,7 +30,9 @@ Surface surface_of(const WorldState<Real>& world, std::size_t row, std::int32_t 
         const Walls& walls = *world.walls;
         const Vec2 n = Flights<Real>::wall_normal(support);
         const Vec2 corner = support == kLeft || support == kBottom ? walls.min : walls.max;
-        return {n, dot(corner - x, n) - radius, {}, walls.material.friction, walls.material.restitution};
+        return {
+            n, dot(corner - x, n) - radius, {}, walls.material.friction, walls.material.rolling_resistance, 1,
+            0};
     }
     const auto other = static_cast<std::size_t>(support);
     const Vec2 d = Vec2{bodies.position_x[other], bodies.position_y[other]} - x;
@@ -35,12 +40,16 @@ Surface surface_of(const WorldState<Real>& world, std::size_t row, std::int32_t 
     const Vec2 n = distance > 0 ? (1 / distance) * d : Vec2{0, -1};
     const double support_radius = bodies.radius[other];
     Vec2 velocity{bodies.velocity_x[other], bodies.velocity_y[other]};
-    if (bodies.has_rotation) {
-        const double rim = bodies.angular_velocity[other] * support_radius;
-        velocity += rim * Vec2{n.y, -n.x};  // spin times the arm -r n
-    }
-    return {n, distance - radius - support_radius, velocity, bodies.friction[other],
-            bodies.restitution[other]};
+    const double rim = bodies.has_rotation ? bodies.angular_velocity[other] * support_radius : 0;
+    if (bodies.has_rotation) velocity += rim * Vec2{n.y, -n.x};  // spin times the arm -r n
+    const double share = rolling_share(radius, support_radius);
+    return {n,
+            distance - radius - support_radius,
+            velocity,
+            bodies.friction[other],
+            bodies.rolling_resistance[other],
+            share,
+            (1 - share) * rim};
 }
 
 }  // namespace
@@ -50,6 +59,7 @@ void SoftSolver<Real>::find_supports(const WorldState<Real>& world) {
     ContactCandidates<Real>& candidates = graph.supports;
     const Bodies<Real>& bodies = world.bodies;
     supports_.resize(candidates, true, is_rough_, is_rough_, bounces_);
+    supports_.resize_rolling(rolls_, true, true);
     const auto real = [](double value) { return static_cast<Real>(value); };
     for (std::size_t group = 0, place = 0, c = 0; c < candidates.colours(); ++c) {
         while (c >= candidates.first_colour[group + 1]) ++group;
@@ -77,6 +87,13 @@ void SoftSolver<Real>::find_supports(const WorldState<Real>& world) {
             if (is_rough_) {
                 supports_.friction_impulse[at] = candidates.friction_impulse[i];
                 supports_.friction[at] = real(pair_friction(bodies.friction[row], s.friction));
+            }
+            if (rolls_) {
+                supports_.rolling_impulse[at] = candidates.rolling_impulse[i];
+                supports_.rolling[at] =
+                    real(pair_rolling_resistance(bodies.rolling_resistance[row], s.rolling));
+                supports_.rolling_share[at] = real(s.rolling_share);
+                supports_.surface_rolling[at] = real(s.rolling_velocity);
             }
             if (bounces_) supports_.approach[at] = real(dot(dv, s.normal));
             supports_.candidate[at] = static_cast<std::int32_t>(i);

@@ -10,6 +10,7 @@ void begin_substeps(Simulation<Real>& sim) {
 
 template <class Real>
 void update_contacts(Simulation<Real>& sim) {
+    sim.soft.graph.keeps_rolling = sim.world.effects.rolling_resistance;
     const Walls* walls = sim.world.walls ? &*sim.world.walls : nullptr;
     if (sim.graph_of_rebuild == sim.candidates.rebuild_count())
         sim.soft.graph.add(sim.candidates, sim.world.bodies, walls);

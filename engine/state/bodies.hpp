@@ -54,6 +54,7 @@ struct Bodies {
     Property<Real> radius;                 // m
     Property<Real> restitution;            // no unit
     Property<Real> friction;               // Coulomb coefficient
+    Property<Real> rolling_resistance;     // coefficient
     bool has_rotation = false;
     bool has_flags = false;
 
@@ -76,6 +77,7 @@ struct Bodies {
         if (!radius.is_uniform()) fn("radius", "m", radius.column());
         if (!restitution.is_uniform()) fn("restitution", "1", restitution.column());
         if (!friction.is_uniform()) fn("friction", "1", friction.column());
+        if (!rolling_resistance.is_uniform()) fn("rolling_resistance", "1", rolling_resistance.column());
         if (has_flags) fn("flags", "bits", flags);
     }
 

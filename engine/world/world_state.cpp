@@ -59,6 +59,7 @@ BodyId WorldState<Real>::append(const Body& body) {
     bodies.radius.set(row, bodies.count, real(radius));
     bodies.restitution.set(row, bodies.count, real(body.material.restitution));
     bodies.friction.set(row, bodies.count, real(body.material.friction));
+    bodies.rolling_resistance.set(row, bodies.count, real(body.material.rolling_resistance));
     if (body.type == BodyType::dynamic_body) {
         bodies.mass.set(row, bodies.count, real(mass));
         bodies.set_flags(row, body.fixed_rotation && effects.friction ? kFixedAngle : 0);

@@ -22,6 +22,7 @@ struct Effects {
     bool restitution = false;
     bool rotation = false;
     bool friction = false;
+    bool rolling_resistance = false;
     bool ledger = false;
 };
 

@@ -89,8 +89,17 @@ Scene rough_sizes() {
     return scene;
 }
 
+Scene rolling_sizes() {
+    Scene scene = rough_sizes();
+    scene.name = "rolling sizes";
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+        scene.bodies[i].material.rolling_resistance = i % 5 == 0 ? 0.3 : 0.05;
+    return scene;
+}
+
 std::vector<Scene> scenes() {
-    return {gas(400, {0.5, 0.5}, 1), falling_sizes(), moving_obstacles(), stack_at_rest(), rough_sizes()};
+    return {rolling_sizes(),    gas(400, {0.5, 0.5}, 1), falling_sizes(),
+            moving_obstacles(), stack_at_rest(),         rough_sizes()};
 }
 
 template <class Real>
@@ -112,6 +121,7 @@ constexpr Golden kGolden[] = {
     {"moving obstacles", 0x9450532e75523df8, 0x81f8d27062c9d725},
     {"stack at rest", 0xa436021f760768ad, 0xfd75b447dc578a50},
     {"rough sizes", 0xc31f3ee70a450744, 0x281b7029149102b6},
+    {"rolling sizes", 0x3343f0505bfc42d4, 0x505efa41574eeecf},
 };
 
 }  // namespace
@@ -169,6 +179,7 @@ TEST_SUITE("determinism/same bits") {
             WorldOptions on{.threads = 1};
             on.effects.gravity = on.effects.drag = on.effects.rotation = on.effects.restitution = true;
             on.effects.ledger = true;
+            if (scene.name == "rough sizes") on.effects.rolling_resistance = true;
             CHECK(hash_after<Real>(scene, kSteps, on) == hash_after<Real>(scene, kSteps, {.threads = 1}));
         }
     }

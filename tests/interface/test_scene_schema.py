@@ -102,6 +102,7 @@ VALID = [
     scene(materials={}),
     scene(materials={"rubber": {"density": 2, "friction": 0, "restitution": 0.8, "rolling_resistance": 0}}),
     scene(materials={"rubber": {"friction": 0.5}}),
+    body(material={"rolling_resistance": 0.01}),
     scene(materials={"a/b~c": {}}, default_material="a/b~c"),
     scene(default_material={"restitution": 1}),
     scene(bodies=[]),
@@ -148,13 +149,13 @@ VALID = [
     scene(effects={}),
     scene(effects={"sleep": False, "continuous": True, "ledger": True}),
     scene(effects={"gravity": False, "drag": True, "rotation": True, "restitution": False}),
+    scene(effects={"friction": True, "rolling_resistance": True}),
     scene(record={"every": 1, "trail": 80}),
     scene(record={}),
 ]
 
 # Valid for the schema; the reader says that the part is not built yet.
 NOT_BUILT_YET = [
-    body(material={"rolling_resistance": 0.01}),
     body(shape={"box": {"width": 1, "height": 2}}),
     body(shape={"capsule": {"length": 1, "radius": 0.2}}),
     body(shape={"polygon": {"vertices": [[0, 0], [1, 0], [0, 1]], "radius": 0.1}}),

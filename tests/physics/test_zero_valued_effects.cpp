@@ -32,6 +32,7 @@ bool has(Solver solver, const PricedEffect& effect) {
     const auto forces = [&](tool::Wish wish) {
         return std::find(effect.wishes.begin(), effect.wishes.end(), wish) != effect.wishes.end();
     };
+    if (solver != Solver::soft && forces(&EffectOverrides::rolling_resistance)) return false;
     if (solver == Solver::impulse) return !forces(&EffectOverrides::friction);
     if (solver == Solver::event) return !forces(&EffectOverrides::drag);
     return true;
@@ -51,6 +52,7 @@ Scene scene_of_everything(Solver solver) {
         Body& body = scene.bodies[i];
         body.angular_velocity = static_cast<double>(i % 7) - 3;
         if (solver != Solver::impulse) body.material.friction = 0.1 * static_cast<double>(i % 5);
+        if (solver == Solver::soft) body.material.rolling_resistance = 0.05 * static_cast<double>(i % 3);
     }
     scene.bodies[3].type = BodyType::static_body;
     scene.bodies[3].velocity = {}, scene.bodies[3].angular_velocity = 0;

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -27,6 +28,13 @@ inline EffectOverrides all_effects() {
             .friction = true};
 }
 
+/// Those, and what only a solver with rough contacts has.
+inline EffectOverrides all_rough_effects() {
+    EffectOverrides effects = all_effects();
+    effects.rolling_resistance = true;
+    return effects;
+}
+
 inline double dynamic_mass(const Scene& scene) {  // kg
     double mass = 0;
     for (const Body& body : scene.bodies)
@@ -37,6 +45,11 @@ inline double dynamic_mass(const Scene& scene) {  // kg
     return mass;
 }
 
+inline bool has_friction(const Scene& scene) {
+    return std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                       [](const Body& body) { return body.material.friction > 0; });
+}
+
 /// A scene stepped twice side by side: with the effects it calls for alone, and with all effects on, those it
 /// does not call for with the value zero. Both must have the same bits, and the second one's books must
 /// close.
@@ -44,7 +57,9 @@ template <class Real>
 class Trial {
   public:
     explicit Trial(const Scene& scene, WorldOptions options = {})
-        : world(scene, options), all_on(scene, with_all_effects(options)), mass_(dynamic_mass(scene)) {}
+        : world(scene, options),
+          all_on(scene, with_all_effects(options, world.plan().solver == "soft" && has_friction(scene))),
+          mass_(dynamic_mass(scene)) {}
 
     void step(double dt) {
         world.step(dt);
@@ -68,8 +83,8 @@ class Trial {
     BasicWorld<Real> all_on;
 
   private:
-    static WorldOptions with_all_effects(WorldOptions options) {
-        options.effects = all_effects();
+    static WorldOptions with_all_effects(WorldOptions options, bool is_rough) {
+        options.effects = is_rough ? all_rough_effects() : all_effects();
         return options;
     }
     double mass_;

@@ -19,7 +19,7 @@ struct EffectName {
     std::optional<bool> EffectOverrides::*wish;
 };
 
-constexpr std::array<EffectName, 8> kEffects{{
+constexpr std::array<EffectName, 9> kEffects{{
     {"sleep", &EffectOverrides::sleep},
     {"continuous", &EffectOverrides::continuous},
     {"ledger", &EffectOverrides::ledger},
@@ -28,6 +28,7 @@ constexpr std::array<EffectName, 8> kEffects{{
     {"rotation", &EffectOverrides::rotation},
     {"restitution", &EffectOverrides::restitution},
     {"friction", &EffectOverrides::friction},
+    {"rolling_resistance", &EffectOverrides::rolling_resistance},
 }};
 
 constexpr int kMostThreads = 1024;

@@ -133,8 +133,8 @@ const std::vector<Fault> kBodyFaults{
         "friction without a number", [](Body& b) { b.material.friction = kNaN; }, ErrorCode::not_finite,
         "/material/friction", "has friction nan"),
     of_ball(
-        "rolling resistance", [](Body& b) { b.material.rolling_resistance = 0.1; }, ErrorCode::not_built_yet,
-        "/material/rolling_resistance", "rolling resistance is not built yet"),
+        "negative rolling resistance", [](Body& b) { b.material.rolling_resistance = -0.1; },
+        ErrorCode::out_of_range, "/material/rolling_resistance", "has rolling resistance -0.1"),
     of_ball(
         "moving static body", [](Body& b) { b.type = BodyType::static_body; }, ErrorCode::inconsistent,
         "/velocity", "has velocity [3, 0] m/s but is static"),
@@ -212,6 +212,37 @@ const std::vector<Fault> kSettingFaults{
      },
      ErrorCode::inconsistent, "/bodies/1/material/friction",
      "friction 0.5, but the solver \"impulse\" has no friction. Use \"soft\" or \"auto\""},
+    {"rolling resistance that the solver has not",
+     [](Scene& s) {
+         s.accuracy.solver = Solver::impulse;
+         s.bodies[1].material.rolling_resistance = 0.5;
+     },
+     ErrorCode::inconsistent, "/bodies/1/material/rolling_resistance",
+     "rolling resistance 0.5, but the solver \"impulse\" has none. Use \"soft\" or \"auto\""},
+    {"rolling resistance of the walls that the solver has not",
+     [](Scene& s) {
+         s.accuracy.solver = Solver::event;
+         s.drag = {};
+         s.walls->material.rolling_resistance = 0.5;
+     },
+     ErrorCode::inconsistent, "/walls/material/rolling_resistance",
+     "rolling resistance 0.5, but the solver \"event\" has none"},
+    {"rolling resistance forced on where the solver has it not",
+     [](Scene& s) {
+         s.accuracy.solver = Solver::impulse;
+         s.effects.rolling_resistance = true;
+     },
+     ErrorCode::inconsistent, "/effects/rolling_resistance",
+     "forced on, but the solver \"impulse\" does not have it. Use \"soft\""},
+    {"rolling resistance forced off",
+     [](Scene& s) {
+         s.bodies[1].material.rolling_resistance = 0.5;
+         s.effects.rolling_resistance = false;
+     },
+     ErrorCode::inconsistent, "/effects/rolling_resistance", "body 1 with rolling resistance 0.5"},
+    {"rolling resistance without friction",
+     [](Scene& s) { s.effects.friction = false, s.effects.rolling_resistance = true; },
+     ErrorCode::inconsistent, "/effects/friction", "rolling_resistance forced on"},
     {"solver rattle", [](Scene& s) { s.accuracy.solver = Solver::rattle; }, ErrorCode::not_built_yet,
      "/accuracy/solver", "solver \"rattle\""},
     {"drag with solver event", [](Scene& s) { s.accuracy.solver = Solver::event; }, ErrorCode::inconsistent,

@@ -21,6 +21,9 @@ void without_restitution(Scene& scene) {
 void without_friction(Scene& scene) {
     change_materials(scene, [](Material& material) { material.friction = 0; });
 }
+void without_rolling_resistance(Scene& scene) {
+    change_materials(scene, [](Material& material) { material.rolling_resistance = 0; });
+}
 /// Friction turns bodies, so it goes with what it turns.
 void without_turns(Scene& scene) {
     without_friction(scene);
@@ -74,6 +77,13 @@ const std::vector<PricedEffect>& priced_effects() {
          "a friction coefficient above zero",
          &without_turns,
          "no friction, angle or spin"},
+        {"rolling_resistance",
+         {&E::rolling_resistance},
+         {&E::rotation, &E::friction},
+         "a moment against rolling, on top of friction, which it needs",
+         "a rolling resistance above zero",
+         &without_rolling_resistance,
+         "every rolling resistance zero"},
         {"ledger",
          {&E::ledger},
          {},

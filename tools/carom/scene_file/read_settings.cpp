@@ -73,8 +73,9 @@ void read_accuracy(const Node& node, Accuracy& accuracy) {
 }
 
 void read_effects(const Node& node, EffectOverrides& effects) {
-    static constexpr std::array<std::string_view, 8> kKeys{"sleep", "continuous", "ledger",      "gravity",
-                                                           "drag",  "rotation",   "restitution", "friction"};
+    static constexpr std::array<std::string_view, 9> kKeys{"sleep",       "continuous", "ledger",
+                                                           "gravity",     "drag",       "rotation",
+                                                           "restitution", "friction",   "rolling_resistance"};
     node.expect_keys(kKeys);
     node.read("sleep", effects.sleep);
     node.read("continuous", effects.continuous);
@@ -84,6 +85,7 @@ void read_effects(const Node& node, EffectOverrides& effects) {
     node.read("rotation", effects.rotation);
     node.read("restitution", effects.restitution);
     node.read("friction", effects.friction);
+    node.read("rolling_resistance", effects.rolling_resistance);
 }
 
 void read_record(const Node& node, Record& record) {

@@ -40,6 +40,9 @@ void check_bodies(const Scene& scene) {
         if (body.material.friction > 0)
             refuse(ErrorCode::inconsistent, label(scene, i), " has friction ", body.material.friction,
                    "; the naive engine has none. ", kRemedy);
+        if (body.material.rolling_resistance > 0)
+            refuse(ErrorCode::inconsistent, label(scene, i), " has rolling resistance ",
+                   body.material.rolling_resistance, "; the naive engine has none. ", kRemedy);
         if (body.material.restitution != scene.bodies[0].material.restitution)
             refuse(ErrorCode::inconsistent, label(scene, i), " has restitution ", body.material.restitution,
                    " and body 0 has ", scene.bodies[0].material.restitution,
