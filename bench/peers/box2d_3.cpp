@@ -14,18 +14,19 @@ b2Vec2 as_b2(Vec2 v) {
 
 class Box2d3Peer : public Peer {
   public:
-    explicit Box2d3Peer(const BenchScene& bench) {
+    Box2d3Peer(const BenchScene& bench, const PeerSettings& settings)
+        : substeps_(settings.substeps > 0 ? settings.substeps : kSubsteps), keeps_counts_(settings.counts) {
         b2WorldDef definition = b2DefaultWorldDef();
         definition.gravity = as_b2(bench.scene.gravity);
         definition.enableSleep = false;
-        definition.enableContinuous = false;
+        definition.enableContinuous = settings.for_errors;
         definition.restitutionThreshold = 0;  // slow impacts bounce too
         definition.workerCount = 1;
         world_ = b2CreateWorld(&definition);
         if (bench.scene.walls) {
             const b2BodyDef walls = b2DefaultBodyDef();
-            add_blocks(b2CreateBody(world_, &walls), wall_blocks(*bench.scene.walls),
-                       bench.scene.walls->material);
+            walls_ = b2CreateBody(world_, &walls);
+            add_blocks(walls_, wall_blocks(bench.scene), bench.scene.walls->material);
         }
         if (bench.container) {
             b2BodyDef container = b2DefaultBodyDef();
@@ -34,13 +35,17 @@ class Box2d3Peer : public Peer {
             add_blocks(b2CreateBody(world_, &container), container_tiles(*bench.container),
                        bench.scene.bodies.at(0).material);
         }
-        for (const Body& body : bench.scene.bodies) add_disc(body);
+        for (const Body& body : bench.scene.bodies) add_disc(body, bench.scene.drag);
     }
     ~Box2d3Peer() override { b2DestroyWorld(world_); }
     Box2d3Peer(const Box2d3Peer&) = delete;
     Box2d3Peer& operator=(const Box2d3Peer&) = delete;
 
-    void step(double dt) override { b2World_Step(world_, static_cast<float>(dt), kSubsteps); }
+    void step(double dt) override {
+        b2World_Step(world_, static_cast<float>(dt), substeps_);
+        if (keeps_counts_) count();
+    }
+    PeerCounts counts() const override { return counts_; }
 
     void read(std::vector<BodyState>& bodies) const override {
         bodies.clear();
@@ -55,14 +60,15 @@ class Box2d3Peer : public Peer {
     }
 
   private:
-    static b2ShapeDef shape_of(const Material& material) {
+    b2ShapeDef shape_of(const Material& material) const {
         b2ShapeDef definition = b2DefaultShapeDef();
+        definition.enableContactEvents = keeps_counts_;
         definition.density = static_cast<float>(material.density);
         definition.material.friction = static_cast<float>(material.friction);
         definition.material.restitution = static_cast<float>(material.restitution);
         return definition;
     }
-    static void add_blocks(b2BodyId body, const std::vector<WallBlock>& blocks, const Material& material) {
+    void add_blocks(b2BodyId body, const std::vector<WallBlock>& blocks, const Material& material) const {
         const b2ShapeDef definition = shape_of(material);
         for (const WallBlock& block : blocks) {
             const b2Polygon polygon =
@@ -71,37 +77,78 @@ class Box2d3Peer : public Peer {
             b2CreatePolygonShape(body, &definition, &polygon);
         }
     }
-    void add_disc(const Body& description) {
+    void add_disc(const Body& description, const Drag& drag) {
         b2BodyDef definition = b2DefaultBodyDef();
         definition.type = b2_dynamicBody;
         definition.position = as_b2(description.position);
+        definition.rotation = b2MakeRot(static_cast<float>(description.angle));
         definition.linearVelocity = as_b2(description.velocity);
+        definition.angularVelocity = static_cast<float>(description.angular_velocity);
+        definition.linearDamping = static_cast<float>(drag.linear);
+        definition.angularDamping = static_cast<float>(drag.angular);
         const b2BodyId body = b2CreateBody(world_, &definition);
-        const b2ShapeDef shape = shape_of(description.material);
+        b2ShapeDef shape = shape_of(description.material);
+        shape.density = static_cast<float>(density_of(description));
         const b2Circle circle{{0, 0}, static_cast<float>(radius_of(description))};
         b2CreateCircleShape(body, &shape, &circle);
+        if (description.fixed_rotation) {  // every 3.x has this; how a rotation is locked changed in 3.2
+            b2MassData mass = b2Body_GetMassData(body);
+            mass.rotationalInertia = 0;
+            b2Body_SetMassData(body, mass);
+        }
         discs_.push_back(body);
     }
+    /// Contacts that began in the last step, and what the walls gave in it.
+    void count() {
+        const b2ContactEvents events = b2World_GetContactEvents(world_);
+        for (int i = 0; i < events.beginCount; ++i) {
+            ++counts_.impacts;
+            counts_.wall_impacts +=
+                is_wall(events.beginEvents[i].shapeIdA) || is_wall(events.beginEvents[i].shapeIdB);
+        }
+        if (!b2Body_IsValid(walls_)) return;
+        contacts_.resize(static_cast<std::size_t>(b2Body_GetContactCapacity(walls_)));
+        const int count = b2Body_GetContactData(walls_, contacts_.data(), static_cast<int>(contacts_.size()));
+        for (int i = 0; i < count; ++i) {
+            const b2Manifold& manifold = contacts_[static_cast<std::size_t>(i)].manifold;
+            for (int k = 0; k < manifold.pointCount; ++k)
+                counts_.wall_impulse += double{manifold.points[k].totalNormalImpulse};
+        }
+    }
+    bool is_wall(b2ShapeId shape) const {
+        return b2Shape_IsValid(shape) && B2_ID_EQUALS(b2Shape_GetBody(shape), walls_);
+    }
 
+    int substeps_;
+    bool keeps_counts_;
+    PeerCounts counts_;
+    std::vector<b2ContactData> contacts_;
+    b2BodyId walls_{};
     b2WorldId world_{};
     std::vector<b2BodyId> discs_;
 };
 
-std::unique_ptr<Peer> make(const BenchScene& scene) {
-    return std::make_unique<Box2d3Peer>(scene);
+std::unique_ptr<Peer> make(const BenchScene& scene, const PeerSettings& settings) {
+    require_dynamic_discs(scene.scene);
+    return std::make_unique<Box2d3Peer>(scene, settings);
 }
 
 }  // namespace
 
 PeerEngine box2d_3_engine() {
     const b2Version version = b2GetVersion();
-    return {
-        "Box2D 3",
-        measure::format("%d.%d.%d, single precision, one worker, %d substeps, continuous collision off, no "
-                        "threshold of restitution",
-                        version.major, version.minor, version.revision, kSubsteps),
-        262'140,  // awake bodies one worker can hold; beyond, it is wrong without saying so
-        &make};
+    return {.family = "Box2D 3",
+            .name = "Box2D 3",
+            .version = measure::format("%d.%d.%d", version.major, version.minor, version.revision),
+            .settings = measure::format(
+                "%d.%d.%d, single precision, one worker, %d substeps, continuous collision off, no "
+                "threshold of restitution",
+                version.major, version.minor, version.revision, kSubsteps),
+            .most_bodies = 262'140,  // awake, that one worker can hold; beyond, it is wrong without saying so
+            .precision = Precision::single_,
+            .substeps = {kSubsteps, 1, 2, 8, 16},
+            .iterations = {1},
+            .make = &make};
 }
 
 }  // namespace carom::bench

@@ -23,7 +23,7 @@ class CaromPeer : public Peer {
     World world_;
 };
 
-std::unique_ptr<Peer> make(const BenchScene& scene) {
+std::unique_ptr<Peer> make(const BenchScene& scene, const PeerSettings&) {
     if (scene.container)
         throw Error(ErrorCode::not_built_yet,
                     "a container of boxes that turns needs boxes, which are not built yet");
@@ -34,10 +34,16 @@ std::unique_ptr<Peer> make(const BenchScene& scene) {
 
 PeerEngine carom_engine() {
     const BuildInfo build = build_info();
-    return {"Carom",
-            measure::joined(build.version, ", one thread, single precision, ", build.chosen,
-                            ", the solver and the settings that the scene calls for"),
-            100'000'000, &make};
+    return {.family = "Carom",
+            .name = "Carom",
+            .version = std::string(build.version),
+            .settings = measure::joined(build.version, ", one thread, single precision, ", build.chosen,
+                                        ", the solver and the settings that the scene calls for"),
+            .most_bodies = 100'000'000,
+            .precision = Precision::single_,
+            .substeps = {1},
+            .iterations = {1},
+            .make = &make};
 }
 
 }  // namespace carom::bench

@@ -1,9 +1,12 @@
 #include <carom/errors.hpp>
 
 #include <chipmunk/chipmunk.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "measure/text.hpp"
 #include "peers/peer.hpp"
@@ -11,18 +14,43 @@
 namespace carom::bench {
 namespace {
 
+constexpr int kIterations = 10;
+// Its slop is 0.1, meant for lengths in pixels; this is Box2D's part of a disc of 1 m.
+constexpr double kSlopOfRadius = 0.005;
+
+/// Debian's Chipmunk is a debug build, which greets on standard output when it makes its first space: that is
+/// where results go.
+cpSpace* make_space() {
+    std::fflush(stdout);
+    const int kept = dup(STDOUT_FILENO), nowhere = open("/dev/null", O_WRONLY);
+    if (nowhere >= 0) dup2(nowhere, STDOUT_FILENO), close(nowhere);
+    cpSpace* const space = cpSpaceNew();
+    std::fflush(stdout);
+    if (kept >= 0) dup2(kept, STDOUT_FILENO), close(kept);
+    return space;
+}
+
+double smallest_radius(const Scene& scene) {
+    double smallest = INFINITY;
+    for (const Body& body : scene.bodies) smallest = std::fmin(smallest, radius_of(body));
+    return smallest;
+}
+
 class ChipmunkPeer : public Peer {
   public:
-    ChipmunkPeer(const BenchScene& bench, bool spatial_hash) : space_(cpSpaceNew()) {
+    ChipmunkPeer(const BenchScene& bench, const PeerSettings& settings, bool spatial_hash)
+        : space_(make_space()) {
         const Scene& scene = bench.scene;
-        cpSpaceSetIterations(space_, 10);
+        cpSpaceSetIterations(space_, settings.iterations > 0 ? settings.iterations : kIterations);
+        cpSpaceSetDamping(space_, std::exp(-scene.drag.linear));  // part of the speed left after a second
+        if (settings.for_errors) cpSpaceSetCollisionSlop(space_, kSlopOfRadius * smallest_radius(scene));
+        if (settings.counts) listen();
         cpSpaceSetGravity(space_, cpv(scene.gravity.x, scene.gravity.y));
         if (spatial_hash) {  // its manual's rule: cells of a body's size, ten times as many as bodies
             constexpr double kCell = 1;  // m
             cpSpaceUseSpatialHash(space_, kCell, static_cast<int>(10 * scene.bodies.size()));
         }
-        if (scene.walls)
-            add_blocks(cpSpaceGetStaticBody(space_), wall_blocks(*scene.walls), scene.walls->material);
+        if (scene.walls) add_blocks(cpSpaceGetStaticBody(space_), wall_blocks(scene), scene.walls->material);
         if (bench.container) add_container(*bench.container, scene.bodies.at(0).material);
         for (const Body& body : scene.bodies) add_disc(body);
     }
@@ -35,6 +63,7 @@ class ChipmunkPeer : public Peer {
     ChipmunkPeer& operator=(const ChipmunkPeer&) = delete;
 
     void step(double dt) override { cpSpaceStep(space_, dt); }
+    PeerCounts counts() const override { return counts_; }
 
     void read(std::vector<BodyState>& bodies) const override {
         bodies.clear();
@@ -71,8 +100,11 @@ class ChipmunkPeer : public Peer {
     }
     void add_disc(const Body& description) {
         const double radius = radius_of(description), mass = mass_of(description);
-        cpBody* const body =
-            cpSpaceAddBody(space_, cpBodyNew(mass, cpMomentForCircle(mass, 0, radius, cpvzero)));
+        const double inertia =
+            description.fixed_rotation ? INFINITY : cpMomentForCircle(mass, 0, radius, cpvzero);
+        cpBody* const body = cpSpaceAddBody(space_, cpBodyNew(mass, inertia));
+        cpBodySetAngle(body, description.angle);
+        cpBodySetAngularVelocity(body, description.angular_velocity);
         cpBodySetPosition(body, cpv(description.position.x, description.position.y));
         cpBodySetVelocity(body, cpv(description.velocity.x, description.velocity.y));
         all_bodies_.push_back(body);
@@ -80,16 +112,54 @@ class ChipmunkPeer : public Peer {
         add_shape(cpCircleShapeNew(body, radius, cpvzero), description.material);
     }
 
+    /// Counts contacts with walls and others.
+    void listen() {
+        cpCollisionHandler* const handler = cpSpaceAddDefaultCollisionHandler(space_);
+        handler->userData = &counts_;
+        handler->beginFunc = [](cpArbiter* contact, cpSpace*, cpDataPointer data) -> cpBool {
+            auto& counts = *static_cast<PeerCounts*>(data);
+            ++counts.impacts;
+            counts.wall_impacts += is_with_wall(contact);
+            return cpTrue;
+        };
+        handler->postSolveFunc = [](cpArbiter* contact, cpSpace*, cpDataPointer data) {
+            if (is_with_wall(contact))
+                static_cast<PeerCounts*>(data)->wall_impulse +=
+                    std::fabs(cpvdot(cpArbiterTotalImpulse(contact), cpArbiterGetNormal(contact)));
+        };
+    }
+    static bool is_with_wall(const cpArbiter* contact) {
+        cpBody *a = nullptr, *b = nullptr;
+        cpArbiterGetBodies(contact, &a, &b);
+        return cpBodyGetType(a) == CP_BODY_TYPE_STATIC || cpBodyGetType(b) == CP_BODY_TYPE_STATIC;
+    }
+
+    PeerCounts counts_;
     cpSpace* space_;
     std::vector<cpShape*> shapes_;
     std::vector<cpBody*> all_bodies_, discs_;
 };
 
-std::unique_ptr<Peer> make_with_tree(const BenchScene& scene) {
-    return std::make_unique<ChipmunkPeer>(scene, false);
+std::unique_ptr<Peer> make_with_tree(const BenchScene& scene, const PeerSettings& settings) {
+    require_dynamic_discs(scene.scene);
+    return std::make_unique<ChipmunkPeer>(scene, settings, false);
 }
-std::unique_ptr<Peer> make_with_hash(const BenchScene& scene) {
-    return std::make_unique<ChipmunkPeer>(scene, true);
+std::unique_ptr<Peer> make_with_hash(const BenchScene& scene, const PeerSettings& settings) {
+    require_dynamic_discs(scene.scene);
+    return std::make_unique<ChipmunkPeer>(scene, settings, true);
+}
+
+/// It multiplies the coefficients of a pair where we take the larger: the same only where all are equal.
+std::string difference(const Scene& scene) {
+    for (const Body& body : scene.bodies) {
+        const double own = body.material.restitution;
+        if (own != scene.bodies.front().material.restitution ||
+            (scene.walls && own != scene.walls->material.restitution))
+            return "it multiplies the restitution of the two that meet; here the larger counts";
+    }
+    if (scene.drag.linear != scene.drag.angular && scene.drag.angular != 0)
+        return "it has one drag for speed and spin";
+    return {};
 }
 
 }  // namespace
@@ -97,8 +167,21 @@ std::unique_ptr<Peer> make_with_hash(const BenchScene& scene) {
 std::vector<PeerEngine> chipmunk_engines() {
     const std::string settings =
         measure::joined(cpVersionString, " as installed, double precision, 10 iterations, ");
-    return {{"Chipmunk, tree", settings + "tree of bounding boxes (its default)", 50'000, &make_with_tree},
-            {"Chipmunk, hash", settings + "spatial hash, cells of 1 m", 200'000, &make_with_hash}};
+    const PeerEngine tree{.family = "Chipmunk",
+                          .name = "Chipmunk, tree",
+                          .version = cpVersionString,
+                          .settings = settings + "tree of bounding boxes (its default)",
+                          .most_bodies = 50'000,
+                          .precision = Precision::double_,
+                          .substeps = {1},
+                          .iterations = {kIterations, 1, 3, 100, 30},
+                          .make = &make_with_tree,
+                          .difference = &difference};
+    PeerEngine hash = tree;
+    hash.name = "Chipmunk, hash";
+    hash.settings = settings + "spatial hash, cells of 1 m";
+    hash.most_bodies = 200'000, hash.make = &make_with_hash;
+    return {tree, hash};
 }
 
 }  // namespace carom::bench

@@ -1,5 +1,7 @@
 #include "peers/peer.hpp"
 
+#include <carom/errors.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -8,25 +10,56 @@
 namespace carom::bench {
 namespace {
 
-constexpr double kBlockThickness = 2;  // m: more than any disc moves in a step
+constexpr double kBlockThickness = 2;   // m: more than any disc moves in a step
+constexpr double kBeyondBodies = 1000;  // m: as far as anything comes
+
+/// Walls whose open sides are near enough for engines whose shapes have a few digits.
+Walls within_reach(const Scene& scene) {
+    Walls walls = *scene.walls;
+    Vec2 low = scene.bodies.empty() ? walls.min : scene.bodies.front().position, high = low;
+    for (const Body& body : scene.bodies) {
+        low = {std::min(low.x, body.position.x), std::min(low.y, body.position.y)};
+        high = {std::max(high.x, body.position.x), std::max(high.y, body.position.y)};
+    }
+    if (!walls.left) walls.min.x = std::max(walls.min.x, low.x - kBeyondBodies);
+    if (!walls.right) walls.max.x = std::min(walls.max.x, high.x + kBeyondBodies);
+    if (!walls.bottom) walls.min.y = std::max(walls.min.y, low.y - kBeyondBodies);
+    if (!walls.top) walls.max.y = std::min(walls.max.y, high.y + kBeyondBodies);
+    return walls;
+}
 
 }  // namespace
 
-std::vector<PeerEngine> peer_engines() {
-    std::vector<PeerEngine> engines{carom_engine()};
-#ifdef CAROM_BENCH_BOX2D_3
+std::vector<PeerEngine> other_engines() {
+    std::vector<PeerEngine> engines;
+#ifdef CAROM_PEERS_BOX2D_3
     engines.push_back(box2d_3_engine());
 #endif
-#ifdef CAROM_BENCH_BOX2D_2
+#ifdef CAROM_PEERS_BOX2D_2
     engines.push_back(box2d_2_engine());
 #endif
-#ifdef CAROM_BENCH_CHIPMUNK
+#ifdef CAROM_PEERS_CHIPMUNK
     for (PeerEngine& engine : chipmunk_engines()) engines.push_back(std::move(engine));
 #endif
     return engines;
 }
 
-std::vector<WallBlock> wall_blocks(const Walls& walls) {
+std::vector<MissingEngine> missing_engines() {
+    std::vector<MissingEngine> missing;
+#ifndef CAROM_PEERS_BOX2D_3
+    missing.push_back({"Box2D 3", "CMake found no package box2d 3 (-Dbox2d_DIR=... says where it is)"});
+#endif
+#ifndef CAROM_PEERS_BOX2D_2
+    missing.push_back({"Box2D 2", "CMake found no box2d/b2_world.h and libbox2d.so"});
+#endif
+#ifndef CAROM_PEERS_CHIPMUNK
+    missing.push_back({"Chipmunk", "CMake found no chipmunk/chipmunk.h and libchipmunk"});
+#endif
+    return missing;
+}
+
+std::vector<WallBlock> wall_blocks(const Scene& scene) {
+    const Walls walls = within_reach(scene);
     const Vec2 middle{(walls.min.x + walls.max.x) / 2, (walls.min.y + walls.max.y) / 2};
     const double half_width = (walls.max.x - walls.min.x) / 2, half_height = (walls.max.y - walls.min.y) / 2;
     constexpr double kHalf = kBlockThickness / 2;
@@ -65,6 +98,19 @@ double radius_of(const Body& body) {
 double mass_of(const Body& body) {
     const double radius = radius_of(body);
     return body.mass.value_or(body.material.density * std::numbers::pi * radius * radius);
+}
+
+double density_of(const Body& body) {
+    const double radius = radius_of(body);
+    return mass_of(body) / (std::numbers::pi * radius * radius);
+}
+
+void require_dynamic_discs(const Scene& scene) {
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+        if (scene.bodies[i].type != BodyType::dynamic_body ||
+            !std::holds_alternative<Disc>(scene.bodies[i].shape))
+            throw Error(ErrorCode::not_built_yet, "the adapter of this engine makes moving discs; body " +
+                                                      std::to_string(i) + " is none");
 }
 
 }  // namespace carom::bench

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <carom/accuracy.hpp>
 #include <carom/world.hpp>
 
 #include <cstdint>
@@ -15,24 +16,54 @@
 
 namespace carom::bench {
 
+/// What a run may ask of an engine. The defaults are those of the benchmarks.
+struct PeerSettings {
+    int substeps = 0;    ///< 0: its default
+    int iterations = 0;  ///< 0: its default
+    bool for_errors =
+        false;            ///< as its users have it: continuous collision on, tolerances of the scene's size
+    bool counts = false;  ///< keeps `Peer::counts`
+};
+
+/// What an engine says of its contacts since the start.
+struct PeerCounts {
+    std::int64_t impacts = 0;       ///< contacts that began, walls included
+    std::int64_t wall_impacts = 0;  ///< of those, with walls
+    double wall_impulse = 0;        ///< N s, sum of the sizes of the walls' normal impulses
+};
+
 class Peer {
   public:
     virtual ~Peer() = default;
     virtual void step(double dt) = 0;  ///< dt in s
     /// Position, angle, velocity and spin of every body, in the order of the scene.
     virtual void read(std::vector<BodyState>& bodies) const = 0;
+    virtual PeerCounts counts() const { return {}; }
 };
 
 struct PeerEngine {
-    std::string name;
-    std::string settings;      ///< what differs from its defaults, and its version
+    std::string family;  ///< the engine, whatever its settings
+    std::string name;    ///< with what tells it from others of its family
+    std::string version;
+    std::string settings;      ///< in the benchmarks: what differs from its defaults, and its version
     std::int64_t most_bodies;  ///< beyond, it is slow beyond use or wrong
+    Precision precision;
+    std::vector<int> substeps;    ///< that a sweep takes; the default first
+    std::vector<int> iterations;  ///< likewise
     /// @throws carom::Error, with the reason, if the engine cannot do the scene
-    std::unique_ptr<Peer> (*make)(const BenchScene& scene);
+    std::unique_ptr<Peer> (*make)(const BenchScene& scene, const PeerSettings& settings);
+    /// Why its answer to a scene is another than ours by its own rules; empty if it is not.
+    std::string (*difference)(const Scene& scene) = nullptr;
 };
 
-/// Ours first, then those this program was built with.
-std::vector<PeerEngine> peer_engines();
+/// Those this program was built with.
+std::vector<PeerEngine> other_engines();
+
+/// Those it could have been built with, and what was not found.
+struct MissingEngine {
+    std::string family, why;
+};
+std::vector<MissingEngine> missing_engines();
 
 PeerEngine carom_engine();
 std::vector<PeerEngine> chipmunk_engines();
@@ -45,13 +76,18 @@ struct WallBlock {
     Vec2 half_extent;  ///< m
 };
 
-/// The closed sides of the scene's walls as thick blocks, for engines that have no walls.
-std::vector<WallBlock> wall_blocks(const Walls& walls);
+/// The closed sides of the scene's walls as thick blocks, for engines that have no walls. Where a side is
+/// left open the blocks beside it end some way beyond the bodies.
+std::vector<WallBlock> wall_blocks(const Scene& scene);
 
 /// The tiles of a container in its own frame.
 std::vector<WallBlock> container_tiles(const Container& container);
 
-double radius_of(const Body& body);  ///< m
-double mass_of(const Body& body);    ///< kg
+double radius_of(const Body& body);   ///< m
+double mass_of(const Body& body);     ///< kg
+double density_of(const Body& body);  ///< kg/m², that gives the body's mass
+
+/// @throws carom::Error if there is a body that is no disc, or that its own rules move
+void require_dynamic_discs(const Scene& scene);
 
 }  // namespace carom::bench

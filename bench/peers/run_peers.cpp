@@ -38,7 +38,9 @@ struct Entrant {
 
 std::vector<Entrant> enter(const BenchScene& scene, const std::function<void(const std::string&)>& progress) {
     std::vector<Entrant> entrants;
-    for (PeerEngine& engine : peer_engines()) {
+    std::vector<PeerEngine> engines{carom_engine()};  // ours first
+    for (PeerEngine& engine : other_engines()) engines.push_back(std::move(engine));
+    for (PeerEngine& engine : engines) {
         Entrant entrant{.engine = std::move(engine),
                         .peer = nullptr,
                         .reason = {},
@@ -51,7 +53,7 @@ std::vector<Entrant> enter(const BenchScene& scene, const std::function<void(con
                                     measure::grouped(entrant.engine.most_bodies).c_str());
         } else {
             try {
-                entrant.peer = entrant.engine.make(scene);
+                entrant.peer = entrant.engine.make(scene, {});
             } catch (const Error& error) {
                 entrant.reason = error.what();
             }

@@ -12,30 +12,26 @@ using tool::format;
 
 constexpr double kPercent = 100;
 
-std::string solver_name(const Point& point) {
-    return std::string(name_of(point.setting.solver));
-}
-
 /// The cheapest point of a solver, in whichever precision, that reaches the target.
-const Point* cheapest_of_solver(const CaseResult& result, Solver solver, double target) {
+const Point* cheapest_of(const CaseResult& result, const std::string& name, double target) {
     const Point* best = nullptr;
     for (const Precision precision : {Precision::single_, Precision::double_})
-        if (const Point* point = cheapest(result, {solver, precision}, target);
+        if (const Point* point = cheapest(result, {name, precision}, target);
             point && (!best || point->seconds.value < best->seconds.value))
             best = point;
     return best;
 }
 
-bool is_listed(const CaseResult& result, Solver solver) {
-    const auto& listed = result.of->solvers;
-    return std::find(listed.begin(), listed.end(), name_of(solver)) != listed.end();
+bool has_points_of(const CaseResult& result, const std::string& name) {
+    return std::any_of(result.points.begin(), result.points.end(),
+                       [&](const Point& point) { return name_of(point.setting) == name; });
 }
 
 /// "impulse (3 of 3 cases)", "event (2 of 4 cases) or pairwise (2 of 4 cases)", "nobody"
 std::string winners(const std::vector<const CaseResult*>& cases, double target) {
     std::map<std::string, int> wins;
     for (const CaseResult* result : cases)
-        if (const Point* best = cheapest(*result, target)) ++wins[solver_name(*best)];
+        if (const Point* best = cheapest(*result, target)) ++wins[name_of(best->setting)];
     if (wins.empty()) return "nobody gets there";
     std::string text;
     for (const auto& [name, count] : wins)
@@ -48,12 +44,13 @@ std::string winners(const std::vector<const CaseResult*>& cases, double target) 
 std::string distances(const std::vector<const CaseResult*>& cases, double target) {
     std::string text;
     for (const SweptSolver& swept : swept_solvers()) {
+        const std::string name = swept.name();
         double least = 0, most = 0;
         bool fails = false;
         for (const CaseResult* result : cases) {
             const Point* best = cheapest(*result, target);
-            if (!best || !is_listed(*result, swept.solver)) continue;
-            const Point* own = cheapest_of_solver(*result, swept.solver, target);
+            if (!best || !has_points_of(*result, name)) continue;
+            const Point* own = cheapest_of(*result, name, target);
             if (!own) {
                 fails = true;
                 continue;
@@ -62,7 +59,6 @@ std::string distances(const std::vector<const CaseResult*>& cases, double target
             least = least > 0 ? std::min(least, ratio) : ratio, most = std::max(most, ratio);
         }
         if (!(most > 1) && !fails) continue;
-        const std::string name(name_of(swept.solver));
         text += (text.empty() ? "" : "; ") + name;
         if (most > 0)
             text += least < most ? format(" takes %.2g to %.2g times the time of the cheapest", least, most)
@@ -89,15 +85,15 @@ std::string advice_on(std::string_view kind, const std::vector<const CaseResult*
 
 /// Where a solver is on the frontier, or that it never is; and why.
 std::string standing_of(const SweptSolver& swept, const std::vector<CaseResult>& results) {
+    const std::string name = swept.name();
     std::string cases;
     for (const CaseResult& result : results) {
         const auto frontier = frontier_of(result);
         if (std::any_of(frontier.begin(), frontier.end(),
-                        [&](const Point* point) { return point->setting.solver == swept.solver; }))
+                        [&](const Point* point) { return name_of(point->setting) == name; }))
             cases += (cases.empty() ? "" : ", ") + std::string(result.of->id);
     }
-    const std::string name(name_of(swept.solver));
-    const std::string why = format("%s %s. ", name.c_str(), std::string(swept.why).c_str());
+    const std::string why = format("%s %s. ", name.c_str(), swept.why.c_str());
     if (cases.empty())
         return why + "It is never on the frontier: something else is always faster and nearer.";
     return why + "It is on the frontier in " + cases + ".";
@@ -119,8 +115,7 @@ std::vector<std::string> advice_from(const std::vector<CaseResult>& results) {
     }
     for (const SweptSolver& swept : swept_solvers()) {
         const bool has_points = std::any_of(results.begin(), results.end(), [&](const CaseResult& result) {
-            return std::any_of(result.points.begin(), result.points.end(),
-                               [&](const Point& point) { return point.setting.solver == swept.solver; });
+            return has_points_of(result, swept.name());
         });
         if (has_points) advice.push_back(standing_of(swept, results));
     }

@@ -9,7 +9,7 @@ namespace carom::accuracy {
 namespace {
 
 bool is_of(const Point& point, const Contender& contender) {
-    return point.setting.solver == contender.solver && point.setting.precision == contender.precision;
+    return name_of(point.setting) == contender.name && point.setting.precision == contender.precision;
 }
 
 /// What a point's first error is at most: of a mean that is uncertain, the upper end of its band.
@@ -33,14 +33,13 @@ std::vector<const Point*> step_sweep(const CaseResult& result, const Contender& 
 }  // namespace
 
 std::string in_words(const Contender& contender) {
-    return std::string(name_of(contender.solver)) +
-           (contender.precision == Precision::single_ ? ", float" : ", double");
+    return contender.name + (contender.precision == Precision::single_ ? ", float" : ", double");
 }
 
 std::vector<Contender> contenders_in(const CaseResult& result) {
     std::vector<Contender> found;
     for (const Point& point : result.points) {
-        const Contender contender{point.setting.solver, point.setting.precision};
+        const Contender contender{name_of(point.setting), point.setting.precision};
         if (std::find(found.begin(), found.end(), contender) == found.end()) found.push_back(contender);
     }
     return found;

@@ -12,9 +12,9 @@ namespace carom::accuracy {
 /// Errors that a table says the time for.
 inline constexpr std::array kTargets{1e-2, 1e-3, 1e-4};
 
-/// A solver in one precision.
+/// A solver or another engine, in one precision.
 struct Contender {
-    Solver solver;
+    std::string name;
     Precision precision;
 
     friend bool operator==(const Contender&, const Contender&) = default;

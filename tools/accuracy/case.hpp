@@ -30,6 +30,7 @@ struct Case {
     std::vector<std::string_view> solvers;  ///< it makes sense for, by name
     std::vector<double> steps;              ///< s, the longest first
     int members = 1;                        ///< starts: more than 1 where motion is chaotic
+    bool counts = false;  ///< whether it asks how many impacts there were, and the walls' impulse
     Scene (*scene)(int member);
     /// Takes a start to its end. @return the errors, as many as `errors`; not a number where the solver does
     /// not say what is compared, as one that counts no impacts.

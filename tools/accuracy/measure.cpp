@@ -9,7 +9,6 @@ namespace carom::accuracy {
 namespace {
 
 constexpr int kFewestRuns = 3;
-constexpr double kLongRun = 1;  // s: one is enough
 
 struct Run {
     std::vector<double> errors;
@@ -19,7 +18,7 @@ struct Run {
 
 Run run_once(const Case& asked, const Setting& setting, int member, double longest) {
     const Scene scene = asked.scene(member);
-    Stepper stepper(scene, setting, longest);
+    Stepper stepper(scene, setting, longest, asked.counts);
     Run run;
     try {
         run.errors = asked.run(stepper, scene, member);
@@ -103,7 +102,7 @@ std::optional<Point> measure(const Case& asked, const Setting& setting, const Ef
             const int done = static_cast<int>(runs.size());
             if (members > 1) return done >= members;
             return done >= effort.most_runs || (done >= kFewestRuns && spent > effort.seconds_a_point) ||
-                   spent > kLongRun;
+                   spent > effort.long_run;
         };
         while (!is_enough()) {
             if (stop()) return std::nullopt;

@@ -8,7 +8,8 @@ namespace carom::accuracy {
 
 struct Effort {
     double seconds_a_point = 0.25;  ///< s, about: runs are repeated until then
-    double longest_run = 3;         ///< s: then it has failed
+    double longest_run = 2;         ///< s: then it has failed
+    double long_run = 1;            ///< s: of all runs together, from which on no more are needed
     int most_runs = 15;
     int most_members = kEnsemble;
 };

@@ -9,6 +9,8 @@
 #include <thread>
 
 #include "accuracy/analysis.hpp"
+#include "accuracy/engines.hpp"
+#include "accuracy/solvers.hpp"
 #include "format.hpp"
 #include "results/text_file.hpp"
 
@@ -37,7 +39,7 @@ Json orders_of(const CaseResult& result) {
     for (const Contender& contender : contenders_in(result))
         for (std::size_t e = 0; e < result.of->errors.size(); ++e)
             if (const auto fit = observed_order(result, contender, e))
-                orders.push_back({{"solver", name_of(contender.solver)},
+                orders.push_back({{"solver", contender.name},
                                   {"precision", precision_name(contender.precision)},
                                   {"error", result.of->errors[e].name},
                                   {"order", fit->order},
@@ -51,7 +53,7 @@ Json times_of(const CaseResult& result) {
     for (const Contender& contender : contenders_in(result))
         for (const double target : kTargets) {
             const Point* point = cheapest(result, contender, target);
-            times.push_back({{"solver", name_of(contender.solver)},
+            times.push_back({{"solver", contender.name},
                              {"precision", precision_name(contender.precision)},
                              {"target", target},
                              {"seconds", point ? Json(point->seconds.value) : Json()},
@@ -68,6 +70,9 @@ Json to_json(const CaseResult& result) {
     for (const ErrorMeasure& error : of.errors)
         json["errors"].push_back(
             {{"name", error.name}, {"meaning", error.meaning}, {"is_statistic", error.is_statistic}});
+    json["left_out"] = Json::array();
+    for (const LeftOut& out : left_out_of(of))
+        json["left_out"].push_back({{"engine", out.engine}, {"why", out.why}});
     const auto frontier = frontier_of(result);
     for (const Point& point : result.points) {
         Json one = to_json(point);
@@ -83,8 +88,7 @@ Json to_json(const CaseResult& result) {
 
 std::string in_words(const Setting& s) {
     const double rate = 1 / s.dt;
-    std::string text =
-        format("%s, %s, ", std::string(name_of(s.solver)).c_str(), precision_name(s.precision));
+    std::string text = format("%s, %s, ", name_of(s).c_str(), precision_name(s.precision));
     text += s.dt < 1 && std::fabs(rate - std::round(rate)) < 1e-6 * rate ? format("1/%.0f s", rate)
                                                                          : format("%g s", s.dt);
     if (s.substeps != 1) text += format(", %d substeps", s.substeps);
@@ -93,7 +97,7 @@ std::string in_words(const Setting& s) {
 }
 
 Json to_json(const Setting& setting) {
-    return {{"solver", name_of(setting.solver)},
+    return {{"solver", name_of(setting)},
             {"precision", precision_name(setting.precision)},
             {"dt", setting.dt},
             {"substeps", setting.substeps},
@@ -115,7 +119,11 @@ Json to_json(const Point& point) {
 
 Point point_from(const Json& json) {
     Point point;
-    point.setting.solver = solver_named(json.at("solver").get<std::string>()).value_or(Solver::automatic);
+    const std::string name = json.at("solver").get<std::string>();
+    if (const auto solver = solver_named(name))
+        point.setting.solver = *solver;
+    else
+        point.setting.engine = name;
     point.setting.precision =
         json.at("precision").get<std::string>() == "float" ? Precision::single_ : Precision::double_;
     point.setting.dt = json.at("dt").get<double>();
@@ -140,7 +148,13 @@ Json to_json(const std::vector<CaseResult>& results, bool quick) {
                 {"instruction_sets", runnable_instruction_sets()},
                 {"compiler", build_info().compiler},
                 {"isa", build_info().chosen}}},
+              {"engines", Json::array()},
+              {"missing_engines", Json::array()},
               {"cases", Json::array()}};
+    for (const bench::PeerEngine& engine : engines())
+        json["engines"].push_back({{"name", engine.family}, {"version", engine.version}});
+    for (const bench::MissingEngine& missing : bench::missing_engines())
+        json["missing_engines"].push_back({{"name", missing.family}, {"why", missing.why}});
     for (const CaseResult& result : results) json["cases"].push_back(to_json(result));
     json["advice"] = advice_from(results);
     return json;
@@ -155,8 +169,8 @@ std::string to_csv(const std::vector<CaseResult>& results) {
         for (const Point& point : result.points)
             for (std::size_t e = 0; e < result.of->errors.size(); ++e) {
                 const Setting& s = point.setting;
-                text += format("%s,%s,%s,", std::string(result.of->id).c_str(),
-                               std::string(name_of(s.solver)).c_str(), precision_name(s.precision));
+                text += format("%s,%s,%s,", std::string(result.of->id).c_str(), name_of(s).c_str(),
+                               precision_name(s.precision));
                 tool::append_number(text, s.dt);
                 text += format(",%d,%d,", s.substeps, s.iterations);
                 tool::append_field(text, result.of->errors[e].name);

@@ -10,6 +10,7 @@
 #include <map>
 #include <string>
 
+#include "accuracy/engines.hpp"
 #include "accuracy/measure.hpp"
 #include "accuracy/solvers.hpp"
 #include "exit_codes.hpp"
@@ -20,7 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Effort kQuick{.seconds_a_point = 0.03, .longest_run = 1, .most_runs = 5, .most_members = 8};
+constexpr Effort kQuick{
+    .seconds_a_point = 0.03, .longest_run = 0.4, .long_run = 0.15, .most_runs = 5, .most_members = 4};
 
 fs::path points_file(const fs::path& folder) {
     return folder / "points.jsonl";
@@ -28,11 +30,12 @@ fs::path points_file(const fs::path& folder) {
 
 /// What points must have in common to stand in one result.
 std::string header_of(bool quick) {
-    return Json{{"version", kVersion},
+    Json header{{"version", kVersion},
                 {"isa", build_info().chosen},
                 {"compiler", build_info().compiler},
-                {"quick", quick}}
-        .dump();
+                {"quick", quick}};
+    for (const bench::PeerEngine& engine : engines()) header[engine.family] = engine.version;
+    return header.dump();
 }
 
 std::string key_of(const Case& of, const Setting& setting) {

@@ -4,36 +4,35 @@
 
 #include <algorithm>
 
+#include "accuracy/engines.hpp"
+
 namespace carom::accuracy {
 namespace {
 
 constexpr Precision kSingle = Precision::single_, kDouble = Precision::double_;
 
-const std::vector<SweptSolver> kSolvers{
+const std::vector<SweptSolver> kOurs{
     {Solver::event,
      {kSingle, kDouble},
      false,
      {1},
      {1},
-     "goes from impact to impact at their exact times, so it has no step error at all, and its time follows "
-     "the "
-     "number of impacts; what should rest it cannot hold"},
+     "goes from impact to impact at their exact times, so it has no step error at all, and its time "
+     "follows the number of impacts; what should rest it cannot hold"},
     {Solver::impulse,
      {kSingle, kDouble},
      true,
      {1, 2, 4},
      {1},
      "flies exactly between impacts and finds each one's time inside the step, so free flight and bounces "
-     "cost no "
-     "accuracy and long steps are cheap; it has no friction"},
+     "cost no accuracy and long steps are cheap; it has no friction"},
     {Solver::soft,
      {kSingle, kDouble},
      true,
      {4, 1, 2, 8, 16},
      {1},
      "holds contacts at rest with friction, which the others cannot; impacts take effect where a step ends, "
-     "so "
-     "bounces are first order in the step"},
+     "so bounces are first order in the step"},
     {Solver::pairwise,
      {kDouble},
      true,
@@ -41,6 +40,27 @@ const std::vector<SweptSolver> kSolvers{
      {1},
      "is where it all started: every pair, one impulse, then apart; first order at best, for comparison"},
 };
+
+/// What the sweeps of the other engines' cases showed (docs/accuracy.md).
+std::string_view why_of(std::string_view family) {
+    if (family == "Chipmunk")
+        return "is a game engine: ten iterations a step, warm starting, double precision";
+    if (family == "Box2D 3") return "is a game engine: soft contacts in substeps, single precision";
+    return "is a game engine: iterated impulses, then positions, single precision";
+}
+
+std::vector<SweptSolver> all_solvers() {
+    std::vector<SweptSolver> solvers = kOurs;
+    for (const bench::PeerEngine& engine : engines())
+        solvers.push_back({Solver::automatic,
+                           {engine.precision},
+                           true,
+                           engine.substeps,
+                           engine.iterations,
+                           std::string(why_of(engine.family)),
+                           engine.family});
+    return solvers;
+}
 
 /// Up to four of the steps, the ends among them.
 std::vector<double> fewer(const std::vector<double>& steps) {
@@ -51,7 +71,16 @@ std::vector<double> fewer(const std::vector<double>& steps) {
 }  // namespace
 
 std::span<const SweptSolver> swept_solvers() {
-    return kSolvers;
+    static const std::vector<SweptSolver> solvers = all_solvers();
+    return solvers;
+}
+
+std::vector<LeftOut> left_out_of(const Case& asked) {
+    std::vector<LeftOut> left_out;
+    for (const bench::PeerEngine& engine : engines())
+        if (std::string why = why_left_out(asked, engine); !why.empty())
+            left_out.push_back({engine.family, std::move(why)});
+    return left_out;
 }
 
 std::vector<Setting> settings_of(const Case& asked, bool quick) {
@@ -62,20 +91,31 @@ std::vector<Setting> settings_of(const Case& asked, bool quick) {
     };
     const std::vector<double> steps = quick ? fewer(asked.steps) : asked.steps;
     const double middle = steps[steps.size() / 2];
-    for (const SweptSolver& swept : kSolvers) {
-        const auto& wanted = asked.solvers;
-        if (std::find(wanted.begin(), wanted.end(), name_of(swept.solver)) == wanted.end()) continue;
+    const std::vector<LeftOut> left_out = left_out_of(asked);
+    const auto is_wanted = [&](const SweptSolver& swept) {
+        if (swept.engine.empty())
+            return std::find(asked.solvers.begin(), asked.solvers.end(), name_of(swept.solver)) !=
+                   asked.solvers.end();
+        return std::none_of(left_out.begin(), left_out.end(),
+                            [&](const LeftOut& out) { return out.engine == swept.engine; });
+    };
+    const auto values = [&](const std::vector<int>& all) {
+        return quick ? std::vector{all.front(), all.back()} : all;
+    };
+    for (const SweptSolver& swept : swept_solvers()) {
+        if (!is_wanted(swept)) continue;
         const int substeps = swept.substeps.front(), iterations = swept.iterations.front();
         for (const Precision precision : swept.precisions) {
             if (!swept.has_steps) {
-                add({swept.solver, precision, steps.front(), substeps, iterations});
+                add({swept.solver, precision, steps.front(), substeps, iterations, swept.engine});
                 continue;
             }
-            for (const double dt : steps) add({swept.solver, precision, dt, substeps, iterations});
-            const std::vector<int> parts =
-                quick ? std::vector{swept.substeps.front(), swept.substeps.back()} : swept.substeps;
-            for (const int n : parts) add({swept.solver, precision, middle, n, iterations});
-            for (const int n : swept.iterations) add({swept.solver, precision, middle, substeps, n});
+            for (const double dt : steps)
+                add({swept.solver, precision, dt, substeps, iterations, swept.engine});
+            for (const int n : values(swept.substeps))
+                add({swept.solver, precision, middle, n, iterations, swept.engine});
+            for (const int n : values(swept.iterations))
+                add({swept.solver, precision, middle, substeps, n, swept.engine});
         }
     }
     return settings;

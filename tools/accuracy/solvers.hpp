@@ -8,18 +8,28 @@
 
 namespace carom::accuracy {
 
-/// A solver as the sweeps take it.
+/// A solver, or another engine, as the sweeps take it.
 struct SweptSolver {
     Solver solver;
     std::vector<Precision> precisions;
     bool has_steps;               ///< whether its error depends on the step length
     std::vector<int> substeps;    ///< at the case's middle step; the first is the one of the other sweeps
     std::vector<int> iterations;  ///< likewise
-    std::string_view why;         ///< what it is good and bad at, a sentence for the advice
+    std::string why;              ///< what it is good and bad at, a sentence for the advice
+    std::string engine{};         ///< another engine, in place of the solver
+
+    std::string name() const { return engine.empty() ? std::string(name_of(solver)) : engine; }
 };
 
-/// All solvers, in the order in which they are listed. A new one is one line here.
+/// All solvers, in the order in which they are listed, then the other engines there are. A new one is one
+/// line.
 std::span<const SweptSolver> swept_solvers();
+
+/// Engines that a case is not computed with, and why.
+struct LeftOut {
+    std::string engine, why;
+};
+std::vector<LeftOut> left_out_of(const Case& asked);
 
 /// Every setting in which a case is computed; `quick`: fewer of them.
 std::vector<Setting> settings_of(const Case& asked, bool quick);

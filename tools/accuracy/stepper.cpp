@@ -4,7 +4,9 @@
 #include <cmath>
 #include <ctime>
 
+#include "accuracy/engines.hpp"
 #include "format.hpp"
+#include "simulation/body_mass.hpp"
 
 namespace carom::accuracy {
 namespace {
@@ -25,10 +27,28 @@ Scene with_setting(Scene scene, const Setting& setting) {
 
 }  // namespace
 
-Stepper::Stepper(Scene scene, const Setting& setting, double longest)
-    : setting_(setting),
+Stepper::Stepper(const Scene& scene, const Setting& setting, double longest, bool counts)
+    : scene_(scene),
+      setting_(setting),
       longest_(longest),
-      simulation_(tool::make_simulation(with_setting(std::move(scene), setting), {.threads = 1})) {}
+      simulation_(setting.engine.empty() ? tool::make_simulation(with_setting(scene, setting), {.threads = 1})
+                                         : make_engine_simulation(scene, setting, counts)) {}
+
+double Stepper::kinetic_energy() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i)
+        sum += tool::kinetic_energy_of(scene_.bodies[i], state(i));
+    return sum;
+}
+
+double Stepper::energy() const {
+    double sum = kinetic_energy();
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+        const Vec2 x = state(i).position;
+        sum -= tool::mass_of(scene_.bodies[i]) * (scene_.gravity.x * x.x + scene_.gravity.y * x.y);
+    }
+    return sum;
+}
 
 void Stepper::advance_to(double time) {
     // In a few parts, so that the number of candidate pairs is seen now and then.
@@ -61,8 +81,9 @@ void Stepper::check() const {
 }
 
 Work Stepper::work() const {
-    const Profile profile = simulation_->profile();
     Work work;
+    if (!setting_.engine.empty()) return work;
+    const Profile profile = simulation_->profile();
     work.body_substeps = static_cast<double>(simulation_->body_count()) * static_cast<double>(steps_) *
                          static_cast<double>(setting_.substeps);
     work.impacts = static_cast<double>(profile.impacts);

@@ -25,15 +25,21 @@ struct Setting {
     double dt = 0;  ///< s
     int substeps = 1;
     int iterations = 1;
+    std::string engine{};  ///< another engine, in place of the solver; empty: ours
 
     friend bool operator==(const Setting&, const Setting&) = default;
 };
+
+/// Who computes it: a solver of ours, or another engine.
+inline std::string name_of(const Setting& setting) {
+    return setting.engine.empty() ? std::string(carom::name_of(setting.solver)) : setting.engine;
+}
 
 /// What a run did, in units that do not depend on the machine.
 struct Work {
     double body_substeps = 0;  ///< bodies moved, times substeps
     double pair_tests = 0;     ///< pairs looked at
-    double impacts = 0;        ///< impulses of single impacts
+    double impacts = 0;        ///< impulses of single impacts; other engines count none of these
     double total() const { return body_substeps + pair_tests + impacts; }
 };
 
@@ -41,8 +47,9 @@ struct Work {
 class Stepper {
   public:
     /// @param longest  s: a run that takes longer is a failure
+    /// @param counts   whether another engine shall count its contacts; our solvers always do
     /// @throws carom::Error if the solver refuses the scene
-    Stepper(Scene scene, const Setting& setting, double longest);
+    Stepper(const Scene& scene, const Setting& setting, double longest, bool counts = false);
 
     /// Whole steps up to `time` [s]. @throws Failure if a body's state is not finite or was taken out, or if
     /// it takes too long
@@ -50,7 +57,9 @@ class Stepper {
 
     const tool::Simulation& simulation() const { return *simulation_; }
     BodyState state(std::size_t body) const { return simulation_->state(body); }
-    double energy() const { return simulation_->ledger().energy.total(); }  ///< J
+    /// Of the bodies' states, by one formula for all engines [J].
+    double kinetic_energy() const;
+    double energy() const;  ///< J, with that in gravity, 0 at the origin
     const Setting& setting() const { return setting_; }
     double seconds() const { return seconds_; }  ///< of this thread's processor, in steps
     Work work() const;
@@ -58,6 +67,7 @@ class Stepper {
   private:
     void check() const;
 
+    Scene scene_;
     Setting setting_;
     double longest_;
     std::unique_ptr<tool::Simulation> simulation_;

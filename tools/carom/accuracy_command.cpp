@@ -7,6 +7,7 @@
 
 #include "accuracy/analysis.hpp"
 #include "accuracy/cases.hpp"
+#include "accuracy/engines.hpp"
 #include "accuracy/session.hpp"
 #include "commands.hpp"
 #include "exit_codes.hpp"
@@ -117,6 +118,8 @@ int run_accuracy(const Accuracy& asked) {
     std::printf("\n");
     for (const accuracy::Json& advice : json.at("advice"))
         std::printf("%s\n", advice.get_ref<const std::string&>().c_str());
+    for (const bench::MissingEngine& missing : bench::missing_engines())
+        std::printf("Not in it: %s, because %s.\n", missing.family.c_str(), missing.why.c_str());
     std::printf("\nResults in %s: accuracy.json accuracy.csv report.html\n", asked.out.c_str());
     return kDone;
 }

@@ -91,9 +91,10 @@ std::vector<Series> series_of(const Json& result, std::size_t error, const Absci
     const Edges edges = edges_of(result, error);
     for (const Json& point : result.at("points")) {
         if (!is_known(point, error)) continue;
+        if (!(x_of(point) > 0)) continue;  // other engines do not count their work
         const Point drawn = point_at(point, error, x_of(point), edges);
         if (has_failed(point)) {
-            if (std::isfinite(drawn.x) && drawn.x > 0) failed.points.push_back(drawn);
+            failed.points.push_back(drawn);
             continue;
         }
         const std::string name = contender_of(point);
@@ -185,6 +186,8 @@ void add_case(const Json& result, Page& page) {
         if (has_failed(point))
             failures += (failures.empty() ? "" : "; ") + label_of(point) + ": " + plain(point.at("failure"));
     if (!failures.empty()) page.paragraph("Failed: " + failures + ".");
+    for (const Json& out : result.value("left_out", Json::array()))
+        page.paragraph("Left out: " + plain(out.at("engine")) + ", because " + plain(out.at("why")) + ".");
     for (std::size_t error = 0; error < result.at("errors").size(); ++error) add_charts(result, error, page);
     add_times(result, page);
 }
@@ -199,6 +202,19 @@ void draw_accuracy(const Result& result, Page& page) {
         "Each case has a known answer. Every solver computes it in single and double precision over a "
         "sweep of steps, substeps and iterations. Lower is nearer the answer, further left is faster. "
         "Times are of stepping alone, on one thread, the median of repeated runs.");
+    std::string others;
+    for (const Json& engine : json.value("engines", Json::array()))
+        others += (others.empty() ? "" : ", ") + plain(engine.at("name")) + " " + plain(engine.at("version"));
+    if (!others.empty())
+        page.paragraph(
+            "Other engines, their errors computed by the same code from the places and speeds they "
+            "say: " +
+            others +
+            ". They run with their defaults, but never sleep and bounce at every "
+            "speed.");
+    for (const Json& engine : json.value("missing_engines", Json::array()))
+        page.paragraph("Not in it: " + plain(engine.at("name")) + ", because " + plain(engine.at("why")) +
+                       ".");
     page.heading("Which solver for which scene");
     for (const Json& advice : json.at("advice")) page.paragraph(plain(advice));
     for (const Json& each : json.at("cases")) add_case(each, page);

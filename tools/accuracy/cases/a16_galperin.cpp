@@ -51,6 +51,7 @@ Case galperin_billiard() {
                        {"collisions", "difference in their number, over 314"}},
             .solvers = {"event", "impulse", "soft", "pairwise"},
             .steps = {1.0 / 30, 1.0 / 60, 1.0 / 120, 1.0 / 240, 1.0 / 480, 1.0 / 960},
+            .counts = true,
             .scene = scene_of,
             .run = run};
 }

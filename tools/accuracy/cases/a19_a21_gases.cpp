@@ -9,10 +9,6 @@ constexpr std::int64_t kDiscs = 256;
 constexpr double kForever = 1e9;  // s
 const std::vector<double> kSteps{1.0 / 30, 1.0 / 60, 1.0 / 120, 1.0 / 240, 1.0 / 480};
 
-double kinetic_energy(const Stepper& stepper) {
-    return stepper.simulation().ledger().energy.kinetic;
-}
-
 Scene equal_speeds(int member) {
     Scene scene = gas_of(kDiscs, 0.4, 1, member);
     for (Body& body : scene.bodies) {
@@ -23,7 +19,7 @@ Scene equal_speeds(int member) {
 }
 
 std::vector<double> run_elastic(Stepper& stepper, const Scene&, int) {
-    const double start = kinetic_energy(stepper);
+    const double start = stepper.kinetic_energy();
     double flatness = 0;
     int looks = 0;
     for (double time = 4; time <= 8;
@@ -39,7 +35,7 @@ std::vector<double> run_elastic(Stepper& stepper, const Scene&, int) {
     }
     // Of n discs with one energy together: 2 n / (n + 1), for n without end Maxwell's 2.
     const double exact = 2.0 * kDiscs / (kDiscs + 1);
-    return {kinetic_energy(stepper) / start - 1, flatness / looks / exact - 1};
+    return {stepper.kinetic_energy() / start - 1, flatness / looks / exact - 1};
 }
 
 /// What a gas does in a while, as other starts of the exact solver have it on average.
@@ -57,7 +53,7 @@ Behaviour watch(Stepper& stepper, const Scene& scene) {
     stepper.advance_to(kEnd);
     const double side = scene.walls->max.x - scene.walls->min.x, time = kEnd - kStart;
     return {(stepper.simulation().ledger().wall_impulse - impulse) / (4 * side * time),
-            (count_impacts(stepper, false) - impacts) / time, kinetic_energy(stepper)};
+            (count_impacts(stepper, false) - impacts) / time, stepper.kinetic_energy()};
 }
 
 Behaviour reference_of(Scene (*scene)(int)) {
@@ -94,7 +90,7 @@ Scene dissipating_gas(int member) {
 }
 
 std::vector<double> run_cooling(Stepper& stepper, const Scene& scene, int) {
-    const double start = kinetic_energy(stepper);
+    const double start = stepper.kinetic_energy();
     const Behaviour found = watch(stepper, scene), exact = reference_of(dissipating_gas);
     const double collisions_a_disc = 2 * count_impacts(stepper, false) / kDiscs;
     const double lost = (1 - kCoolingRestitution * kCoolingRestitution) / 2;
@@ -134,6 +130,7 @@ Case gas_pressure() {
             .solvers = {"event", "impulse", "soft", "pairwise"},
             .steps = kSteps,
             .members = kEnsemble,
+            .counts = true,
             .scene = dense_gas,
             .run = run_pressure};
 }
@@ -151,6 +148,7 @@ Case cooling_gas() {
             .solvers = {"event", "impulse", "soft", "pairwise"},
             .steps = kSteps,
             .members = kEnsemble,
+            .counts = true,
             .scene = dissipating_gas,
             .run = run_cooling};
 }
