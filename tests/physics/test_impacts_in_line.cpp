@@ -101,6 +101,49 @@ TEST_SUITE("physics/impacts in line") {
         }
     }
 
+    TEST_CASE_TEMPLATE("solvers event and soft leave pairs and the chain with the same velocities", Real,
+                       float, double) {
+        for (const Solver solver : {Solver::event, Solver::soft})
+            for (const double ratio : {1e-2, 0.5, 1.0, 7.0, 1e2})
+                for (const double e : {0.0, 0.5, 1.0}) {
+                    CAPTURE(name_of(solver));
+                    CAPTURE(ratio);
+                    CAPTURE(e);
+                    Scene scene;
+                    scene.accuracy.solver = solver;
+                    scene.add(disc(0.5, 1, {-1, 3}, {2, 0}, e));
+                    scene.add(disc(0.25, ratio, {0, 3}, {-1.5, 0}, e));
+                    BasicWorld<Real> world(scene);
+                    for (int i = 0; i < 60; ++i) world.step(kStep);
+                    const Speeds exact = after_impact(1, 2, static_cast<double>(Real(ratio)), -1.5, e);
+                    CHECK(std::abs(world.state({0, 0}).velocity.x - exact.first) <= 4 * kExact<Real>);
+                    CHECK(std::abs(world.state({1, 0}).velocity.x - exact.second) <= 4 * kExact<Real>);
+                }
+        constexpr int kBodies = 12;
+        constexpr double kRatio = 0.8, e = 0.9;
+        for (const Solver solver : {Solver::event, Solver::soft}) {
+            CAPTURE(name_of(solver));
+            Scene scene;
+            scene.accuracy.solver = solver;
+            std::vector<double> masses;
+            for (int i = 0; i < kBodies; ++i) {
+                masses.push_back(static_cast<Real>(std::pow(kRatio, i)));
+                scene.add(disc(0.5, std::pow(kRatio, i), {1.1 * i, 0}, {i == 0 ? 1.0 : 0.0, 0}, e));
+            }
+            BasicWorld<Real> world(scene);
+            for (int i = 0; i < 180; ++i) world.step(kStep);
+            double incoming = 1;
+            for (std::uint32_t i = 0; i + 1 < kBodies; ++i) {
+                const Speeds exact =
+                    after_impact(masses[i], incoming, masses[i + 1], 0, static_cast<double>(Real(e)));
+                CAPTURE(i);
+                CHECK(std::abs(world.state({i, 0}).velocity.x - exact.first) <= 10 * kExact<Real>);
+                incoming = exact.second;
+            }
+            CHECK(std::abs(world.state({kBodies - 1, 0}).velocity.x - incoming) <= 10 * kExact<Real>);
+        }
+    }
+
     TEST_CASE_TEMPLATE("two balls and a wall collide as often as pi has digits: 3, 31 and 314 times", Real,
                        float, double) {
         // Galperin, "Playing pool with pi", 2003: masses 1 and 100^k collide floor(pi 10^k) times.
