@@ -39,7 +39,8 @@ class Counter : public b2ContactListener {
 
 class Box2d2Peer : public Peer {
   public:
-    Box2d2Peer(const BenchScene& bench, const PeerSettings& settings) : world_(as_b2(bench.scene.gravity)) {
+    Box2d2Peer(const BenchScene& bench, const PeerSettings& settings)
+        : has_no_skin_(settings.for_errors), world_(as_b2(bench.scene.gravity)) {
         if (settings.iterations > 0) {
             velocity_iterations_ = settings.iterations;
             position_iterations_ = position_iterations_of(settings.iterations);
@@ -88,11 +89,12 @@ class Box2d2Peer : public Peer {
         definition.restitutionThreshold = 0;  // slow impacts bounce too
         return definition;
     }
-    static void add_blocks(b2Body& body, const std::vector<WallBlock>& blocks, const Material& material) {
+    void add_blocks(b2Body& body, const std::vector<WallBlock>& blocks, const Material& material) const {
         for (const WallBlock& block : blocks) {
             b2PolygonShape shape;
             shape.SetAsBox(static_cast<float>(block.half_extent.x), static_cast<float>(block.half_extent.y),
                            as_b2(block.centre), 0);
+            if (has_no_skin_) shape.m_radius = 0;  // its polygons are a centimetre thicker than they say
             const b2FixtureDef definition = fixture(shape, material);
             body.CreateFixture(&definition);
         }
@@ -116,6 +118,7 @@ class Box2d2Peer : public Peer {
         discs_.push_back(body);
     }
 
+    bool has_no_skin_;
     int velocity_iterations_ = kVelocityIterations, position_iterations_ = kPositionIterations;
     Counter counter_;
     b2World world_;

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
+#include <set>
 
 #include "accuracy/solvers.hpp"
 
@@ -63,6 +66,34 @@ std::optional<Order> observed_order(const CaseResult& result, const Contender& c
     for (std::size_t i = 0; i < x.size(); ++i) sx += x[i], sy += y[i], sxx += x[i] * x[i], sxy += x[i] * y[i];
     fit.order = (n * sxy - sx * sy) / (n * sxx - sx * sx);
     return fit;
+}
+
+std::optional<Sources> sources_of(const CaseResult& result, const Contender& contender, std::size_t error) {
+    const auto& all = swept_solvers();
+    const auto swept = std::find_if(all.begin(), all.end(),
+                                    [&](const SweptSolver& each) { return each.name() == contender.name; });
+    if (swept == all.end() || !swept->has_residual) return std::nullopt;
+    std::set<double, std::greater<>> steps;
+    for (const Point& point : result.points)
+        if (is_of(point, contender)) steps.insert(point.setting.dt);
+    if (steps.empty()) return std::nullopt;
+    const double middle = *std::next(steps.begin(), static_cast<std::ptrdiff_t>(steps.size() / 2));
+    Sources sources;
+    for (const Point& point : result.points) {
+        if (!is_of(point, contender) || !point.failure.empty()) continue;
+        const Setting& s = point.setting;
+        const Sources::Part part{s.dt, s.substeps, s.iterations, point.errors[error].value};
+        if (s.substeps == swept->most_substeps() && s.iterations == swept->most_iterations())
+            sources.step.push_back(part);
+        if (s.dt == middle) sources.residual.push_back(part);
+    }
+    std::sort(sources.step.begin(), sources.step.end(),
+              [](const auto& a, const auto& b) { return a.dt > b.dt; });
+    std::sort(sources.residual.begin(), sources.residual.end(), [](const auto& a, const auto& b) {
+        return a.substeps * a.iterations < b.substeps * b.iterations;
+    });
+    if (sources.step.size() < 2 || sources.residual.size() < 2) return std::nullopt;
+    return sources;
 }
 
 const Point* cheapest(const CaseResult& result, const Contender& contender, double target) {

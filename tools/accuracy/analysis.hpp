@@ -32,6 +32,20 @@ struct Order {
 /// Nothing if the error does not fall over three steps: round-off, or no convergence.
 std::optional<Order> observed_order(const CaseResult& result, const Contender& contender, std::size_t error);
 
+/// Where an error comes from, for what has a residual: the step with all the work that is swept, the work at
+/// one step, and what is left where both are at their end - softness, round-off, or too long a step still.
+struct Sources {
+    struct Part {
+        double dt = 0;  ///< s
+        int substeps = 1, iterations = 1;
+        double error = 0;
+    };
+    std::vector<Part> step;      ///< longest step first, with the most work
+    std::vector<Part> residual;  ///< at the middle step, least work first
+};
+/// Nothing if there are fewer than two points of either sweep.
+std::optional<Sources> sources_of(const CaseResult& result, const Contender& contender, std::size_t error);
+
 /// The cheapest point of a contender whose first error is at most `target`, of a statistic with its standard
 /// error; null if none is.
 const Point* cheapest(const CaseResult& result, const Contender& contender, double target);

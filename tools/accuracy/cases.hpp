@@ -13,6 +13,12 @@ Case bouncing_ball();
 Case bouncing_discs();
 Case resting_lattice();
 Case bouncing_lattice();
+Case sticking_disc();
+Case sliding_disc();
+Case rolling_disc();
+Case slipping_disc();
+Case launched_disc();
+Case stopping_disc();
 Case oblique_impacts();
 Case rough_impacts();
 Case shock_chain();
@@ -22,6 +28,7 @@ Case galilean_cannon();
 Case elastic_gas();
 Case gas_pressure();
 Case cooling_gas();
+Case stack();
 
 /// All of them, in order. A new case is a file and a line in cases.cpp.
 std::span<const Case> all_cases();

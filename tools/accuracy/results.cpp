@@ -48,6 +48,26 @@ Json orders_of(const CaseResult& result) {
     return orders;
 }
 
+Json sources_in(const CaseResult& result) {
+    Json found = Json::array();
+    const auto parts_of = [](const std::vector<Sources::Part>& parts) {
+        Json json = Json::array();
+        for (const Sources::Part& part : parts)
+            json.push_back({{"dt", part.dt},
+                            {"substeps", part.substeps},
+                            {"iterations", part.iterations},
+                            {"error", part.error}});
+        return json;
+    };
+    for (const Contender& contender : contenders_in(result))
+        if (const auto sources = sources_of(result, contender, 0))
+            found.push_back({{"solver", contender.name},
+                             {"precision", precision_name(contender.precision)},
+                             {"step", parts_of(sources->step)},
+                             {"residual", parts_of(sources->residual)}});
+    return found;
+}
+
 Json times_of(const CaseResult& result) {
     Json times = Json::array();
     for (const Contender& contender : contenders_in(result))
@@ -81,6 +101,7 @@ Json to_json(const CaseResult& result) {
     }
     json["orders"] = orders_of(result);
     json["time_to_reach"] = times_of(result);
+    json["sources"] = sources_in(result);
     return json;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -16,8 +17,11 @@ struct SweptSolver {
     std::vector<int> substeps;    ///< at the case's middle step; the first is the one of the other sweeps
     std::vector<int> iterations;  ///< likewise
     std::string why;              ///< what it is good and bad at, a sentence for the advice
+    bool has_residual = false;    ///< whether substeps or iterations leave something unsolved
     std::string engine{};         ///< another engine, in place of the solver
 
+    int most_substeps() const { return *std::max_element(substeps.begin(), substeps.end()); }
+    int most_iterations() const { return *std::max_element(iterations.begin(), iterations.end()); }
     std::string name() const { return engine.empty() ? std::string(name_of(solver)) : engine; }
 };
 

@@ -53,6 +53,9 @@ double work_of(const Json& point) {
     return sum;
 }
 
+/// A relative error below this is none: 1e-18 of a way is no number that anything computes.
+constexpr double kNothing = 1e-18;
+
 /// Where points stand that have no error, or none that a logarithm can show.
 struct Edges {
     double top = 1, bottom = 1e-17;
@@ -64,7 +67,7 @@ Edges edges_of(const Json& result, std::size_t error) {
         if (has_failed(point) || !is_known(point, error)) continue;
         const double value = point.at("errors").at(error).at("value").get<double>();
         edges.top = std::max(edges.top, value);
-        if (value > 0) edges.bottom = std::min(edges.bottom, value);
+        if (value > kNothing) edges.bottom = std::min(edges.bottom, value);
     }
     return {edges.top > 0 ? 10 * edges.top : 1, edges.bottom / 10};
 }
@@ -74,7 +77,8 @@ Point point_at(const Json& point, std::size_t error, double x, const Edges& edge
         return {.x = x, .y = edges.top, .label = label_of(point) + ": " + plain(point.at("failure"))};
     const Json& band = point.at("errors").at(error);
     const double value = band.at("value").get<double>();
-    if (!(value > 0)) return {.x = x, .y = edges.bottom, .label = label_of(point) + ": no error at all"};
+    if (!(value > kNothing))
+        return {.x = x, .y = edges.bottom, .label = label_of(point) + ": no error at all"};
     return {.x = x,
             .y = value,
             .low = std::max(band.at("low").get<double>(), edges.bottom),
@@ -172,6 +176,34 @@ void add_times(const Json& result, Page& page) {
     page.table(table);
 }
 
+/// "0.0428 at 1/30 s, 0.007 at 1/240 s"
+std::string parts_text(const Json& parts, bool by_step) {
+    std::string text;
+    for (const Json& part : parts) {
+        const std::string work = part.at("substeps") != 1 || part.at("iterations") == 1
+                                     ? plain(part.at("substeps")) + " substeps"
+                                     : plain(part.at("iterations")) + " iterations";
+        text += (text.empty() ? "" : ", ") + number(part.at("error").get<double>(), "%.2g") +
+                (by_step ? " at " + step_text(part.at("dt")) : " with " + work);
+    }
+    return text;
+}
+
+/// What the step does with all the work there is, and what the work does at one step.
+void add_sources(const Json& result, Page& page) {
+    const Json sources = result.value("sources", Json::array());
+    if (sources.empty()) return;
+    Table table{.caption =
+                    "Where the error comes from: the step at a converged solve, what is unsolved at one "
+                    "step. What neither takes away is softness or round-off",
+                .headers = {"solver", "step length", "residual"}};
+    for (const Json& each : sources)
+        table.rows.push_back(
+            {contender_of(each), parts_text(each.at("step"), true),
+             step_text(each.at("residual").at(0).at("dt")) + ": " + parts_text(each.at("residual"), false)});
+    page.table(table);
+}
+
 void add_case(const Json& result, Page& page) {
     page.heading(plain(result.at("id")) + ": " + plain(result.at("title")));
     std::string text =
@@ -190,6 +222,7 @@ void add_case(const Json& result, Page& page) {
         page.paragraph("Left out: " + plain(out.at("engine")) + ", because " + plain(out.at("why")) + ".");
     for (std::size_t error = 0; error < result.at("errors").size(); ++error) add_charts(result, error, page);
     add_times(result, page);
+    add_sources(result, page);
 }
 
 }  // namespace
