@@ -96,14 +96,15 @@ void solve(benchmark::State& state, const KernelTable<Real>& table, double numbe
     time_kernel(state, {work, items, held * items}, [&] { kernel(arguments, 0, items); });
 }
 
-/// Candidates of which a chosen share is near enough to touch; each body is in two, as in find_impacts.
+/// Contacts of which a chosen share is near enough to touch; each body is in two, as in find_impacts.
 template <class Real>
 void find_contacts(benchmark::State& state, const KernelTable<Real>& table) {
     const auto items = static_cast<std::size_t>(state.range(0));
     const double share = static_cast<double>(state.range(1)) / 100;
-    PressedPairs<Real> out(items + kRowPadding);
-    Column<Real> motion(4 * (items + 1)), impulse(items), friction(items), approach(items + kRowPadding);
-    Column<std::int32_t> a(items), b(items), candidate(items + kRowPadding);
+    PressedPairs<Real> out(items);
+    Column<Real> motion(4 * (items + 1)), reach(filled<Real>(items, 1));
+    Column<std::int32_t> a(items), b(items);
+    Column<std::uint8_t> is_live(items / kContactBlock);
     std::mt19937 random(23);
     std::uniform_real_distribution<double> unit(0, 1);
     for (std::size_t row = 1; row < items + 1; ++row)
@@ -115,24 +116,20 @@ void find_contacts(benchmark::State& state, const KernelTable<Real>& table) {
     const FindContacts<Real> arguments{.motion = motion.data(),
                                        .a = a.data(),
                                        .b = b.data(),
-                                       .normal_impulse = impulse.data(),
-                                       .friction_impulse = friction.data(),
+                                       .reach = reach.data(),
+                                       .normal_impulse = out.normal_impulse.data(),
+                                       .friction_impulse = out.friction_impulse.data(),
                                        .rolling_impulse = nullptr,
-                                       .radius = nullptr,
-                                       .inverse_mass = nullptr,
-                                       .friction = nullptr,
-                                       .rolling = nullptr,
-                                       .uniform_radius = Real(0.5),
-                                       .uniform_inverse_mass = 1,
+                                       .normal_x = out.normal_x.data(),
+                                       .normal_y = out.normal_y.data(),
+                                       .separation = out.separation.data(),
+                                       .approach = nullptr,
                                        .dt = static_cast<Real>(kStep),
                                        .near = Real(0.005),
-                                       .out = out.arguments().contacts,
-                                       .candidate = candidate.data(),
-                                       .approach = nullptr};
-    const auto kernel = table.contacts[kRoughContacts].find;
+                                       .is_live = is_live.data()};
+    const auto kernel = table.find_contacts;
     const double hits = static_cast<double>(kernel(arguments, 0, items)) / static_cast<double>(items);
-    const measure::Work work{.bytes = 8 + 6 * sizeof(Real) + hits * (12 + 7 * sizeof(Real)),
-                             .operations = 17 + 9 * hits};
+    const measure::Work work{.bytes = 8 + 12 * sizeof(Real), .operations = 40};
     time_kernel(state, {work, items, static_cast<std::size_t>(work.bytes) * items, hits},
                 [&] { benchmark::DoNotOptimize(kernel(arguments, 0, items)); });
 }

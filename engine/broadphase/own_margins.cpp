@@ -11,7 +11,7 @@ namespace carom {
 namespace {
 
 // docs/decisions/0012-threads-of-soft.md has the measurements.
-constexpr double kOwnSteps = 5;           // of a body, at its speed
+constexpr double kOwnSteps = 3;           // of a body, at its speed
 constexpr double kSmallestMargin = 0.05;  // of the smallest radius
 constexpr double kLargestMargin = 1;      // of the largest radius
 constexpr double kFewestSteps = 1.25;     // whatever the largest margin is

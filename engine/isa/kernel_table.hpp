@@ -13,7 +13,6 @@ namespace carom {
 template <class Real>
 struct ContactKernels {
     using Solve = void (*)(const SolveContacts<Real>&, std::size_t first, std::size_t last);
-    std::size_t (*find)(const FindContacts<Real>&, std::size_t first, std::size_t last);
     Solve warm_start_pairs, warm_start_supports;
     Solve first_pairs, first_supports;
     Solve next_pairs, next_supports;
@@ -37,6 +36,7 @@ struct KernelTable {
     std::size_t (*find_impacts_near)(const GridLevel<Real>&, const FindImpactsNear<Real>&);
     std::size_t (*find_impacts_near_uniform_radius)(const GridLevel<Real>&, const FindImpactsNear<Real>&);
     void (*end_flight)(const EndFlight<Real>&, std::size_t first, std::size_t last);
+    std::size_t (*find_contacts)(const FindContacts<Real>&, std::size_t first, std::size_t last);
     // smooth; rough; rough, and some bodies do not turn; the last two with rolling resistance
     std::array<ContactKernels<Real>, 5> contacts;
     // The last three: without and with rotation.

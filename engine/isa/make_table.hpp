@@ -19,7 +19,6 @@ namespace {
 template <unsigned kVariant, class Real, class Isa>
 constexpr ContactKernels<Real> make_contact_kernels() {
     return {
-        .find = &find_contacts<kVariant, Real, Isa>,
         .warm_start_pairs = &warm_start_pairs<kVariant, Real, Isa>,
         .warm_start_supports = &warm_start_supports<kVariant, Real, Isa>,
         .first_pairs = &solve_pairs<kVariant, true, Real, Isa>,
@@ -45,6 +44,7 @@ constexpr KernelTable<Real> make_table(std::string_view isa) {
         .find_impacts_near = &find_impacts_near<false, Real, Isa>,
         .find_impacts_near_uniform_radius = &find_impacts_near<true, Real, Isa>,
         .end_flight = &end_flight<Real, Isa>,
+        .find_contacts = &find_contacts<Real, Isa>,
         .contacts = {make_contact_kernels<0, Real, Isa>(), make_contact_kernels<kRough, Real, Isa>(),
                      make_contact_kernels<kRough | kFixedAngles, Real, Isa>(),
                      make_contact_kernels<kRough | kRolling, Real, Isa>(),

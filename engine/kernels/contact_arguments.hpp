@@ -14,6 +14,10 @@
 
 namespace carom {
 
+/// Contacts of a block belong to one colour: a batch of any width is in one block. It is kRowPadding, which
+/// kernels do not see.
+inline constexpr std::size_t kContactBlock = 16;
+
 /// What a variant of the contact kernels has compiled in.
 enum ContactVariant : unsigned {
     kRough = 1,        // friction, and with it rotation
@@ -60,26 +64,24 @@ struct SolveContacts {
     Real push;       // m, largest displacement of that kind
 };
 
-/// Candidate pairs of one colour that are near enough to touch in this step.
+/// What changes from step to step in the contacts of a group. They stay where they are; blocks of them
+/// without any that can touch in this step are told apart, so that nothing need look at them again.
 template <class Real>
 struct FindContacts {
-    const Real* motion;     // [rows][4]: x, y [m], vx, vy [m/s] at the start of the step
-    const std::int32_t* a;  // rows of the candidates
-    const std::int32_t* b;  //
-    Real* normal_impulse;   // N s, of the candidates, from the step before; zeroed where there is no contact
-    const Real* friction_impulse;  // null without friction
-    const Real* rolling_impulse;   // null without rolling resistance
-    const Real* radius;            // m, or null: uniform_radius serves all
-    const Real* inverse_mass;      // 1/kg, >= 0, or null: uniform_inverse_mass serves all
-    const Real* friction;          // Coulomb coefficient, or null
-    const Real* rolling;           // coefficient of rolling resistance, or null
-    Real uniform_radius;
-    Real uniform_inverse_mass;
-    Real dt;                   // s, of the step
-    Real near;                 // m, separation up to which slow bodies are in contact
-    ContactColumns<Real> out;  // room for last - first and a batch more
-    std::int32_t* candidate;   // out: number of the candidate
-    Real* approach;            // out: m/s, relative normal velocity at the start; null without restitution
+    const Real* motion;      // [rows][4]: x, y [m], vx, vy [m/s] at the start of the step
+    const std::int32_t* a;   // rows
+    const std::int32_t* b;   //
+    const Real* reach;       // m, sum of the radii; zero for padding
+    Real* normal_impulse;    // N s, from the step before; zeroed where bodies cannot touch
+    Real* friction_impulse;  // likewise
+    Real* rolling_impulse;   // likewise; null without rolling resistance
+    Real* normal_x;          // out
+    Real* normal_y;          // out
+    Real* separation;        // out, m
+    Real* approach;          // out: m/s, relative normal velocity at the start; null without restitution
+    Real dt;                 // s, of the step
+    Real near;               // m, separation up to which slow bodies are in contact
+    std::uint8_t* is_live;   // out, [last / kContactBlock]: whether a contact of the block can touch
 };
 
 /// The passage from the end of one substep to the start of the next, or to the end of the step.

@@ -37,31 +37,31 @@ F time_of_meeting(F dx, F dy, F vx, F vy, F squared, F reach, F dt) {
     return simd::select((c > zero) & (b < zero), t, zero);
 }
 
-/// Candidates whose bodies touch or may come to touch in this step, compressed into contacts.
-/// @return how many.
-template <unsigned kVariant, class Real, class Isa>
+/// Normals and separations of contacts.
+/// @return how many can touch in this step.
+template <class Real, class Isa>
 std::size_t find_contacts(const FindContacts<Real>& k, std::size_t first, std::size_t last) {
     using Lanes = simd::Lanes<Real, Isa>;
     using F = typename Lanes::Batch;
-    std::int32_t numbers[16];
-    for (std::size_t n = 0; n < 16; ++n) numbers[n] = static_cast<std::int32_t>(first + n);
     std::size_t count = 0;
-    const ContactColumns<Real>& out = k.out;
-    for (std::size_t p = first; p < last; p += Lanes::size) {
-        const auto a = Lanes::load_rows4(k.motion, k.a + p);
-        const auto b = Lanes::load_rows4(k.motion, k.b + p);
-        const auto rows_a = Lanes::load_rows(k.a + p), rows_b = Lanes::load_rows(k.b + p);
-        const F dx = b[0] - a[0], dy = b[1] - a[1];
-        const F dvx = b[2] - a[2], dvy = b[3] - a[3];
-        F reach(k.uniform_radius + k.uniform_radius);
-        if (k.radius) reach = Lanes::gather(k.radius, rows_a) + Lanes::gather(k.radius, rows_b);
-        const F squared = dx * dx + dy * dy;
-        const F near = reach + F(k.near) + F(k.dt) * (simd::abs(dvx) + simd::abs(dvy));
-        const auto live = squared < near * near;
-        const F impulse = Lanes::load(k.normal_impulse + p);
-        Lanes::store(k.normal_impulse + p, simd::select(live, impulse, F(0)));
-        const unsigned bits = simd::bitmask(live);
-        if (bits != 0) {
+    for (std::size_t block = first; block < last; block += kContactBlock) {
+        unsigned live_in_block = 0;
+        for (std::size_t p = block; p < block + kContactBlock; p += Lanes::size) {
+            const auto a = Lanes::load_rows4(k.motion, k.a + p);
+            const auto b = Lanes::load_rows4(k.motion, k.b + p);
+            const F dx = b[0] - a[0], dy = b[1] - a[1];
+            const F dvx = b[2] - a[2], dvy = b[3] - a[3];
+            const F reach = Lanes::load(k.reach + p);
+            const F squared = dx * dx + dy * dy;
+            const F near = reach + F(k.near) + F(k.dt) * (simd::abs(dvx) + simd::abs(dvy));
+            const auto is_contact = reach > F(0);
+            const auto live = is_contact & (squared < near * near);
+            Lanes::store(k.normal_impulse + p, simd::select(live, Lanes::load(k.normal_impulse + p), F(0)));
+            Lanes::store(k.friction_impulse + p,
+                         simd::select(live, Lanes::load(k.friction_impulse + p), F(0)));
+            if (k.rolling_impulse)
+                Lanes::store(k.rolling_impulse + p,
+                             simd::select(live, Lanes::load(k.rolling_impulse + p), F(0)));
             // Bodies that are to meet in this step have the normal of the place where they meet.
             const F t = time_of_meeting(dx, dy, dvx, dvy, squared, reach, F(k.dt));
             const F there_x = dx + dvx * t, there_y = dy + dvy * t;
@@ -69,40 +69,17 @@ std::size_t find_contacts(const FindContacts<Real>& k, std::size_t first, std::s
             const auto coincident = there == F(0);
             const F inverse = F(1) / simd::sqrt(simd::select(coincident, F(1), there));
             F nx = there_x * inverse, ny = there_y * inverse;
-            if (simd::any(coincident))
-                separate_coincident<Lanes, Real>(k.a + p, k.b + p, simd::bitmask(coincident), nx, ny);
-            F inverse_mass(k.uniform_inverse_mass + k.uniform_inverse_mass);
-            if (k.inverse_mass)
-                inverse_mass = simd::abs(Lanes::gather(k.inverse_mass, rows_a)) +
-                               simd::abs(Lanes::gather(k.inverse_mass, rows_b));
-            Lanes::compress_store(out.normal_x + count, nx, bits);
-            Lanes::compress_store(out.normal_y + count, ny, bits);
-            Lanes::compress_store(out.separation + count, dx * nx + dy * ny - reach, bits);
-            Lanes::compress_store(out.mass + count, F(1) / inverse_mass, bits);
-            Lanes::compress_store(out.normal_impulse + count, impulse, bits);
-            if constexpr ((kVariant & kRough) != 0)
-                Lanes::compress_store(out.friction_impulse + count, Lanes::load(k.friction_impulse + p),
-                                      bits);
-            if (k.friction)
-                Lanes::compress_store(
-                    out.friction + count,
-                    simd::sqrt(Lanes::gather(k.friction, rows_a) * Lanes::gather(k.friction, rows_b)), bits);
-            if constexpr ((kVariant & kRolling) != 0) {
-                Lanes::compress_store(out.rolling_impulse + count, Lanes::load(k.rolling_impulse + p), bits);
-                if (k.rolling)
-                    Lanes::compress_store(
-                        out.rolling + count,
-                        simd::max(Lanes::gather(k.rolling, rows_a), Lanes::gather(k.rolling, rows_b)), bits);
-                if (k.radius)
-                    Lanes::compress_store(out.rolling_share + count, Lanes::gather(k.radius, rows_b) / reach,
-                                          bits);
-            }
-            if (k.approach) Lanes::compress_store(k.approach + count, dvx * nx + dvy * ny, bits);
-            Lanes::compress_store(out.a + count, rows_a, bits);
-            Lanes::compress_store(out.b + count, rows_b, bits);
-            count += Lanes::compress_store(k.candidate + count, Lanes::load_rows(numbers), bits);
+            if (simd::any(coincident & is_contact))
+                separate_coincident<Lanes, Real>(k.a + p, k.b + p, simd::bitmask(coincident & is_contact), nx,
+                                                 ny);
+            Lanes::store(k.normal_x + p, nx);
+            Lanes::store(k.normal_y + p, ny);
+            Lanes::store(k.separation + p, dx * nx + dy * ny - reach);
+            if (k.approach) Lanes::store(k.approach + p, dvx * nx + dvy * ny);
+            live_in_block += static_cast<unsigned>(__builtin_popcount(simd::bitmask(live)));
         }
-        for (std::int32_t& number : numbers) number += static_cast<std::int32_t>(Lanes::size);
+        k.is_live[block / kContactBlock] = live_in_block > 0;
+        count += live_in_block;
     }
     return count;
 }

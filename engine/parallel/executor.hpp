@@ -51,6 +51,17 @@ class Executor {
         run(tasks, {&fn, [](const void* call, std::size_t task) { (*static_cast<const Fn*>(call))(task); }});
     }
 
+    /// As for_each_chunk, for loops that are dearer than the cheapest.
+    /// @param nanoseconds  about what a row takes on one thread
+    template <class Fn>
+    void for_each_chunk(std::size_t rows, std::size_t rows_per_chunk, double nanoseconds,
+                        const Fn& fn) const {
+        const std::size_t chunks = (rows + rows_per_chunk - 1) / rows_per_chunk;
+        for_each_task(chunks, nanoseconds * static_cast<double>(rows), [&](std::size_t c) {
+            fn(c, c * rows_per_chunk, std::min(rows, (c + 1) * rows_per_chunk));
+        });
+    }
+
     /// Whether for_each_chunk would use more than the caller's thread.
     bool is_parallel(std::size_t rows) const noexcept {
         return rows >= kSmallestParallelRows && has_threads();

@@ -221,57 +221,68 @@ void ContactGraph<Real>::colour_supports(std::size_t rows) {
         colour_group(found_supports_, group, taken, nullptr);
 }
 
-/// Fills the last batch of each colour from `first` on.
+/// Fills what is no contact in the colours [first, last).
 template <class Real>
-void pad_colours(ContactCandidates<Real>& sorted, std::size_t first, std::int32_t dummy) {
-    for (std::size_t c = first; c < sorted.colours(); ++c)
-        for (std::size_t i = sorted.begin[c] + sorted.count[c]; i < sorted.begin[c] + padded(sorted.count[c]);
-             ++i)
-            sorted.a[i] = sorted.b[i] = dummy, sorted.normal_impulse[i] = sorted.friction_impulse[i] = 0;
+void pad_colours(ContactCandidates<Real>& sorted, std::size_t first, std::size_t last, std::int32_t row) {
+    for (std::size_t c = first; c < last; ++c) {
+        const std::size_t stride = sorted.stride(c), used = stride * sorted.count[c];
+        for (std::size_t k = stride > 1 ? 0 : used; k < padded(used); ++k) {
+            if (k < used && k % stride == 0) continue;
+            const std::size_t i = sorted.begin[c] + k;
+            sorted.a[i] = sorted.b[i] = row, sorted.normal_impulse[i] = sorted.friction_impulse[i] = 0;
+        }
+    }
 }
 
 /// Places of all colours, and their padding.
+/// @param first_padding_row  of the first group; the others' follow
 template <class Real>
 void ContactGraph<Real>::lay_out_colours(const Found& found, ContactCandidates<Real>& sorted,
-                                         std::int32_t dummy) {
+                                         std::size_t first_padding_row) {
     const std::size_t group_count = found.begin.size() - 1;
     sorted.begin.clear(), sorted.count.clear(), sorted.first_colour.clear();
     next_.clear();
     std::size_t place = 0, overflow = 0;
-    const auto open = [&](std::size_t count) {
+    const auto open = [&](std::size_t count, std::size_t stride) {
         sorted.begin.push_back(place), sorted.count.push_back(count);
-        place += padded(count);
+        place += padded(stride * count);
     };
     for (std::size_t group = 0; group < group_count; ++group) {
         const std::uint32_t* counts = colour_counts_.data() + group * (kColours + 1);
         sorted.first_colour.push_back(sorted.begin.size());
-        for (std::size_t colour = 0; colour < kColours && counts[colour] > 0; ++colour) open(counts[colour]);
+        for (std::size_t colour = 0; colour < kColours && counts[colour] > 0; ++colour)
+            open(counts[colour], 1);
         next_.push_back(overflow);
         overflow += counts[kOverflow];
     }
     sorted.has_overflow = overflow > 0;
-    if (overflow > 0) open(overflow);
+    if (overflow > 0) open(overflow, sorted.overflow_stride);
     sorted.first_colour.push_back(sorted.begin.size());
 
     sorted.a.resize_for_overwrite(place), sorted.b.resize_for_overwrite(place);
     sorted.normal_impulse.resize_for_overwrite(place), sorted.friction_impulse.resize_for_overwrite(place);
-    pad_colours(sorted, 0, dummy);
+    for (std::size_t group = 0; group < group_count; ++group)
+        pad_colours(sorted, sorted.first_colour[group], sorted.first_colour[group + 1],
+                    static_cast<std::int32_t>(first_padding_row + group));
 }
 
 /// Stable, so that bodies near each other stay near each other within a colour.
 template <class Real>
 void ContactGraph<Real>::sort_by_colour(const Found& found, ContactCandidates<Real>& sorted,
-                                        std::int32_t dummy, const Executor& executor) {
-    lay_out_colours(found, sorted, dummy);
+                                        std::size_t first_padding_row, const Executor& executor) {
+    lay_out_colours(found, sorted, first_padding_row);
     const double work = kNanosecondsToSort * static_cast<double>(found.a.size());
     executor.for_each_task(sorted.groups(), work, [&](std::size_t group) {
         std::size_t next[kColours + 1];
         const std::size_t first = sorted.first_colour[group], last = sorted.first_colour[group + 1];
         for (std::size_t c = first; c < std::min(last, first + kColours); ++c)
             next[c - first] = sorted.begin[c];
-        next[kOverflow] = sorted.has_overflow ? sorted.begin.back() + next_[group] : 0;
+        if (sorted.has_overflow)
+            next[kOverflow] = sorted.begin.back() + sorted.overflow_stride * next_[group];
         for (std::size_t i = found.begin[group]; i < found.begin[group + 1]; ++i) {
-            const std::size_t place = next[found.colour[i]]++;
+            const std::uint8_t colour = found.colour[i];
+            const std::size_t place = next[colour];
+            next[colour] += colour == kOverflow ? sorted.overflow_stride : 1;
             sorted.a[place] = found.a[i], sorted.b[place] = found.b[i];
             sorted.normal_impulse[place] = found.normal_impulse[i];
             sorted.friction_impulse[place] = found.friction_impulse[i];
@@ -294,18 +305,19 @@ void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const Bodies<
     group_supports();
 
     for (Column<std::uint64_t>& colours : colours_of_) colours.resize_for_overwrite(rows);
-    const auto dummy = static_cast<std::int32_t>(rows);
+    pairs.overflow_stride = kRowPadding;
     colour_pairs(rows, executor);
-    sort_by_colour(found_pairs_, pairs, dummy, executor);
+    sort_by_colour(found_pairs_, pairs, rows, executor);
     colour_supports(rows);
-    sort_by_colour(found_supports_, supports, dummy, executor);
+    sort_by_colour(found_supports_, supports, rows, executor);
     if (keeps_rolling) rolling_of_pairs_.recall(pairs), rolling_of_supports_.recall(supports);
     trail.start(rows);
+    ++version;
 }
 
 /// Lays the last group of `sorted` out anew, with what is in late_ besides.
 template <class Real>
-void ContactGraph<Real>::add_late(ContactCandidates<Real>& sorted, std::int32_t dummy, bool both_move) {
+void ContactGraph<Real>::add_late(ContactCandidates<Real>& sorted, std::int32_t padding_row, bool both_move) {
     const std::size_t group = sorted.groups() - 1, first = sorted.first_colour[group];
     std::size_t place = first < sorted.colours() ? sorted.begin[first] : sorted.a.size();
     sorted.for_each(group, group + 1, [&](std::size_t i) {
@@ -330,7 +342,7 @@ void ContactGraph<Real>::add_late(ContactCandidates<Real>& sorted, std::int32_t 
         const std::size_t count = counts[colour];
         if (count == 0) continue;
         sorted.begin.push_back(place), sorted.count.push_back(count);
-        place += padded(count);
+        place += padded(count * (colour == kOverflow ? sorted.overflow_stride : 1));
     }
     sorted.has_overflow = counts[kOverflow] > 0;
     sorted.first_colour.back() = sorted.colours();
@@ -340,11 +352,12 @@ void ContactGraph<Real>::add_late(ContactCandidates<Real>& sorted, std::int32_t 
     for (std::size_t colour = 0, c = first; colour <= kColours; ++colour)
         if (counts[colour] > 0) next[colour] = sorted.begin[c++];
     for (const Late& late : late_) {
-        const std::size_t i = next[late.colour]++;
+        const std::size_t i = next[late.colour];
+        next[late.colour] += late.colour == kOverflow ? sorted.overflow_stride : 1;
         sorted.a[i] = late.a, sorted.b[i] = late.b;
         sorted.normal_impulse[i] = late.normal_impulse, sorted.friction_impulse[i] = late.friction_impulse;
     }
-    pad_colours(sorted, first, dummy);
+    pad_colours(sorted, first, sorted.colours(), padding_row);
 }
 
 template <class Real>
@@ -377,16 +390,17 @@ void ContactGraph<Real>::add(const Candidates<Real>& candidates, const Bodies<Re
                           if (!is_known(stray, side)) new_supports_.push_back({stray, side, 0, 0, 0});
                       });
     }
-    const auto dummy = static_cast<std::int32_t>(bodies.count);
     const auto add_to = [&](ContactCandidates<Real>& contacts, const std::vector<Late>& added,
-                            RollingMemory<Real>& rolling) {
+                            RollingMemory<Real>& rolling, std::size_t padding_row) {
         if (added.empty()) return;
         if (keeps_rolling) rolling.file(contacts, bodies.count);
         late_ = added;
-        add_late(contacts, dummy, &contacts == &pairs);
+        add_late(contacts, static_cast<std::int32_t>(padding_row), &contacts == &pairs);
         if (keeps_rolling) rolling.recall(contacts);
+        ++version;
     };
-    add_to(pairs, new_pairs_, rolling_of_pairs_), add_to(supports, new_supports_, rolling_of_supports_);
+    add_to(pairs, new_pairs_, rolling_of_pairs_, bodies.count + groups.far());
+    add_to(supports, new_supports_, rolling_of_supports_, bodies.count);
 }
 
 template <class Real>

@@ -34,11 +34,18 @@ class ContactGraph {
     void add(const Candidates<Real>& candidates, const Bodies<Real>& bodies, const Walls* walls);
 
     bool keeps_rolling = false;     ///< rolling impulses, too
+    std::int64_t version = 0;       ///< counts renewals and additions
     RowTrail trail;                 ///< to be told of rows that change between renewals
     ContactGroups groups;           ///< of the last renewal
     ContactCandidates<Real> pairs;  ///< of two bodies that move, a < b
     /// Of a body that moves and what nothing moves: walls, immovable bodies.
     ContactCandidates<Real> supports;
+
+    /// Rows that padding names: each group has its own beyond the bodies, so that no two threads write to
+    /// one.
+    static std::size_t padding_rows(const ContactGroups& groups) {
+        return groups.count() + groups.support_count();
+    }
 
     std::size_t bytes() const;
 
@@ -80,10 +87,10 @@ class ContactGraph {
     void colour_pairs(std::size_t rows, const Executor& executor);
     void colour_supports(std::size_t rows);
     void colour_group(Found& found, std::size_t group, std::uint64_t* of_a, std::uint64_t* of_b);
-    void sort_by_colour(const Found& found, ContactCandidates<Real>& sorted, std::int32_t dummy,
+    void sort_by_colour(const Found& found, ContactCandidates<Real>& sorted, std::size_t first_padding_row,
                         const Executor& executor);
-    void add_late(ContactCandidates<Real>& sorted, std::int32_t dummy, bool both_move);
-    void lay_out_colours(const Found& found, ContactCandidates<Real>& sorted, std::int32_t dummy);
+    void add_late(ContactCandidates<Real>& sorted, std::int32_t padding_row, bool both_move);
+    void lay_out_colours(const Found& found, ContactCandidates<Real>& sorted, std::size_t first_padding_row);
 
     Found found_pairs_, found_supports_;
     std::vector<std::int32_t> listed_a_, listed_b_;  // supports as they are found

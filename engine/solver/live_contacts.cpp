@@ -5,35 +5,70 @@
 
 namespace carom {
 
+namespace {
+
+template <class Column>
+void fit(Column& column, std::size_t contacts, bool is_used) {
+    column.resize_for_overwrite(is_used ? contacts : 0);
+}
+
+}  // namespace
+
 template <class Real>
-void LiveContacts<Real>::resize(const ContactCandidates<Real>& candidates, bool is_support, bool is_rough,
-                                bool friction_varies, bool bounces) {
+void LiveContacts<Real>::fit_bounces(std::size_t contacts, bool bounces, bool is_rough) {
+    for (Column<Real>* column : {&largest_impulse, &approach, &bounce_impulse, &spare})
+        fit(*column, contacts, bounces);
+    fit(bounce_friction, contacts, bounces && is_rough);
+}
+
+template <class Real>
+void LiveContacts<Real>::resize(const ContactCandidates<Real>& candidates, bool is_rough, bool bounces) {
     const std::size_t contacts = candidates.a.size() + kRowPadding * candidates.overflow();
     begin.assign(candidates.colours(), 0);
     count.assign(candidates.colours(), 0);
     has_overflow_ = candidates.has_overflow;
-    const auto fit = [contacts](auto& column, bool is_used) {
-        column.resize_for_overwrite(is_used ? contacts : 0);
-    };
-    fit(a, true), fit(b, !is_support);
-    for (Column<Real>* column : {&normal_x, &normal_y, &separation, &mass, &normal_impulse, &floor})
-        fit(*column, true);
-    fit(friction_impulse, is_rough), fit(friction, friction_varies);
-    fit(surface_normal, is_support), fit(surface_tangent, is_support);
-    for (Column<Real>* column : {&largest_impulse, &approach, &bounce_impulse, &spare}) fit(*column, bounces);
-    fit(bounce_friction, bounces && is_rough);
-    fit(candidate, true);
+    fit(a, contacts, true), fit(candidate, contacts, true);
+    for (Column<Real>* column : {&normal_x, &normal_y, &separation, &mass, &normal_impulse, &floor,
+                                 &surface_normal, &surface_tangent})
+        fit(*column, contacts, true);
+    fit(friction_impulse, contacts, is_rough), fit(friction, contacts, is_rough);
+    fit_bounces(contacts, bounces, is_rough);
 }
 
 template <class Real>
-void LiveContacts<Real>::resize_rolling(bool is_rolling, bool coefficient_varies, bool radius_varies) {
-    const bool is_support = b.empty();
-    const auto fit = [this](auto& column, bool is_used) {
-        column.resize_for_overwrite(is_used ? a.size() : 0);
-    };
-    fit(rolling_impulse, is_rolling), fit(rolling, is_rolling && coefficient_varies);
-    fit(rolling_share, is_rolling && radius_varies), fit(surface_rolling, is_rolling && is_support);
-    fit(bounce_rolling, is_rolling && !bounce_impulse.empty());
+void LiveContacts<Real>::resize_in_place(const ContactCandidates<Real>& candidates, bool friction_varies,
+                                         bool bounces) {
+    const std::size_t contacts = candidates.a.size();
+    begin = candidates.begin, count = candidates.count;
+    has_overflow_ = candidates.has_overflow;
+    for (Column<Real>* column : {&normal_x, &normal_y, &separation, &mass, &reach, &floor})
+        fit(*column, contacts, true);
+    fit(friction, contacts, friction_varies);
+    fit_bounces(contacts, bounces, true);
+    is_live.resize_for_overwrite(contacts / kContactBlock),
+        run.resize_for_overwrite(contacts / kContactBlock);
+    run_count.assign(candidates.groups(), 0), live_count.assign(candidates.groups(), 0);
+    group_begin.clear();
+    for (std::size_t group = 0; group < candidates.groups(); ++group)
+        group_begin.push_back(candidates.first_place(group));
+    group_begin.push_back(contacts);
+}
+
+template <class Real>
+void LiveContacts<Real>::swap_with(ContactCandidates<Real>& candidates) {
+    a.swap(candidates.a), b.swap(candidates.b);
+    normal_impulse.swap(candidates.normal_impulse), friction_impulse.swap(candidates.friction_impulse);
+    rolling_impulse.swap(candidates.rolling_impulse);
+}
+
+template <class Real>
+void LiveContacts<Real>::resize_rolling(std::size_t contacts, bool is_support, bool is_rolling,
+                                        bool coefficient_varies, bool radius_varies) {
+    if (is_support) fit(rolling_impulse, contacts, is_rolling);  // pairs share theirs with their candidates
+    fit(rolling, contacts, is_rolling && coefficient_varies);
+    fit(rolling_share, contacts, is_rolling && radius_varies);
+    fit(surface_rolling, contacts, is_rolling && is_support);
+    fit(bounce_rolling, contacts, is_rolling && !bounce_impulse.empty());
 }
 
 template <class Real>
@@ -60,13 +95,14 @@ ContactColumns<Real> LiveContacts<Real>::columns() {
 
 template <class Real>
 std::size_t LiveContacts<Real>::bytes() const {
-    std::size_t bytes = a.bytes() + b.bytes() + candidate.bytes();
+    std::size_t bytes = a.bytes() + b.bytes() + candidate.bytes() + is_live.bytes() + run.bytes();
     for (const Column<Real>* column :
          {&normal_x,        &normal_y,         &separation,      &mass,
           &normal_impulse,  &friction_impulse, &friction,        &floor,
-          &largest_impulse, &surface_normal,   &surface_tangent, &approach,
-          &bounce_impulse,  &bounce_friction,  &spare,           &rolling_impulse,
-          &rolling,         &rolling_share,    &surface_rolling, &bounce_rolling})
+          &largest_impulse, &surface_normal,   &surface_tangent, &reach,
+          &approach,        &bounce_impulse,   &bounce_friction, &spare,
+          &rolling_impulse, &rolling,          &rolling_share,   &surface_rolling,
+          &bounce_rolling})
         bytes += column->bytes();
     return bytes;
 }

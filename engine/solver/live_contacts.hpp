@@ -15,24 +15,37 @@ struct LiveContacts {
     Column<std::int32_t> a, b;
     Column<Real> normal_x, normal_y, separation, mass, normal_impulse, friction_impulse, friction, floor;
     Column<Real> largest_impulse, surface_normal, surface_tangent;
-    Column<std::int32_t> candidate;  // number among the candidates
+    Column<Real> reach;              // m, sum of the radii; only of pairs
+    Column<std::int32_t> candidate;  // number among the candidates; only of supports
     Column<Real> approach;           // m/s, relative normal velocity at the start of the step
     Column<Real> bounce_impulse, bounce_friction, spare;
     Column<Real> rolling_impulse, rolling, rolling_share, surface_rolling, bounce_rolling;
     std::vector<std::size_t> begin, count;  // of each colour
 
-    void resize(const ContactCandidates<Real>& candidates, bool is_support, bool is_rough,
-                bool friction_varies, bool bounces);
-    /// The columns of rolling resistance; none of them without it. After `resize`.
-    void resize_rolling(bool is_rolling, bool coefficient_varies, bool radius_varies);
+    /// Blocks of kContactBlock contacts [first, last) of which each has some that can touch.
+    struct Run {
+        std::uint32_t first, last;
+    };
+    // Only of pairs.
+    Column<std::uint8_t> is_live;                    // a block
+    Column<Run> run;                                 // those of a group begin at its first block
+    std::vector<std::size_t> run_count, live_count;  // a group: runs, contacts that can touch
+    std::vector<std::size_t> group_begin;            // place of each group, and the end
+    std::size_t first_place(std::size_t group) const { return group_begin[group]; }
+
+    /// Room for supports, which are compressed: candidates that cannot touch in this step are left out.
+    void resize(const ContactCandidates<Real>& candidates, bool is_rough, bool bounces);
+    /// Room for pairs, which stand where they stand among the candidates.
+    void resize_in_place(const ContactCandidates<Real>& candidates, bool friction_varies, bool bounces);
+    /// The columns of rolling resistance; none of them without it. After the others.
+    void resize_rolling(std::size_t contacts, bool is_support, bool is_rolling, bool coefficient_varies,
+                        bool radius_varies);
+    /// Takes the columns that pairs share with their candidates, or gives them back.
+    void swap_with(ContactCandidates<Real>& candidates);
+
     ContactColumns<Real> columns();
     std::size_t bytes() const;
 
-    /// Where the contacts of a group begin: where its candidates do. Behind them there is room.
-    static std::size_t first_place(const ContactCandidates<Real>& candidates, std::size_t group) {
-        const std::size_t colour = candidates.first_colour[group];
-        return colour < candidates.colours() ? candidates.begin[colour] : candidates.a.size();
-    }
     /// Closes colour number `colour`, whose contacts stand one behind the other from `first` on: fills
     /// its last batch with contacts of row `dummy` that push nothing. The overflow's contacts may share
     /// bodies, so each of them gets a batch of its own.
@@ -59,6 +72,7 @@ struct LiveContacts {
 
   private:
     bool is_serial(std::size_t colour) const { return has_overflow_ && colour + 1 == count.size(); }
+    void fit_bounces(std::size_t contacts, bool bounces, bool is_rough);
     void pad(std::size_t first, std::size_t count, std::int32_t dummy);
 
     bool has_overflow_ = false;

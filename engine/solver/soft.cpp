@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "effects/flight.hpp"
 #include "effects/friction.hpp"
@@ -21,14 +22,19 @@ constexpr int kFirstSweeps = 32;
 /// Impulses of substeps that were longer or shorter by this factor are of no use.
 constexpr double kOtherLength = 2;
 
+static_assert(kContactBlock == kRowPadding);
+
 // ns a contact on one thread, for the executor: docs/decisions/0012-threads-of-soft.md.
-constexpr double kNanosecondsToFind = 3, kNanosecondsToSweep = 2, kNanosecondsToKeep = 0.5;
+constexpr double kNanosecondsToFind = 3, kNanosecondsToSweep = 2;
+constexpr double kNanosecondsToBegin = 0.7, kNanosecondsToAdvance = 1;  // a body
+constexpr std::size_t kSoftRowsPerChunk = 1024;                         // records of 24 KiB
 
 }  // namespace
 
 template <class Real>
 void SoftSolver<Real>::derive_masses(const Bodies<Real>& bodies) {
     if (masses_are_known_) return;
+    described_version_ = -1;
     masses_vary_ = !bodies.mass.is_uniform() || bodies.has_flags;
     some_are_fixed_ = false;
     if (masses_vary_) inverse_mass_.resize(bodies.count);
@@ -68,7 +74,7 @@ void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Colum
     spin_decay_ = flight_clock_at(h, world.drag.angular).u;
 
     // Beyond the bodies a record for the padding of each group, so that no two tasks write to the same.
-    const std::size_t rows = padded(count_ + graph.groups.count() + graph.groups.support_count());
+    const std::size_t rows = padded(count_ + ContactGraph<Real>::padding_rows(graph.groups));
     velocity_.resize(4 * rows), start_velocity_.resize(4 * rows), displacement_.resize(2 * rows);
     turn_.resize(turns_ ? rows : 0);
     const auto real = [](double value) { return static_cast<Real>(value); };
@@ -83,9 +89,9 @@ void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Colum
     k.velocity = velocity_.data(), k.start_velocity = start_velocity_.data();
     k.displacement = displacement_.data(), k.turn = turns_ ? turn_.data() : nullptr;
     const auto kernel = kernels.begin_substeps[turns_ ? 1 : 0];
-    executor.for_each_chunk(count_, kRowsPerChunk, [&](std::size_t, std::size_t first, std::size_t last) {
-        kernel(k, first, padded(last));
-    });
+    executor.for_each_chunk(
+        count_, kSoftRowsPerChunk, kNanosecondsToBegin,
+        [&](std::size_t, std::size_t first, std::size_t last) { kernel(k, first, padded(last)); });
     for (Column<Real>* records : {&velocity_, &start_velocity_})  // padding must not fall
         std::fill(records->data() + 4 * count_, records->data() + 4 * rows, Real(0));
     elapsed_ = 0;
@@ -104,52 +110,70 @@ SolveContacts<Real> SoftSolver<Real>::arguments(LiveContacts<Real>& live) {
     return k;
 }
 
-/// Contacts of one group of pairs that can touch in this step.
+/// What stays the same until the pairs change.
 template <class Real>
-void SoftSolver<Real>::find_group(const FindContacts<Real>& all, std::size_t group) {
-    ContactCandidates<Real>& candidates = graph.pairs;
-    const ContactColumns<Real> out = pairs_.columns();
-    const auto find = contact_kernels().find;
-    std::size_t place = pairs_.first_place(candidates, group);
-    for (std::size_t c = candidates.first_colour[group]; c < candidates.first_colour[group + 1]; ++c) {
-        const std::size_t begin = candidates.begin[c];
-        FindContacts<Real> k = all;
-        k.a = candidates.a.data() + begin, k.b = candidates.b.data() + begin;
-        k.normal_impulse = candidates.normal_impulse.data() + begin;
-        k.friction_impulse = candidates.friction_impulse.data() + begin;
-        ContactColumns<Real>& to = k.out = out;
-        for (std::int32_t** column : {&to.a, &to.b}) *column += place;
-        for (Real** column : {&to.normal_x, &to.normal_y, &to.separation, &to.mass, &to.normal_impulse})
-            *column += place;
-        if (to.friction_impulse) to.friction_impulse += place;
-        if (to.friction) to.friction += place;
-        if (rolls_) k.rolling_impulse = candidates.rolling_impulse.data() + begin;
-        for (Real** column : {&to.rolling_impulse, &to.rolling, &to.rolling_share})
-            if (*column) *column += place;
-        k.candidate = pairs_.candidate.data() + place;
-        k.approach = bounces_ ? pairs_.approach.data() + place : nullptr;
-        std::size_t count = find(k, 0, padded(candidates.count[c]));
-        while (count > 0 && to.a[count - 1] == static_cast<std::int32_t>(count_))
-            --count;  // padding touches itself
-        for (std::size_t i = 0; i < count; ++i) k.candidate[i] += static_cast<std::int32_t>(begin);
-        place = pairs_.close_colour(c, place, count, padding_row(group));
+void SoftSolver<Real>::describe_group(const Bodies<Real>& bodies, std::size_t group) {
+    const std::size_t first = pairs_.first_place(group), last = pairs_.first_place(group + 1);
+    for (Column<Real>* column :
+         {&pairs_.mass, &pairs_.reach, &pairs_.friction, &pairs_.rolling, &pairs_.rolling_share})
+        if (!column->empty())
+            std::fill(column->data() + first, column->data() + last, Real(0));  // of padding
+    const Real same = static_cast<Real>(bodies.inverse_mass(0));
+    pairs_.for_each(graph.pairs.first_colour[group], graph.pairs.first_colour[group + 1], [&](std::size_t i) {
+        const auto a = static_cast<std::size_t>(pairs_.a[i]), b = static_cast<std::size_t>(pairs_.b[i]);
+        pairs_.reach[i] = bodies.radius[a] + bodies.radius[b];
+        const Real inverse_mass =
+            masses_vary_ ? std::fabs(inverse_mass_[a]) + std::fabs(inverse_mass_[b]) : same + same;
+        pairs_.mass[i] = Real(1) / inverse_mass;
+        if (friction_varies_) pairs_.friction[i] = std::sqrt(bodies.friction[a] * bodies.friction[b]);
+        if (!pairs_.rolling.empty())
+            pairs_.rolling[i] = std::max(bodies.rolling_resistance[a], bodies.rolling_resistance[b]);
+        if (!pairs_.rolling_share.empty()) pairs_.rolling_share[i] = bodies.radius[b] / pairs_.reach[i];
+    });
+}
+
+/// Runs of blocks of a group that have contacts which can touch.
+template <class Real>
+void SoftSolver<Real>::list_runs(std::size_t group) {
+    const std::size_t first = pairs_.first_place(group) / kContactBlock,
+                      last = pairs_.first_place(group + 1) / kContactBlock;
+    LiveContacts<Real>& live = pairs_;
+    std::size_t runs = 0;
+    for (std::size_t block = first; block < last; ++block) {
+        if (!live.is_live[block]) continue;
+        const bool follows = runs > 0 && live.run[first + runs - 1].last == block;
+        if (!follows) live.run[first + runs++].first = static_cast<std::uint32_t>(block);
+        live.run[first + runs - 1].last = static_cast<std::uint32_t>(block + 1);
     }
+    live.run_count[group] = runs;
 }
 
 template <class Real>
 void SoftSolver<Real>::find_pairs(const Bodies<Real>& bodies, const Column<Real>& motion) {
-    pairs_.resize(graph.pairs, false, is_rough_, friction_varies_, bounces_);
-    pairs_.resize_rolling(rolls_, rolling_varies_, !bodies.radius.is_uniform());
-    FindContacts<Real> all{};
-    all.motion = motion.data();
-    all.radius = bodies.radius.data(), all.uniform_radius = bodies.radius.uniform_value();
-    all.inverse_mass = masses_vary_ ? inverse_mass_.data() : nullptr;
-    all.uniform_inverse_mass = bodies.count > 0 ? static_cast<Real>(bodies.inverse_mass(0)) : Real(0);
-    all.friction = friction_varies_ ? bodies.friction.data() : nullptr;
-    all.rolling = rolling_varies_ ? bodies.rolling_resistance.data() : nullptr;
-    all.dt = static_cast<Real>(dt_), all.near = static_cast<Real>(near_);
-    const double work = kNanosecondsToFind * static_cast<double>(graph.pairs.a.size());
-    executor_->for_each_task(graph.groups.count(), work, [&](std::size_t group) { find_group(all, group); });
+    const bool is_new = described_version_ != graph.version;
+    if (is_new) {
+        pairs_.resize_in_place(graph.pairs, friction_varies_, bounces_);
+        pairs_.resize_rolling(graph.pairs.a.size(), false, rolls_, rolling_varies_,
+                              !bodies.radius.is_uniform());
+    }
+    pairs_.swap_with(graph.pairs);
+    FindContacts<Real> k{};
+    k.motion = motion.data();
+    k.a = pairs_.a.data(), k.b = pairs_.b.data(), k.reach = pairs_.reach.data();
+    k.normal_impulse = pairs_.normal_impulse.data(), k.friction_impulse = pairs_.friction_impulse.data();
+    k.rolling_impulse = rolls_ ? pairs_.rolling_impulse.data() : nullptr;
+    k.normal_x = pairs_.normal_x.data(), k.normal_y = pairs_.normal_y.data();
+    k.separation = pairs_.separation.data(), k.approach = bounces_ ? pairs_.approach.data() : nullptr;
+    k.dt = static_cast<Real>(dt_), k.near = static_cast<Real>(near_);
+    k.is_live = pairs_.is_live.data();
+    const double work = kNanosecondsToFind * static_cast<double>(pairs_.a.size());
+    executor_->for_each_task(graph.groups.count(), work, [&](std::size_t group) {
+        if (is_new) describe_group(bodies, group);
+        pairs_.live_count[group] =
+            kernels_->find_contacts(k, pairs_.first_place(group), pairs_.first_place(group + 1));
+        list_runs(group);
+    });
+    described_version_ = graph.version;
 }
 
 /// What lasts from step to step is force: after substeps of another length the impulses are of another size.
@@ -180,19 +204,28 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const Candid
         if (bounces_)
             for (Column<Real>* column : {&live->largest_impulse, &live->bounce_impulse})
                 std::fill(column->begin(), column->end(), Real(0));
-    counters.contacts = static_cast<std::int64_t>(pairs_.contacts() + supports_.contacts());
+    counters.contacts = static_cast<std::int64_t>(
+        std::accumulate(pairs_.live_count.begin(), pairs_.live_count.end(), supports_.contacts()));
     counters.colours = static_cast<std::int64_t>(pairs_.count.size());
     counters.overflow = static_cast<std::int64_t>(pairs_.overflow());
     sweep({contact_kernels().warm_start_pairs, arguments(pairs_)},
           {contact_kernels().warm_start_supports, arguments(supports_)});
 }
 
-/// One colour after the other; within a colour no two contacts share a body that moves.
+/// One colour after the other. Within a batch no two contacts share a body that moves, so a whole run of
+/// colours is one call.
 template <class Real>
-void SoftSolver<Real>::sweep_group(const LiveContacts<Real>& live, const ContactCandidates<Real>& candidates,
-                                   std::size_t group, const Sweep& sweep) {
-    for (std::size_t c = candidates.first_colour[group]; c < candidates.first_colour[group + 1]; ++c)
-        sweep.kernel(sweep.arguments, live.begin[c], live.begin[c] + live.length(c));
+void SoftSolver<Real>::sweep_pairs(std::size_t group, const Sweep& sweep) const {
+    const typename LiveContacts<Real>::Run* run =
+        pairs_.run.data() + pairs_.first_place(group) / kContactBlock;
+    for (std::size_t i = 0; i < pairs_.run_count[group]; ++i)
+        sweep.kernel(sweep.arguments, kContactBlock * run[i].first, kContactBlock * run[i].last);
+}
+
+template <class Real>
+void SoftSolver<Real>::sweep_supports(std::size_t group, const Sweep& sweep) const {
+    for (std::size_t c = graph.supports.first_colour[group]; c < graph.supports.first_colour[group + 1]; ++c)
+        sweep.kernel(sweep.arguments, supports_.begin[c], supports_.begin[c] + supports_.length(c));
 }
 
 /// All contacts once, in the order that contact_groups.hpp explains.
@@ -200,10 +233,8 @@ template <class Real>
 void SoftSolver<Real>::sweep(const Sweep& over_pairs, const Sweep& over_supports) {
     const ContactGroups& groups = graph.groups;
     const double work = kNanosecondsToSweep * static_cast<double>(counters.contacts);
-    const auto pair_group = [&](std::size_t group) { sweep_group(pairs_, graph.pairs, group, over_pairs); };
-    const auto support_group = [&](std::size_t group) {
-        sweep_group(supports_, graph.supports, group, over_supports);
-    };
+    const auto pair_group = [&](std::size_t group) { sweep_pairs(group, over_pairs); };
+    const auto support_group = [&](std::size_t group) { sweep_supports(group, over_supports); };
     executor_->for_each_task(groups.tasks_of_part_1(), work, [&](std::size_t task) {
         const std::size_t chunk = 2 * task;
         pair_group(ContactGroups::inside(chunk));
@@ -243,25 +274,9 @@ void SoftSolver<Real>::advance_bodies(bool is_last) {
     k.h = real(h_), k.gain_x = real(gain_.x), k.gain_y = real(gain_.y);
     k.decay = real(decay_), k.spin_decay = real(spin_decay_), k.is_last = is_last;
     const auto kernel = kernels_->advance_bodies[turns_ ? 1 : 0];
-    executor_->for_each_chunk(count_, kRowsPerChunk, [&](std::size_t, std::size_t first, std::size_t last) {
-        kernel(k, first, padded(last));
-    });
-}
-
-/// Impulses back to the candidates.
-template <class Real>
-void SoftSolver<Real>::keep_impulses(const LiveContacts<Real>& live,
-                                     ContactCandidates<Real>& candidates) const {
-    const double work = kNanosecondsToKeep * static_cast<double>(live.a.size());
-    executor_->for_each_task(candidates.groups(), work, [&](std::size_t group) {
-        live.for_each(candidates.first_colour[group], candidates.first_colour[group + 1], [&](std::size_t i) {
-            const auto candidate = static_cast<std::size_t>(live.candidate[i]);
-            candidates.normal_impulse[candidate] = live.normal_impulse[i];
-            if (!live.friction_impulse.empty())
-                candidates.friction_impulse[candidate] = live.friction_impulse[i];
-            if (rolls_) candidates.rolling_impulse[candidate] = live.rolling_impulse[i];
-        });
-    });
+    executor_->for_each_chunk(
+        count_, kSoftRowsPerChunk, kNanosecondsToAdvance,
+        [&](std::size_t, std::size_t first, std::size_t last) { kernel(k, first, padded(last)); });
 }
 
 template <class Real>
@@ -275,7 +290,13 @@ void SoftSolver<Real>::end_contacts(const WorldState<Real>& world, Books& books)
             book_bounces(books);
         }
     }
-    keep_impulses(pairs_, graph.pairs), keep_impulses(supports_, graph.supports);
+    pairs_.swap_with(graph.pairs);
+    supports_.for_each([&](std::size_t i) {
+        const auto candidate = static_cast<std::size_t>(supports_.candidate[i]);
+        graph.supports.normal_impulse[candidate] = supports_.normal_impulse[i];
+        if (is_rough_) graph.supports.friction_impulse[candidate] = supports_.friction_impulse[i];
+        if (rolls_) graph.supports.rolling_impulse[candidate] = supports_.rolling_impulse[i];
+    });
 }
 
 template <class Real>
@@ -290,9 +311,9 @@ void SoftSolver<Real>::end_substeps(Bodies<Real>& bodies, std::vector<std::int32
     k.angular_velocity = turns_ ? bodies.angular_velocity.data() : nullptr;
     k.largest_position = static_cast<Real>(kLargestPosition);
     k.largest_speed = static_cast<Real>(kLargestSpeed);
-    lost_rows_.prepare(count_, kRowsPerChunk);
+    lost_rows_.prepare(count_, kSoftRowsPerChunk);
     const auto kernel = kernels_->end_substeps[turns_ ? 1 : 0];
-    executor_->for_each_chunk(count_, kRowsPerChunk,
+    executor_->for_each_chunk(count_, kSoftRowsPerChunk, kNanosecondsToBegin,
                               [&](std::size_t chunk, std::size_t first, std::size_t last) {
                                   EndSubsteps<Real> part = k;
                                   part.lost = lost_rows_.part(chunk);

@@ -78,17 +78,16 @@ class SoftSolver {
     void keep_forces(ContactCandidates<Real>& candidates) const;
     void derive_masses(const Bodies<Real>& bodies);
     void find_pairs(const Bodies<Real>& bodies, const Column<Real>& motion);
-    void find_group(const FindContacts<Real>& all, std::size_t group);
+    void describe_group(const Bodies<Real>& bodies, std::size_t group);
+    void list_runs(std::size_t group);
     void find_supports(const WorldState<Real>& world);
     SolveContacts<Real> arguments(LiveContacts<Real>& live);
     void sweep(const Sweep& over_pairs, const Sweep& over_supports);
-    static void sweep_group(const LiveContacts<Real>& live, const ContactCandidates<Real>& candidates,
-                            std::size_t group, const Sweep& sweep);
-    void keep_impulses(const LiveContacts<Real>& live, ContactCandidates<Real>& candidates) const;
-    /// Row that the padding of a group of pairs, or of supports, names.
-    std::int32_t padding_row(std::size_t group) const { return static_cast<std::int32_t>(count_ + group); }
+    void sweep_pairs(std::size_t group, const Sweep& sweep) const;
+    void sweep_supports(std::size_t group, const Sweep& sweep) const;
+    /// Row that the padding of a group of supports names.
     std::int32_t padding_row_of_supports(std::size_t group) const {
-        return padding_row(graph.groups.count() + group);
+        return static_cast<std::int32_t>(count_ + graph.groups.count() + group);
     }
     const ContactKernels<Real>& contact_kernels() const;
     bool find_bounces(LiveContacts<Real>& live, const WorldState<Real>& world);
@@ -120,6 +119,7 @@ class SoftSolver {
 
     Column<Real> velocity_, start_velocity_, displacement_, turn_;
     LiveContacts<Real> pairs_, supports_;
+    std::int64_t described_version_ = -1;  // of the graph whose pairs' masses and reaches are known
     ChunkedList lost_rows_;
     double impulses_of_h_ = 0;  // s, substep of the candidates' impulses; 0 = there are none
     bool are_impulses_known_ = false;

@@ -58,8 +58,8 @@ template <class Real>
 void SoftSolver<Real>::find_supports(const WorldState<Real>& world) {
     ContactCandidates<Real>& candidates = graph.supports;
     const Bodies<Real>& bodies = world.bodies;
-    supports_.resize(candidates, true, is_rough_, is_rough_, bounces_);
-    supports_.resize_rolling(rolls_, true, true);
+    supports_.resize(candidates, is_rough_, bounces_);
+    supports_.resize_rolling(supports_.a.size(), true, rolls_, true, true);
     const auto real = [](double value) { return static_cast<Real>(value); };
     for (std::size_t group = 0, place = 0, c = 0; c < candidates.colours(); ++c) {
         while (c >= candidates.first_colour[group + 1]) ++group;

@@ -21,6 +21,8 @@ void update_contacts(Simulation<Real>& sim) {
 
 template <class Real>
 void find_contacts(Simulation<Real>& sim) {
+    const std::size_t padding_rows = ContactGraph<Real>::padding_rows(sim.soft.graph.groups);
+    sim.solver.flights.motion.resize(4 * padded(sim.world.bodies.count + padding_rows));
     sim.soft.find_contacts(sim.world, sim.candidates, sim.solver.flights.motion, sim.h);
 }
 

@@ -120,8 +120,8 @@ constexpr Golden kGolden[] = {
     {"falling sizes", 0x4fe0c9b61ea50e9c, 0xc84f698047eb650e},
     {"moving obstacles", 0x9450532e75523df8, 0x81f8d27062c9d725},
     {"stack at rest", 0xa436021f760768ad, 0xfd75b447dc578a50},
-    {"rough sizes", 0xc31f3ee70a450744, 0x281b7029149102b6},
-    {"rolling sizes", 0x3343f0505bfc42d4, 0x505efa41574eeecf},
+    {"rough sizes", 0xfd0f21b34fcf5613, 0x7813cddc0b99920b},
+    {"rolling sizes", 0xedd34aed0c745f41, 0xc7121a8d05d93d0f},
 };
 
 }  // namespace

@@ -88,7 +88,9 @@ TEST_SUITE("solver/contact graph") {
         for (std::size_t c = 0; c < graph.pairs.colours(); ++c) {
             const bool is_overflow = graph.pairs.has_overflow && c + 1 == graph.pairs.colours();
             std::set<std::int32_t> rows;
-            for (std::size_t i = graph.pairs.begin[c]; i < graph.pairs.begin[c] + graph.pairs.count[c]; ++i) {
+            CHECK(graph.pairs.begin[c] % kRowPadding == 0);
+            for (std::size_t n = 0; n < graph.pairs.count[c]; ++n) {
+                const std::size_t i = graph.pairs.begin[c] + n * graph.pairs.stride(c);
                 const std::int32_t a = graph.pairs.a[i], b = graph.pairs.b[i];
                 REQUIRE(a < b);
                 REQUIRE(seen.insert({a, b}).second);
@@ -97,7 +99,8 @@ TEST_SUITE("solver/contact graph") {
             }
         }
         CHECK(seen == world.candidate_pairs());
-        CHECK(graph.pairs.has_overflow);  // the large disc has more neighbours than there are colours
+        CHECK(graph.pairs.has_overflow);  // the large disc has more neighbours than there are colours,
+        CHECK(graph.pairs.stride(graph.pairs.colours() - 1) == kRowPadding);  // which get a batch each
     }
 
     TEST_CASE("tasks of a part of a sweep share no body") {
