@@ -304,6 +304,9 @@ Profile BasicWorld<Real>::profile() const {
     const SoftCounters& soft = sim.soft.counters;
     profile.contacts = soft.contacts, profile.colours = soft.colours;
     profile.overflow = soft.overflow, profile.bounces = soft.bounces;
+    const SolveQuality solve = sim.soft.quality();
+    profile.touching = counters.resting_contacts + solve.touching;
+    profile.residual = solve.residual, profile.residual_max = solve.residual_max;
     profile.overlaps_corrected = counters.overlaps_corrected;
     profile.unresolved_impacts = counters.unresolved_impacts;
     profile.quarantined = sim.world.quarantined_count;

@@ -29,6 +29,27 @@ class ProfileTest(ProgramTest):
         begin = stages["begin_flight"]
         self.assertAlmostEqual(begin["ns_per_item"], 1e9 * begin["seconds_per_step"] / 900, delta=1e-6 * begin["ns_per_item"])
 
+    def test_stages_of_solver_soft_have_their_items_and_the_counters_their_values(self):
+        scene = {"carom": 1, "name": "pile", "gravity": [0, -10], "walls": {"min": [0, 0], "max": [8, 20]}, "default_material": {"friction": 0.5},
+                 "generate": [{"lattice": {"count": [7, 6], "origin": [0.7, 0.6], "spacing": [1.1, 1.1], "shape": {"disc": {"radius": 0.5}}}}],
+                 "step": {"dt": 1 / 60, "count": 300}}
+        profile = self.profile(scene)
+        stages = {stage["name"]: stage for stage in profile["stages"]}
+        counters = profile["counters"]
+        self.assertEqual(stages["solve_contacts"]["items"], 2 * 4 * counters["contacts"])  # two sweeps in each of four substeps
+        self.assertEqual(stages["find_contacts"]["items"], counters["candidate_pairs"])
+        self.assertLessEqual(42, counters["touching"])  # every disc lies on something
+        self.assertLessEqual(counters["touching"], counters["contacts"])
+        self.assertLessEqual(counters["residual"], counters["residual_max"])
+        self.assertLess(counters["residual_max"], 10 / 240)  # what gravity adds in a substep
+        self.assertGreater(counters["bytes"], 42 * 50)
+        path = self.write_scene(scene)
+        self.assertIn("residual_max", self.carom("profile", path, "--threads", "1").stdout)
+        self.run_scene(path, "--no-report")
+        summary = json.loads((self.folder / "out/summary.json").read_text())
+        self.assertEqual({key: summary["counters"][key] for key in ("contacts", "touching", "colours", "residual", "residual_max")},
+                         {key: counters[key] for key in ("contacts", "touching", "colours", "residual", "residual_max")})
+
     def test_scalar_kernels_are_not_compared_with_themselves(self):
         profile = self.profile(gas(10, steps=20), "--isa", "scalar")
         self.assertTrue(all("times_scalar" not in stage for stage in profile["stages"]))

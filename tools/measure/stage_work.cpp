@@ -26,6 +26,13 @@ double rebuilt_bodies(const ProfiledSteps& s, double) {
 double candidate_pairs(const ProfiledSteps& s, double calls) {
     return static_cast<double>(s.after.candidate_pairs) * calls;
 }
+double contacts(const ProfiledSteps& s, double calls) {
+    return static_cast<double>(s.after.contacts) * calls;
+}
+/// Contacts are swept twice a substep.
+double swept_contacts(const ProfiledSteps& s, double calls) {
+    return 2 * contacts(s, calls);
+}
 double impacts(const ProfiledSteps& s, double) {
     return static_cast<double>(s.after.impacts - s.before.impacts) / s.steps();
 }
@@ -47,6 +54,15 @@ constexpr std::array kModels{
     StageModel{"advance_rotation", "body", &all_bodies, [](double real) { return 4 * real; }, 3},
     // a record in, two of velocity and one of displacement out
     StageModel{"begin_substeps", "body", &all_bodies, [](double real) { return 16 * real; }, 7},
+    // two rows, impulses, and one record that the pair before did not have
+    StageModel{"find_contacts", "candidate pair", &candidate_pairs, [](double real) { return 6 * real + 8; },
+               30},
+    // two rows; normal, mass, floor; both impulses in and out; a record in and out that the contact before
+    // did not have, and in every other sweep a displacement and the separation
+    StageModel{"solve_contacts", "contact and sweep", &swept_contacts,
+               [](double real) { return 8 + (4 + 4 + 8 + 2.5) * real; }, 46},
+    // number, impulses in and out
+    StageModel{"end_contacts", "contact", &contacts, [](double real) { return 4 * real + 4; }, 0},
     // two records of velocity and one of displacement in and out, the turn
     StageModel{"advance_bodies", "body and substep", &all_bodies, [](double real) { return 22 * real; }, 38},
     StageModel{"end_substeps", "body", &all_bodies, [](double real) { return 17 * real; }, 13},

@@ -29,10 +29,15 @@ struct Profile {
     std::int64_t colours = 0;               ///< groups of contacts that share no body (solver `soft`)
     std::int64_t overflow = 0;              ///< contacts that found no colour and are solved one by one
     std::int64_t bounces = 0;               ///< impacts with restitution (solver `soft`)
-    std::int64_t overlaps_corrected = 0;    ///< pairs or walls pushed apart
-    std::int64_t unresolved_impacts = 0;    ///< left to the next step at the limit of impacts a body and step
-    std::int64_t quarantined = 0;           ///< bodies disabled because their state left the limits
-    std::size_t bytes = 0;                  ///< memory the world holds now
+    std::int64_t touching = 0;  ///< contacts that push in the last step (solver `impulse`: that are at rest)
+    /// m/s, what another sweep would still change in the relative normal velocities of contacts that push:
+    /// root mean square and largest, at the end of the last step. Zero for solvers that converge.
+    double residual = 0;
+    double residual_max = 0;
+    std::int64_t overlaps_corrected = 0;  ///< pairs or walls pushed apart
+    std::int64_t unresolved_impacts = 0;  ///< left to the next step at the limit of impacts a body and step
+    std::int64_t quarantined = 0;         ///< bodies disabled because their state left the limits
+    std::size_t bytes = 0;                ///< memory the world holds now
 };
 
 /// One effect, and why it is on or off.

@@ -97,7 +97,8 @@ class BasicWorld {
     double time() const noexcept;  ///< s, sum of all steps
     /// Energy and momentum now; by cause if the ledger effect is on. Cost: O(bodies).
     Ledger ledger() const;
-    /// Seconds by stage and counters since the world was made. Cost: O(1).
+    /// Seconds by stage and counters since the world was made. Cost: O(contacts of the last
+    /// step) for their residual; steps themselves do not pay for it.
     Profile profile() const;
     /// What runs and why.
     Plan plan() const;

@@ -149,6 +149,18 @@ Json profile_scene(const Scene& scene, const MachineSettings& machine, Trace* tr
     }
     json["seconds_per_step"] = turns.seconds / steps.steps();
     json["measuring_share"] = (readings + 1) * clock_reading / all;
+    const Profile& last = turns.after;
+    json["counters"] = {{"candidate_pairs", last.candidate_pairs},
+                        {"rebuilds", last.rebuilds - turns.before.rebuilds},
+                        {"contacts", last.contacts},
+                        {"touching", last.touching},
+                        {"colours", last.colours},
+                        {"overflow", last.overflow},
+                        {"impacts", last.impacts - turns.before.impacts},
+                        {"bounces", last.bounces - turns.before.bounces},
+                        {"residual", last.residual},
+                        {"residual_max", last.residual_max},
+                        {"bytes", last.bytes}};
     json["stages"] = Json::array();
     for (std::size_t i = 0; i < turns.after.stages.size(); ++i)
         if (turns.after.stages[i].calls > turns.before.stages[i].calls)
@@ -190,8 +202,12 @@ std::string profile_text(const Json& profile) {
         if (stage.contains("item"))
             items += joined(items.empty() ? "\n  items: " : ", ", stage.at("name").get<std::string>(), ": ",
                             stage.at("item").get<std::string>());
+    std::string counters;
+    for (const auto& [name, value] : profile.at("counters").items())
+        counters += joined(counters.empty() ? "\n  counters: " : ", ", name, " ",
+                           value.is_number_float() ? format("%.3g", value.get<double>()) : value.dump());
     return joined(
-        text, items,
+        text, counters, items,
         "\n  roof: share of this core's bandwidth or arithmetic, whichever is nearer; x scalar: faster "
         "than with scalar kernels\n");
 }

@@ -76,6 +76,13 @@ Json counters_of(const Profile& profile) {
             {"wall_impacts", profile.wall_impacts},
             {"simultaneous_impacts", profile.simultaneous_impacts},
             {"resting_contacts", profile.resting_contacts},
+            {"contacts", profile.contacts},
+            {"touching", profile.touching},
+            {"colours", profile.colours},
+            {"overflow", profile.overflow},
+            {"bounces", profile.bounces},
+            {"residual", profile.residual},
+            {"residual_max", profile.residual_max},
             {"overlaps_corrected", profile.overlaps_corrected},
             {"unresolved_impacts", profile.unresolved_impacts},
             {"bytes", profile.bytes}};

@@ -1,0 +1,120 @@
+// What contacts of solver `soft` carry, and how well they are solved: read inside the solver.
+#include "isa/select_isa.hpp"
+#include "step.hpp"
+#include "support/report.hpp"
+#include "support/scenes.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <map>
+#include <vector>
+
+using namespace carom;
+using namespace carom::test;
+
+namespace {
+
+constexpr double kStep = 1.0 / 60, kRadius = 0.5, kGravity = 10;
+
+/// A world's inside without the world around it.
+template <class Real>
+struct Inside {
+    Simulation<Real> sim;
+    StageTimes times;
+
+    explicit Inside(const Scene& scene, int substeps = 4) {
+        sim.kernels = &select_kernels("auto").of<Real>();
+        sim.executor = Executor(1, {});
+        sim.method = Solver::soft;
+        sim.candidates = Candidates<Real>(MarginRule::own);
+        sim.substeps = substeps;
+        sim.world.effects = call_effects(scene, {}).effects;
+        sim.world.gravity = scene.gravity;
+        sim.world.walls = scene.walls;
+        for (const Body& body : scene.bodies) sim.world.append(body);
+    }
+    void run(int steps) {
+        for (int i = 0; i < steps; ++i) step(sim, kStep, times);
+    }
+    /// N, between rows a and b; 0 if they do not touch.
+    double force(std::int32_t a, std::int32_t b) const {
+        double impulse = 0;
+        sim.soft.graph.pairs.for_each([&](std::size_t i) {
+            const auto& pairs = sim.soft.graph.pairs;
+            if ((pairs.a[i] == a && pairs.b[i] == b) || (pairs.a[i] == b && pairs.b[i] == a))
+                impulse = static_cast<double>(pairs.normal_impulse[i]);
+        });
+        return impulse / sim.substep_h;
+    }
+    /// N, that the floor holds up.
+    double floor_force() const {
+        double impulse = 0;
+        sim.soft.graph.supports.for_each([&](std::size_t i) {
+            if (sim.soft.graph.supports.b[i] == kBottom)
+                impulse += static_cast<double>(sim.soft.graph.supports.normal_impulse[i]);
+        });
+        return impulse / sim.substep_h;
+    }
+};
+
+/// Discs on top of each other in a shaft; rows keep their order, being few.
+Scene stack_of(const std::vector<double>& masses) {
+    Scene scene;
+    scene.gravity = {0, -kGravity};
+    scene.walls = Walls{.min = {-1.001 * kRadius, 0}, .max = {1.001 * kRadius, 1000}, .top = false};
+    scene.accuracy.solver = Solver::soft;
+    for (std::size_t i = 0; i < masses.size(); ++i)
+        scene.add(disc(kRadius, masses[i], {0, kRadius * (1 + 2 * static_cast<double>(i))}));
+    return scene;
+}
+
+}  // namespace
+
+TEST_SUITE("physics/contact forces") {
+    TEST_CASE_TEMPLATE("A26: each contact of a stack carries the weight of what is above it", Real, float,
+                       double) {
+        std::vector<double> equal(10, 2.0), growing, doubling;
+        for (int i = 0; i < 10; ++i) growing.push_back(i + 1), doubling.push_back(std::ldexp(1, i));
+        for (const auto& masses : {equal, growing, doubling}) {
+            Inside<Real> inside(stack_of(masses));
+            inside.run(3600);
+            double above = 0, worst = 0;
+            for (std::size_t upper = masses.size(); upper-- > 0;) {
+                above += masses[upper];
+                const auto row = static_cast<std::int32_t>(upper);
+                const double force = upper > 0 ? inside.force(row - 1, row) : inside.floor_force();
+                worst = std::fmax(worst, std::fabs(force / (above * kGravity) - 1));
+            }
+            const double top = static_cast<double>(inside.sim.world.bodies.position_y[masses.size() - 1]);
+            const double sink = kRadius * (2 * static_cast<double>(masses.size()) - 1) - top;
+            report("masses 1 to ", masses.back() / masses.front(), ": largest relative error of a force ",
+                   worst, ", sink ", sink, " m");
+            // Loads of a thousand times what is below them settle slowly: after a minute they are known to
+            // 1e-3.
+            const double settled = sizeof(Real) == 4 ? 1e-4 : 1e-9;
+            CHECK(worst < (masses == doubling ? 1e-3 : settled));
+            CHECK(std::fabs(sink) < (masses == doubling ? 0.05 : settled));
+        }
+    }
+
+    TEST_CASE_TEMPLATE("the residual is what another sweep would change", Real, float, double) {
+        // A disc that lands: nothing is solved yet but its own contact, which one sweep solves.
+        Inside<Real> one(stack_of({1}));
+        one.run(1);
+        CHECK(one.sim.soft.quality().touching == 1);
+        CHECK(one.sim.soft.quality().residual < 1e-6);
+        // A heavy one on a light one: sweeps take the light one's share of what is left, so much is left.
+        Inside<Real> two(stack_of({1, 1000}));
+        two.run(1);
+        const SolveQuality early = two.sim.soft.quality();
+        CHECK(early.touching == 2);
+        const double down = -static_cast<double>(two.sim.world.bodies.velocity_y[1]);
+        report("speed ", down, " m/s, residual ", early.residual, ", largest ", early.residual_max);
+        CHECK(early.residual_max == doctest::Approx(down).epsilon(0.01));  // the light one stands
+        CHECK(early.residual <= early.residual_max);
+        CHECK(early.residual >= early.residual_max / std::sqrt(2) * 0.999);
+        two.run(6000);
+        CHECK(two.sim.soft.quality().residual < 1e-2 * early.residual);
+    }
+}
