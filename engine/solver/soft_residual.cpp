@@ -17,26 +17,36 @@ SolveQuality SoftSolver<Real>::quality() const {
         const Real* record = velocity_.data() + 4 * static_cast<std::size_t>(row);
         return static_cast<double>(record[0]) * nx + static_cast<double>(record[1]) * ny;
     };
-    const auto look_at = [&](const LiveContacts<Real>& live, bool is_support) {
-        live.for_each([&](std::size_t i) {
-            const double impulse = static_cast<double>(live.normal_impulse[i]);
-            if (impulse > 0) ++quality.touching;
-            if (!live.bounce_impulse.empty() && live.bounce_impulse[i] > 0) return;
-            const double nx = static_cast<double>(live.normal_x[i]),
-                         ny = static_cast<double>(live.normal_y[i]);
-            const double of_b =
-                is_support ? static_cast<double>(live.surface_normal[i]) : velocity(live.b[i], nx, ny);
-            const double relative = of_b - velocity(live.a[i], nx, ny);
-            const double mass = static_cast<double>(live.mass[i]);
-            // At most what would take the whole impulse back.
-            const double change = std::fmax(static_cast<double>(live.floor[i]) - relative, -impulse / mass);
-            if (impulse == 0 && change <= 0) return;
-            ++pushing;
-            sum += change * change;
-            quality.residual_max = std::fmax(quality.residual_max, std::fabs(change));
-        });
+    const auto look_at = [&](std::size_t i, double impulse, double relative, const LiveContacts<Real>& live) {
+        if (impulse > 0) ++quality.touching;
+        if (!live.bounce_impulse.empty() && live.bounce_impulse[i] > 0) return;
+        const double mass = static_cast<double>(live.mass[i]);
+        // At most what would take the whole impulse back.
+        const double change = std::fmax(static_cast<double>(live.floor[i]) - relative, -impulse / mass);
+        if (impulse == 0 && change <= 0) return;
+        ++pushing;
+        sum += change * change;
+        quality.residual_max = std::fmax(quality.residual_max, std::fabs(change));
     };
-    look_at(pairs_, false), look_at(supports_, true);
+    const auto is_row = [this](std::int32_t row) { return static_cast<std::size_t>(row) < count_; };
+    // Between steps the candidates have the rows and impulses of pairs, which stand in the same places.
+    graph.pairs.for_each([&](std::size_t i) {
+        const std::size_t block = i / kContactBlock;
+        const std::int32_t a = graph.pairs.a[i], b = graph.pairs.b[i];
+        if (block >= pairs_.is_live.size() || !pairs_.is_live[block] || !is_row(a) || !is_row(b)) return;
+        const double nx = static_cast<double>(pairs_.normal_x[i]),
+                     ny = static_cast<double>(pairs_.normal_y[i]);
+        look_at(i, static_cast<double>(graph.pairs.normal_impulse[i]),
+                velocity(b, nx, ny) - velocity(a, nx, ny), pairs_);
+    });
+    supports_.for_each([&](std::size_t i) {
+        if (!is_row(supports_.a[i])) return;
+        const double nx = static_cast<double>(supports_.normal_x[i]),
+                     ny = static_cast<double>(supports_.normal_y[i]);
+        look_at(i, static_cast<double>(supports_.normal_impulse[i]),
+                static_cast<double>(supports_.surface_normal[i]) - velocity(supports_.a[i], nx, ny),
+                supports_);
+    });
     if (pushing > 0) quality.residual = std::sqrt(sum / static_cast<double>(pushing));
     return quality;
 }
