@@ -54,6 +54,7 @@ void end_contacts(Simulation<Real>& sim) {
 template <class Real>
 void end_substeps(Simulation<Real>& sim) {
     sim.soft.end_substeps(sim.world.bodies, sim.lost);
+    if (sim.world.walls) keep_inside(sim);
     if (sim.lost.empty()) return;
     for (const std::int32_t row : sim.lost)
         if (!sim.world.bodies.is_immovable(static_cast<std::size_t>(row)))

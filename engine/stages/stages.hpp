@@ -86,6 +86,11 @@ void end_contacts(Simulation<Real>& sim);
 template <class Real>
 void end_substeps(Simulation<Real>& sim);
 
+/// Puts back what was thrown through a wall within the step; a part of end_substeps.   reads motion; writes
+/// pose, velocity, books
+template <class Real>
+void keep_inside(Simulation<Real>& sim);
+
 /// Turns bodies.   reads and writes angle, spin
 template <class Real>
 void advance_rotation(Simulation<Real>& sim);

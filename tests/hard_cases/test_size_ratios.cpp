@@ -59,6 +59,37 @@ TEST_SUITE("hard cases/size ratios") {
         run.check();
     }
 
+    TEST_CASE_TEMPLATE(
+        "B6: in a rain of small discs, fifty of their radii a step, nobody is thrown out of the box", Real,
+        float, double) {
+        constexpr double kLarge = 10, kSmall = 0.01, kSide = 12;
+        constexpr int kCount = 300;
+        Scene scene;
+        scene.gravity = {0, -10};
+        const Material rough{.friction = 0.3};
+        scene.walls = Walls{.min = {-kSide, 0}, .max = {kSide, 60}, .material = rough};
+        scene.accuracy.solver = Solver::soft;
+        scene.add({.shape = Disc{kLarge}, .position = {0, kLarge}, .material = rough});
+        for (int i = 0; i < kCount; ++i)
+            scene.add({.shape = Disc{kSmall},
+                       .position = {-11.5 + 23.0 * i / kCount, 25 + 0.05 * (i % 11)},
+                       .velocity = {0.5 * (i % 5 - 2), -20.0},
+                       .material = rough});
+        PassiveRun<Real> run(scene, {.effects = {.ledger = true}});
+        double deepest = 0;
+        for (int i = 0; i < 400; ++i) {
+            run.step(kStep);
+            for (std::uint32_t b = 1; b <= kCount; ++b)
+                deepest = std::fmax(deepest, 1 - run.state(b).position.y / kSmall);
+        }
+        const Ledger books = run.world.ledger();
+        report("deepest ", deepest, " radii in the floor, unexplained ",
+               books.energy_by_cause.unexplained / books.initial.total());
+        CHECK(deepest < 1);
+        CHECK(std::fabs(books.energy_by_cause.unexplained) < 1e-4 * books.initial.total());
+        run.check();
+    }
+
     TEST_CASE_TEMPLATE("B20: five thousand discs carry one of a hundred times their radius", Real, float,
                        double) {
         constexpr double kLarge = 50, kSmall = 0.5, kGravity = 10, kPitch = 0.9;
