@@ -37,7 +37,7 @@ struct SoftSolver<Real>::Impulses {
 
 template <class Real>
 void SoftSolver<Real>::book_pairs(const Impulses& impulses, const Column<Real>& from, Books& books) const {
-    const auto& [normal, friction, rolling] = impulses;
+    const Column<Real>&normal = impulses.normal, &friction = impulses.friction, &rolling = impulses.rolling;
     pairs_.for_each([&](std::size_t i) {
         const Vec2 n{pairs_.normal_x[i], pairs_.normal_y[i]};
         const MeanTwice a = mean_twice(from, velocity_, pairs_.a[i]),
@@ -55,7 +55,7 @@ void SoftSolver<Real>::book_pairs(const Impulses& impulses, const Column<Real>& 
 
 template <class Real>
 void SoftSolver<Real>::book_supports(const Impulses& impulses, const Column<Real>& from, Books& books) const {
-    const auto& [normal, friction, rolling] = impulses;
+    const Column<Real>&normal = impulses.normal, &friction = impulses.friction, &rolling = impulses.rolling;
     supports_.for_each([&](std::size_t i) {
         const Vec2 n{supports_.normal_x[i], supports_.normal_y[i]}, t{-n.y, n.x};
         const double jn = normal[i], jt = friction.empty() ? 0 : static_cast<double>(friction[i]);
