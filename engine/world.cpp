@@ -214,7 +214,8 @@ template <class Real>
 void BasicWorld<Real>::remove(BodyId body) {
     const std::size_t row = implementation_->row_of(body, "World::remove");
     implementation_->sim.soft.graph.trail.follow_removed(row, body_count() - 1);
-    implementation_->world().remove(row);
+    const EdgeStore::Removed edges = implementation_->world().remove(row);
+    implementation_->sim.soft.graph.follow_removed_edges(edges);
     implementation_->sim.forget_derived_state();
 }
 

@@ -1,33 +1,60 @@
 #include <carom/build_info.hpp>
 #include <carom/carom.hpp>
 
+#include <cmath>
+#include <utility>
+
 #include "measure/text.hpp"
 #include "peers/peer.hpp"
 
 namespace carom::bench {
 namespace {
 
+/// The inner faces of the tiles as a chain, with a point wherever a tile ends.
+Body container_of(const Container& container, const Material& material) {
+    const double half = container.side / 2, count = std::ceil(container.side / container.tile_length);
+    Chain chain{.points = {}, .loop = true};
+    Vec2 corner{-half, -half}, along{1, 0};
+    for (int side = 0; side < 4; ++side) {
+        for (double i = 0; i < count; ++i) {
+            const double way = container.side * i / count;
+            chain.points.push_back({corner.x + way * along.x, corner.y + way * along.y});
+        }
+        corner = {corner.x + container.side * along.x, corner.y + container.side * along.y};
+        along = {-along.y, along.x};
+    }
+    return {.type = BodyType::kinematic_body,
+            .shape = std::move(chain),
+            .angular_velocity = container.angular_velocity,
+            .material = material};
+}
+
+/// The bodies of the scene first, then the container.
+Scene with_container(const BenchScene& bench) {
+    Scene scene = bench.scene;
+    if (bench.container) scene.add(container_of(*bench.container, bench.scene.bodies.at(0).material));
+    return scene;
+}
+
 class CaromPeer : public Peer {
   public:
-    explicit CaromPeer(const Scene& scene) : world_(scene, {.threads = 1}) {}
+    explicit CaromPeer(const BenchScene& bench)
+        : world_(with_container(bench), {.threads = 1}), bodies_(bench.scene.bodies.size()) {}
 
     void step(double dt) override { world_.step(dt); }
 
     void read(std::vector<BodyState>& bodies) const override {
-        const auto view = world_.bodies();
-        bodies.resize(view.count);
-        for (const BodyId id : view.id) bodies[id.index] = world_.state(id);
+        bodies.resize(bodies_);
+        for (std::uint32_t i = 0; i < bodies_; ++i) bodies[i] = world_.state({i, 0});
     }
 
   private:
     World world_;
+    std::size_t bodies_;
 };
 
 std::unique_ptr<Peer> make(const BenchScene& scene, const PeerSettings&) {
-    if (scene.container)
-        throw Error(ErrorCode::not_built_yet,
-                    "a container of boxes that turns needs boxes, which are not built yet");
-    return std::make_unique<CaromPeer>(scene.scene);
+    return std::make_unique<CaromPeer>(scene);
 }
 
 }  // namespace

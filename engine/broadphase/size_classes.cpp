@@ -21,7 +21,7 @@ template <class Real>
 void SizeClasses<Real>::count(const Real* reach, const std::uint8_t* flags, std::size_t count) {
     classes_.fill({});
     for (std::size_t row = 0; row < count; ++row) {
-        if (flags && (flags[row] & kDisabled)) continue;
+        if (flags && (flags[row] & kNotInGrid)) continue;
         Members& members = classes_[class_of(reach[row])];
         members.smallest = members.bodies == 0 ? reach[row] : std::min(members.smallest, reach[row]);
         members.largest = std::max(members.largest, reach[row]);

@@ -14,6 +14,13 @@ bool any_flag(const std::uint8_t* flags, std::size_t count, std::uint8_t flag) {
     return (all & flag) != 0;
 }
 
+bool any_immovable_in_grid(const std::uint8_t* flags, std::size_t count) {
+    bool any = false;
+    for (std::size_t row = 0; row < count; ++row)
+        any |= (flags[row] & (kImmovable | kNotInGrid)) == kImmovable;
+    return any;
+}
+
 }  // namespace
 
 template <class Real>
@@ -22,7 +29,7 @@ void UniformGrid<Real>::build(const GridInput<Real>& input, const KernelTable<Re
     kernels_ = &kernels;
     count_ = input.count;
     flags_ = input.flags;
-    has_immovable_ = flags_ && any_flag(flags_, count_, kImmovable);
+    has_immovable_ = flags_ && any_immovable_in_grid(flags_, count_);
     keep_positions(input, executor);
 
     level_count_ = 0;
@@ -31,7 +38,7 @@ void UniformGrid<Real>::build(const GridInput<Real>& input, const KernelTable<Re
         kernels.find_bounds(bounds);
         const bool one_size = static_cast<double>(bounds.min_reach) * kLargestRatioInLevel >=
                               static_cast<double>(bounds.max_reach);
-        if (one_size && !(flags_ && any_flag(flags_, count_, kDisabled)))
+        if (one_size && !(flags_ && any_flag(flags_, count_, kNotInGrid)))
             build_one_level(input, bounds, executor);
         else
             build_levels(input, executor);
@@ -111,7 +118,7 @@ void UniformGrid<Real>::split_by_level(const GridInput<Real>& input) {
     std::vector<std::size_t>& next = split_.next;
     next.assign(split_.first.begin(), split_.first.end());
     for (std::size_t row = 0; row < count_; ++row) {
-        if (flags_ && (flags_[row] & kDisabled)) continue;
+        if (flags_ && (flags_[row] & kNotInGrid)) continue;
         const std::size_t place = next[classes_.level_of(input.reach[row])]++;
         split_.x[place] = input.x[row];
         split_.y[place] = input.y[row];
@@ -130,7 +137,7 @@ void UniformGrid<Real>::list_order(const GridInput<Real>& input) {
     }
     if (next == order_.end()) return;
     for (std::size_t row = 0; row < count_; ++row)
-        if (input.flags[row] & kDisabled) *next++ = static_cast<std::int32_t>(row);
+        if (input.flags[row] & kNotInGrid) *next++ = static_cast<std::int32_t>(row);
 }
 
 template <class Real>

@@ -22,7 +22,7 @@ struct GridInput {
     const Real* y = nullptr;      // m
     const Real* reach = nullptr;  // m, >= 0: radius plus the body's own slack
     const std::uint8_t* flags =
-        nullptr;  // null: none; else kImmovable, kDisabled. Read until find_candidates
+        nullptr;  // null: none; else kImmovable, kNotInGrid. Read until find_candidates
 };
 
 /// Pairs of rows; padded with pairs (count of bodies, count of bodies) to a multiple of kRowPadding.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "scene/event_limits.hpp"
+#include "scene/mass.hpp"
 
 namespace carom {
 namespace {
@@ -29,7 +30,17 @@ std::string what_is_rough(const Scene& scene) {
     return join("body ", body - scene.bodies.begin(), " has ", roughness_of(body->material));
 }
 
+std::string_view name_of(const Shape& shape) {
+    return std::holds_alternative<Segment>(shape) ? "segment"
+           : std::holds_alternative<Chain>(shape) ? "chain"
+                                                  : "disc";
+}
+
 SolverChoice choose(const Scene& scene) {
+    const auto lines = std::find_if(scene.bodies.begin(), scene.bodies.end(),
+                                    [](const Body& body) { return !is_disc(body.shape); });
+    if (lines != scene.bodies.end())
+        return {Solver::soft, join("body ", lines - scene.bodies.begin(), " is a ", name_of(lines->shape))};
     if (const std::string rough = what_is_rough(scene); !rough.empty()) return {Solver::soft, rough};
     if (scene.effects.friction == true) return {Solver::soft, "friction is forced on"};
     if (scene.effects.rolling_resistance == true) return {Solver::soft, "rolling resistance is forced on"};
@@ -78,6 +89,10 @@ std::optional<Problem> find_solver_problem(const EffectOverrides& effects, Solve
 }
 
 std::optional<Problem> find_solver_problem(const Item& item, const Body& body, Solver solver) {
+    if (!is_disc(body.shape) && solver != Solver::soft)
+        return problem(ErrorCode::inconsistent, item, join("/shape/", name_of(body.shape)), "the shape ",
+                       quoted(name_of(body.shape)), ", but the solver ", quoted(name_of(solver)),
+                       " knows discs only. Use \"soft\" or \"auto\".");
     return find_roughness_problem(item, body.material, solver);
 }
 

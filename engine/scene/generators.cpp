@@ -48,6 +48,11 @@ std::optional<Problem> check_pattern(const Item& item, Body body, std::optional<
     if (!body.name.empty())
         return problem(ErrorCode::inconsistent, item, "/name", "a body with the name ", quoted(body.name),
                        "; expected none, as names are unique. Name the bodies after they are made.");
+    if (!is_disc(body.shape))
+        return problem(
+            ErrorCode::inconsistent, item, "/shape",
+            "a shape that is no disc; expected a disc, as generators place discs. Add other shapes "
+            "one by one.");
     if (radius) body.shape = Disc{*radius};
     body.position = {};
     return find_body_problem(item, body);

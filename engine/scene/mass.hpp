@@ -6,8 +6,14 @@ namespace carom {
 
 inline constexpr double kPi = 3.14159265358979323846;
 
+inline bool is_disc(const Shape& shape) {
+    return std::holds_alternative<Disc>(shape);
+}
+
+/// Zero for what is no disc.
 inline double radius_of(const Shape& shape) {
-    return std::get<Disc>(shape).radius;
+    const Disc* disc = std::get_if<Disc>(&shape);
+    return disc ? disc->radius : 0;
 }
 
 inline double area_of(const Shape& shape) {  // m²

@@ -54,7 +54,7 @@ std::optional<Problem> Scene::find_problem() const {
         if (auto found = find_body_problem(item, bodies[i])) return found;
         if (walls)
             if (auto found = find_inside_problem(item, bodies[i], *walls)) return found;
-        spread.take(radius_of(bodies[i].shape), i);
+        if (is_disc(bodies[i].shape)) spread.take(radius_of(bodies[i].shape), i);
     }
     if (auto found = find_spread_problem(spread)) return found;
     if (auto found = find_duplicate_name(bodies)) return found;

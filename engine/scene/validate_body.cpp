@@ -54,6 +54,69 @@ std::optional<Problem> find_color_problem(const Item& item, const std::string& c
                    "; expected \"#rrggbb\" with six hexadecimal digits.");
 }
 
+std::optional<Problem> find_point_problem(const Item& item, std::string_view pointer, Vec2 point) {
+    static constexpr Quantity kPointX{"point x", "m", -kLargestPosition, kLargestPosition, kUseMetres};
+    static constexpr Quantity kPointY{"point y", "m", -kLargestPosition, kLargestPosition, kUseMetres};
+    if (auto found = check(item, join(pointer, "/0"), point.x, kPointX)) return found;
+    return check(item, join(pointer, "/1"), point.y, kPointY);
+}
+
+/// Nothing of the edges' own: only what says that this body cannot have any.
+std::optional<Problem> find_edge_body_problem(const Item& item, const Body& body, std::string_view shape) {
+    if (body.type != BodyType::dynamic_body) return std::nullopt;
+    return problem(ErrorCode::inconsistent, item, "/type", "the shape ", quoted(shape),
+                   " but is dynamic; expected static or kinematic, as a line has no area and so no mass. Set "
+                   "its type, or make it a disc.");
+}
+
+std::optional<Problem> find_length_problem(const Item& item, std::string_view pointer, std::string_view ends,
+                                           Vec2 a, Vec2 b) {
+    const double length = std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
+    if (length >= kSmallestEdge) return std::nullopt;
+    return problem(ErrorCode::out_of_range, item, pointer, "an edge of length ", length, " m from ", a,
+                   " to ", b, ", ", ends, "; expected at least ", kSmallestEdge,
+                   " m. Move one of the two points, or leave it out.");
+}
+
+std::optional<Problem> find_segment_problem(const Item& item, const Body& body, const Segment& segment) {
+    if (auto found = find_edge_body_problem(item, body, "segment")) return found;
+    if (auto found = find_point_problem(item, "/shape/segment/a", segment.a)) return found;
+    if (auto found = find_point_problem(item, "/shape/segment/b", segment.b)) return found;
+    return find_length_problem(item, "/shape/segment/b", "a and b", segment.a, segment.b);
+}
+
+std::optional<Problem> find_chain_problem(const Item& item, const Body& body, const Chain& chain) {
+    constexpr std::string_view kPoints = "/shape/chain/points";
+    if (auto found = find_edge_body_problem(item, body, "chain")) return found;
+    const std::size_t count = chain.points.size(), fewest = chain.loop ? 3 : 2;
+    if (count < fewest)
+        return problem(ErrorCode::out_of_range, item, kPoints, "a chain of ", count,
+                       chain.loop ? " points that is a loop" : " points", "; expected at least ", fewest,
+                       chain.loop ? ". Add points, or set loop to false." : ". Add points.");
+    if (count > kLargestChainPoints)
+        return problem(ErrorCode::too_large, item, kPoints, "a chain of ", count,
+                       " points; expected at most ", kLargestChainPoints, ". Cut it into several bodies.");
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::string pointer = join(kPoints, "/", i);
+        if (auto found = find_point_problem(item, pointer, chain.points[i])) return found;
+        if (i == 0) continue;
+        if (auto found = find_length_problem(item, pointer, join("points ", i - 1, " and ", i),
+                                             chain.points[i - 1], chain.points[i]))
+            return found;
+    }
+    if (!chain.loop) return std::nullopt;
+    return find_length_problem(item, join(kPoints, "/", count - 1),
+                               "the last point and the first, which a loop joins by itself",
+                               chain.points.back(), chain.points.front());
+}
+
+std::optional<Problem> find_shape_problem(const Item& item, const Body& body) {
+    if (const auto* segment = std::get_if<Segment>(&body.shape))
+        return find_segment_problem(item, body, *segment);
+    if (const auto* chain = std::get_if<Chain>(&body.shape)) return find_chain_problem(item, body, *chain);
+    return check(item, "/shape/disc/radius", radius_of(body.shape), kRadius);
+}
+
 struct Axis {
     std::string_view name;
     std::string_view tail;
@@ -99,7 +162,7 @@ std::optional<Problem> find_problem(const Material& material) {
 }
 
 std::optional<Problem> find_body_problem(const Item& item, const Body& body) {
-    if (auto found = check(item, "/shape/disc/radius", radius_of(body.shape), kRadius)) return found;
+    if (auto found = find_shape_problem(item, body)) return found;
     if (auto found = find_position_problem(item, body.position)) return found;
     if (auto found = check(item, "/angle", body.angle, kAngle)) return found;
     if (auto found = find_velocity_problem(item, body.velocity)) return found;

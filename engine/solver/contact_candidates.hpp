@@ -12,7 +12,8 @@ namespace carom {
 /// bits. Each keeps its impulses from step to step while its pair lives.
 template <class Real>
 struct ContactCandidates {
-    Column<std::int32_t> a, b;      // rows; b < 0 is a wall (WallSide). Padding: a row beyond the bodies
+    /// Rows; b < 0 is a wall (WallSide) or an edge (state/edges.hpp). Padding: a row beyond the bodies.
+    Column<std::int32_t> a, b;
     Column<Real> normal_impulse;    // N s, of a substep
     Column<Real> friction_impulse;  // N s
     Column<Real> rolling_impulse;   // N s; empty without rolling resistance

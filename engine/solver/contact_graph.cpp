@@ -42,6 +42,20 @@ void ContactGraph<Real>::rename_rows() {
         });
 }
 
+template <class Real>
+void ContactGraph<Real>::follow_removed_edges(EdgeStore::Removed gone) {
+    if (gone.count == 0) return;
+    supports.for_each([&](std::size_t i) {
+        std::int32_t& b = supports.b[i];
+        if (!is_edge_support(b) || b == RowTrail::kGone) return;
+        const std::int32_t edge = edge_of_support(b);
+        if (edge >= gone.first + gone.count)
+            b = support_of_edge(edge - gone.count);
+        else if (edge >= gone.first)
+            b = RowTrail::kGone, supports.normal_impulse[i] = 0;
+    });
+}
+
 /// Share of the pairs that would be far, by a sample.
 template <class Real>
 double ContactGraph<Real>::far_share(const Candidates<Real>& candidates, const ContactGroups& tried) const {
@@ -291,8 +305,8 @@ void ContactGraph<Real>::sort_by_colour(const Found& found, ContactCandidates<Re
 }
 
 template <class Real>
-void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const Bodies<Real>& bodies,
-                               const Walls* walls, const Executor& executor) {
+void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const EdgeCandidates<Real>& edges,
+                               const Bodies<Real>& bodies, const Walls* walls, const Executor& executor) {
     const std::size_t rows = bodies.count;
     const bool is_moved = trail.has_moved();
     if (is_moved) rename_rows();
@@ -302,6 +316,8 @@ void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const Bodies<
     choose_groups(candidates, rows);
     group_pairs(candidates, bodies, executor);
     if (walls) list_walls(candidates, bodies, *walls);
+    for (const EdgePair pair : edges.pairs())
+        listed_a_.push_back(pair.row), listed_b_.push_back(support_of_edge(pair.edge));
     group_supports();
 
     for (Column<std::uint64_t>& colours : colours_of_) colours.resize_for_overwrite(rows);
@@ -361,8 +377,8 @@ void ContactGraph<Real>::add_late(ContactCandidates<Real>& sorted, std::int32_t 
 }
 
 template <class Real>
-void ContactGraph<Real>::add(const Candidates<Real>& candidates, const Bodies<Real>& bodies,
-                             const Walls* walls) {
+void ContactGraph<Real>::add(const Candidates<Real>& candidates, const EdgeCandidates<Real>& edges,
+                             const Bodies<Real>& bodies, const Walls* walls) {
     new_pairs_.clear(), new_supports_.clear();
     for (const auto& [a, b] : candidates.new_pairs()) {
         if (bodies.is_immovable(static_cast<std::size_t>(a)))
@@ -390,6 +406,8 @@ void ContactGraph<Real>::add(const Candidates<Real>& candidates, const Bodies<Re
                           if (!is_known(stray, side)) new_supports_.push_back({stray, side, 0, 0, 0});
                       });
     }
+    for (const EdgePair pair : edges.new_pairs())
+        new_supports_.push_back({pair.row, support_of_edge(pair.edge), 0, 0, 0});
     const auto add_to = [&](ContactCandidates<Real>& contacts, const std::vector<Late>& added,
                             RollingMemory<Real>& rolling, std::size_t padding_row) {
         if (added.empty()) return;

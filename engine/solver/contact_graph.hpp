@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "broadphase/candidates.hpp"
+#include "broadphase/edge_candidates.hpp"
 #include "parallel/executor.hpp"
 #include "solver/contact_candidates.hpp"
 #include "solver/contact_groups.hpp"
@@ -26,12 +27,16 @@ class ContactGraph {
 
     /// Takes the candidate pairs over. Contacts that were there before keep their impulses.
     /// Cost: about 15 ns a pair on one thread.
-    void renew(const Candidates<Real>& candidates, const Bodies<Real>& bodies, const Walls* walls,
-               const Executor& executor);
+    void renew(const Candidates<Real>& candidates, const EdgeCandidates<Real>& edges,
+               const Bodies<Real>& bodies, const Walls* walls, const Executor& executor);
 
-    /// Adds the pairs that have come with new margins, and walls that these reach: to the last groups.
-    /// Cost: O(contacts of those groups) if there are any.
-    void add(const Candidates<Real>& candidates, const Bodies<Real>& bodies, const Walls* walls);
+    /// Adds the pairs that have come with new margins, and walls and edges that these reach: to the last
+    /// groups. Cost: O(contacts of those groups) if there are any.
+    void add(const Candidates<Real>& candidates, const EdgeCandidates<Real>& edges,
+             const Bodies<Real>& bodies, const Walls* walls);
+
+    /// Edges were removed; later ones moved up. Cost: O(supports).
+    void follow_removed_edges(EdgeStore::Removed gone);
 
     bool keeps_rolling = false;     ///< rolling impulses, too
     std::int64_t version = 0;       ///< counts renewals and additions

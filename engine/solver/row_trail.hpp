@@ -10,7 +10,7 @@ namespace carom {
 /// removed one.
 class RowTrail {
   public:
-    static constexpr std::int32_t kGone = -100;  // a row that no longer exists; no WallSide
+    static constexpr std::int32_t kGone = INT32_MIN;  // a row that no longer exists; no wall, no edge
 
     /// Follows the rows [0, rows) from here on.
     void start(std::size_t rows);

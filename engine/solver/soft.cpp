@@ -190,7 +190,8 @@ void SoftSolver<Real>::keep_forces(ContactCandidates<Real>& candidates) const {
 
 template <class Real>
 void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const Candidates<Real>& candidates,
-                                     const Column<Real>& motion, double dt) {
+                                     const EdgeCandidates<Real>& edges, const Column<Real>& motion,
+                                     double dt) {
     dt_ = dt;
     const double smallest = candidates.smallest_radius();
     near_ = kNearFraction * smallest + std::sqrt(length_squared(gain_)) * dt;
@@ -199,7 +200,7 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const Candid
     keep_forces(graph.pairs), keep_forces(graph.supports);
     impulses_of_h_ = h_;
     find_pairs(world.bodies, motion);
-    find_supports(world);
+    find_supports(world, edges);
     for (LiveContacts<Real>* live : {&pairs_, &supports_})
         if (bounces_)
             for (Column<Real>* column : {&live->largest_impulse, &live->bounce_impulse})

@@ -13,6 +13,8 @@
 
 namespace carom {
 
+struct SupportSurface;
+
 /// What the soft solver counts (the docstrings of Profile say what each means).
 struct SoftCounters {
     std::int64_t contacts = 0;  ///< in the last step
@@ -52,7 +54,7 @@ class SoftSolver {
 
     /// Contacts that can touch in this step, by colour; gives the bodies last step's impulses.
     void find_contacts(const WorldState<Real>& world, const Candidates<Real>& candidates,
-                       const Column<Real>& motion, double dt);
+                       const EdgeCandidates<Real>& edges, const Column<Real>& motion, double dt);
 
     /// Both sweeps of substep `number`.
     void solve_contacts(int number);
@@ -63,6 +65,10 @@ class SoftSolver {
     /// Columns from records.
     /// @param lost  rows whose state left the limits; they stand still where they were
     void end_substeps(Bodies<Real>& bodies, std::vector<std::int32_t>& lost);
+    /// Puts discs that have got past an edge in this step back to it.
+    /// @param fastest  m/s, of all bodies at the start
+    void hold_at_edges(WorldState<Real>& world, const EdgeCandidates<Real>& edges, const Column<Real>& motion,
+                       const Candidates<Real>& candidates, double fastest);
 
     /// What the impulses of this substep did (soft_books.cpp); only the walls' impulses if the ledger is
     /// closed.
@@ -84,13 +90,34 @@ class SoftSolver {
         void (*kernel)(const SolveContacts<Real>&, std::size_t, std::size_t);
         SolveContacts<Real> arguments;
     };
+    /// What a body felt from an edge that it has left.
+    struct LeftEdge {
+        std::int32_t row, body, candidate;  // of the disc; number of the edge's body
+        Real normal_impulse, friction_impulse, rolling_impulse;
+    };
+    /// A disc whose centre crossed an edge.
+    struct Passed {
+        std::int32_t row, edge;
+        double time;       // share of the step
+        Vec2 from, point;  // m, in the frame of the edge's body: before, and where it crossed
+    };
+    void note_passed(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
+                     const Column<Real>& motion, std::int32_t disc, std::int32_t number);
+    void find_passed(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
+                     const Column<Real>& motion);
+    void put_back(WorldState<Real>& world, const EdgeCandidates<Real>& edges, const Passed& passed,
+                  bool to_start);
 
     void keep_forces(ContactCandidates<Real>& candidates) const;
     void derive_masses(const Bodies<Real>& bodies);
     void find_pairs(const Bodies<Real>& bodies, const Column<Real>& motion);
     void describe_group(const Bodies<Real>& bodies, std::size_t group);
     void list_runs(std::size_t group);
-    void find_supports(const WorldState<Real>& world);
+    void find_supports(const WorldState<Real>& world, const EdgeCandidates<Real>& edges);
+    void add_support(const SupportSurface& surface, std::size_t candidate, std::size_t at,
+                     const WorldState<Real>& world);
+    void note_left_edge(std::size_t candidate, const WorldState<Real>& world);
+    void hand_on_impulses(const WorldState<Real>& world);
     SolveContacts<Real> arguments(LiveContacts<Real>& live);
     void sweep(const Sweep& over_pairs, const Sweep& over_supports);
     void sweep_pairs(std::size_t group, const Sweep& sweep) const;
@@ -130,6 +157,9 @@ class SoftSolver {
     Column<Real> velocity_, start_velocity_, displacement_, turn_;
     LiveContacts<Real> pairs_, supports_;
     std::int64_t described_version_ = -1;  // of the graph whose pairs' masses and reaches are known
+    std::vector<LeftEdge> left_edges_;     // of this step
+    std::vector<Passed> passed_;           // likewise
+    std::vector<std::int32_t> strayed_;    // rows that have left their margins in this step
     ChunkedList lost_rows_;
     double impulses_of_h_ = 0;  // s, substep of the candidates' impulses; 0 = there are none
     bool are_impulses_known_ = false;

@@ -59,7 +59,8 @@ void SoftSolver<Real>::book_supports(const Impulses& impulses, const Column<Real
     supports_.for_each([&](std::size_t i) {
         const Vec2 n{supports_.normal_x[i], supports_.normal_y[i]}, t{-n.y, n.x};
         const double jn = normal[i], jt = friction.empty() ? 0 : static_cast<double>(friction[i]);
-        const bool is_wall = graph.supports.b[static_cast<std::size_t>(supports_.candidate[i])] < 0;
+        const bool is_wall =
+            is_wall_support(graph.supports.b[static_cast<std::size_t>(supports_.candidate[i])]);
         const Vec2 impulse = -1 * (jn * n + jt * t);  // on the body
         if (is_wall) books.wall_impulse += jn;
         if (!books.is_open) return;

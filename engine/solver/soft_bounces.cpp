@@ -28,8 +28,12 @@ double SoftSolver<Real>::restitution_of(const LiveContacts<Real>& live, std::siz
     if (!live.b.empty())
         return pair_restitution(of_a, bodies.restitution[static_cast<std::size_t>(live.b[contact])]);
     const std::int32_t support = graph.supports.b[static_cast<std::size_t>(live.candidate[contact])];
-    return pair_restitution(of_a, support < 0 ? world.walls->material.restitution
-                                              : bodies.restitution[static_cast<std::size_t>(support)]);
+    if (is_wall_support(support)) return pair_restitution(of_a, world.walls->material.restitution);
+    const std::size_t row =
+        is_edge_support(support)
+            ? world.handles.row_of_slot(world.edges.body_of(edge_of_support(support)).id.index)
+            : static_cast<std::size_t>(support);
+    return pair_restitution(of_a, bodies.restitution[row]);
 }
 
 /// Speed of the approach when the surfaces met [m/s]: v² = v0² + 2 g·n s on the way s that was left at the

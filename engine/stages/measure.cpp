@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "math/vec2_math.hpp"
+#include "narrowphase/disc_edge.hpp"
 
 namespace carom {
 namespace {
@@ -41,6 +42,29 @@ void add_walls(const WorldState<Real>& world, Overlaps& overlaps) {
     }
 }
 
+/// Edges count like walls.
+template <class Real>
+void add_edges(Simulation<Real>& sim, Overlaps& overlaps) {
+    const WorldState<Real>& world = sim.world;
+    Candidates<Real> discs;  // those of the world have margins of their own, which a disc may have renewed
+    discs.prepare(world.bodies.count);
+    discs.update(world.bodies, FlightClock{}, {}, {}, 0, *sim.kernels, sim.executor);
+    EdgeCandidates<Real> edges;
+    edges.place(world, 0);
+    edges.find(world, discs);
+    for (const EdgePair pair : edges.pairs()) {
+        const auto row = static_cast<std::size_t>(pair.row);
+        const Edge& edge = world.edges[pair.edge];
+        const EdgePose& pose = edges.pose_of(edge);
+        const Vec2 x{world.bodies.position_x[row], world.bodies.position_y[row]};
+        const Vec2 p = rotate_back(pose.turn, x - pose.position);
+        const double share = nearest_share(p, edge.a, edge.b);
+        if (!is_touched_here(p, share, world.edges, edge)) continue;
+        const double radius = world.bodies.radius[row];
+        overlaps.add_wall(std::sqrt(length_squared(p - point_at(edge.a, edge.b, share))) - radius, radius);
+    }
+}
+
 }  // namespace
 
 template <class Real>
@@ -61,6 +85,7 @@ OverlapReport measure_overlaps(Simulation<Real>& sim) {
         overlaps.add(std::sqrt(length_squared(d)) - radius_a - radius_b, std::fmin(radius_a, radius_b));
     }
     if (sim.world.walls) add_walls(sim.world, overlaps);
+    if (!sim.world.edges.empty()) add_edges(sim, overlaps);
     if (overlaps.report.touching > 0)
         overlaps.report.mean = overlaps.sum / static_cast<double>(overlaps.report.touching);
     return overlaps.report;
@@ -69,9 +94,9 @@ OverlapReport measure_overlaps(Simulation<Real>& sim) {
 template <class Real>
 std::size_t bytes_of(Simulation<Real>& sim) {
     std::size_t bytes = sizeof(sim) + sim.world.handles.bytes() + sim.candidates.bytes() +
-                        sim.solver.bytes() + sim.soft.bytes() + sim.events.bytes() + sim.wall_rows.bytes() +
-                        sim.displaced_rows.bytes() + sim.lost_rows.bytes() +
-                        sim.meetings.capacity() * sizeof(FoundMeeting) +
+                        sim.solver.bytes() + sim.soft.bytes() + sim.events.bytes() + sim.edges.bytes() +
+                        sim.world.edges.bytes() + sim.wall_rows.bytes() + sim.displaced_rows.bytes() +
+                        sim.lost_rows.bytes() + sim.meetings.capacity() * sizeof(FoundMeeting) +
                         sim.world.immovable_rows.capacity() * sizeof(std::int32_t);
     for (const auto& meetings : sim.chunk_meetings) bytes += meetings.capacity() * sizeof(FoundMeeting);
     sim.world.bodies.for_each_column([&](auto, auto, auto& column) { bytes += column.bytes(); });

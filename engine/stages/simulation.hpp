@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "broadphase/candidates.hpp"
+#include "broadphase/edge_candidates.hpp"
 #include "isa/kernel_table.hpp"
 #include "parallel/executor.hpp"
 #include "solver/event/event_dynamics.hpp"
@@ -21,6 +22,7 @@ template <class Real>
 struct Simulation {
     WorldState<Real> world;
     Candidates<Real> candidates;
+    EdgeCandidates<Real> edges;  ///< solver `soft`
     ImpulseSolver<Real> solver;
     SoftSolver<Real> soft;
     Executor executor;

@@ -12,10 +12,14 @@ template <class Real>
 void update_contacts(Simulation<Real>& sim) {
     sim.soft.graph.keeps_rolling = sim.world.effects.rolling_resistance;
     const Walls* walls = sim.world.walls ? &*sim.world.walls : nullptr;
-    if (sim.graph_of_rebuild == sim.candidates.rebuild_count())
-        sim.soft.graph.add(sim.candidates, sim.world.bodies, walls);
-    else
-        sim.soft.graph.renew(sim.candidates, sim.world.bodies, walls, sim.executor);
+    const bool has_edges = !sim.world.edges.empty();
+    if (sim.graph_of_rebuild == sim.candidates.rebuild_count()) {
+        if (has_edges) sim.edges.add_strays(sim.world, sim.candidates);
+        sim.soft.graph.add(sim.candidates, sim.edges, sim.world.bodies, walls);
+    } else {
+        if (has_edges) sim.edges.find(sim.world, sim.candidates);
+        sim.soft.graph.renew(sim.candidates, sim.edges, sim.world.bodies, walls, sim.executor);
+    }
     sim.graph_of_rebuild = sim.candidates.rebuild_count();
 }
 
@@ -23,7 +27,7 @@ template <class Real>
 void find_contacts(Simulation<Real>& sim) {
     const std::size_t padding_rows = ContactGraph<Real>::padding_rows(sim.soft.graph.groups);
     sim.solver.flights.motion.resize(4 * padded(sim.world.bodies.count + padding_rows));
-    sim.soft.find_contacts(sim.world, sim.candidates, sim.solver.flights.motion, sim.h);
+    sim.soft.find_contacts(sim.world, sim.candidates, sim.edges, sim.solver.flights.motion, sim.h);
 }
 
 template <class Real>
@@ -54,6 +58,8 @@ void end_contacts(Simulation<Real>& sim) {
 template <class Real>
 void end_substeps(Simulation<Real>& sim) {
     sim.soft.end_substeps(sim.world.bodies, sim.lost);
+    if (!sim.world.edges.empty())
+        sim.soft.hold_at_edges(sim.world, sim.edges, sim.solver.flights.motion, sim.candidates, sim.fastest);
     if (sim.world.walls) keep_inside(sim);
     if (sim.lost.empty()) return;
     for (const std::int32_t row : sim.lost)

@@ -18,7 +18,13 @@ template <class Real>
 void update_candidates(Simulation<Real>& sim) {
     const Bodies<Real>& bodies = sim.world.bodies;
     sim.displaced.clear();
-    sim.displaced_rows.for_each_below(bodies.count, [&](std::int32_t row) { sim.displaced.push_back(row); });
+    sim.displaced_rows.for_each_below(bodies.count, [&](std::int32_t row) {
+        if ((bodies.flags_of(static_cast<std::size_t>(row)) & kEdges) == 0) sim.displaced.push_back(row);
+    });
+    if (sim.method == Solver::soft) {
+        sim.edges.place(sim.world, sim.h);
+        if (sim.edges.has_left_margin()) sim.candidates.invalidate_pairs();
+    }
     sim.candidates.update(bodies, sim.solver.flights.end, sim.world.gravity, sim.displaced, sim.fastest,
                           *sim.kernels, sim.executor);
 }

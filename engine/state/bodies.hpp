@@ -22,8 +22,8 @@ class Property {
 
     /// Sets row `row` of `count`; spreads into a column when a value differs from the others'.
     void set(std::size_t row, std::size_t count, Real value) {
-        if (!spread_ && (count <= 1 || value == value_)) {
-            value_ = value;
+        if (!spread_ && (count <= 1 || is_any_ || value == value_)) {
+            value_ = value, is_any_ = false;
             return;
         }
         if (!spread_) {
@@ -34,8 +34,18 @@ class Property {
         column_[row] = value;
     }
 
+    /// For a row whose value means nothing: takes the others' value, or `any` while there is none.
+    void set_any(std::size_t row, std::size_t count, Real any) {
+        if (spread_) {
+            column_[row] = column_[row == 0 ? count - 1 : 0];
+        } else if (count <= 1 || is_any_) {
+            value_ = any, is_any_ = true;
+        }
+    }
+
   private:
     Real value_ = 0;
+    bool is_any_ = false;  // no row has given value_ a meaning
     bool spread_ = false;
     Column<Real> column_;
 };

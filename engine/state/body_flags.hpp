@@ -11,6 +11,10 @@ enum BodyFlag : std::uint8_t {
     kDisabled = 2,    ///< quarantined: takes no part any more, no candidates at all
     kKinematic = 4,   ///< immovable, but moves at its velocity
     kFixedAngle = 8,  ///< impulses do not turn it
+    kEdges = 16,      ///< a segment or chain: its edges are in state/edges.hpp, its radius means nothing
 };
+
+/// Rows with one of these are no discs to the broadphase.
+inline constexpr std::uint8_t kNotInGrid = kDisabled | kEdges;
 
 }  // namespace carom

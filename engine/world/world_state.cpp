@@ -50,13 +50,19 @@ BodyId WorldState<Real>::append(const Body& body) {
     bodies.resize(row + 1);
     const BodyId id = handles.add(static_cast<std::uint32_t>(row));
     const auto real = [](double value) { return static_cast<Real>(value); };
-    const double radius = radius_of(body.shape), mass = mass_of(body);
+    const double mass = mass_of(body);
+    const bool has_edges = !is_disc(body.shape);
     bodies.position_x[row] = real(body.position.x), bodies.position_y[row] = real(body.position.y);
     bodies.velocity_x[row] = real(body.velocity.x), bodies.velocity_y[row] = real(body.velocity.y);
     bodies.id[row] = id;
     if (bodies.has_rotation)
         bodies.angle[row] = real(body.angle), bodies.angular_velocity[row] = real(body.angular_velocity);
-    bodies.radius.set(row, bodies.count, real(radius));
+    if (has_edges) {
+        edges.append(id, body.shape);
+        bodies.radius.set_any(row, bodies.count, Real(1));
+    } else {
+        bodies.radius.set(row, bodies.count, real(radius_of(body.shape)));
+    }
     bodies.restitution.set(row, bodies.count, real(body.material.restitution));
     bodies.friction.set(row, bodies.count, real(body.material.friction));
     bodies.rolling_resistance.set(row, bodies.count, real(body.material.rolling_resistance));
@@ -65,9 +71,10 @@ BodyId WorldState<Real>::append(const Body& body) {
         bodies.set_flags(row, body.fixed_rotation && effects.friction ? kFixedAngle : 0);
         dynamic_mass += static_cast<double>(bodies.mass[row]);
     } else {
-        bodies.mass.set(row, bodies.count,
-                        row == 0 ? real(mass) : bodies.mass[0]);  // any: it counts as infinite
-        bodies.set_flags(row, body.type == BodyType::kinematic_body ? kImmovable | kKinematic : kImmovable);
+        bodies.mass.set_any(row, bodies.count, Real(1));  // it counts as infinite
+        const bool moves = body.type == BodyType::kinematic_body;
+        bodies.set_flags(
+            row, static_cast<std::uint8_t>(kImmovable | (moves ? kKinematic : 0) | (has_edges ? kEdges : 0)));
         immovable_rows.push_back(static_cast<std::int32_t>(row));
     }
     initial = initial + sums_of(row);
@@ -75,7 +82,8 @@ BodyId WorldState<Real>::append(const Body& body) {
 }
 
 template <class Real>
-void WorldState<Real>::remove(std::size_t row) {
+EdgeStore::Removed WorldState<Real>::remove(std::size_t row) {
+    const EdgeStore::Removed gone = edges.remove(bodies.id[row]);
     initial = initial - sums_of(row);
     if (!bodies.is_immovable(row)) dynamic_mass -= static_cast<double>(bodies.mass[row]);
     handles.remove(bodies.id[row]);
@@ -86,6 +94,7 @@ void WorldState<Real>::remove(std::size_t row) {
     }
     bodies.resize(last);
     list_immovable_rows();
+    return gone;
 }
 
 template <class Real>

@@ -9,6 +9,7 @@
 
 #include "state/bodies.hpp"
 #include "state/books.hpp"
+#include "state/edges.hpp"
 #include "world/handles.hpp"
 
 namespace carom {
@@ -41,7 +42,8 @@ template <class Real>
 struct WorldState {
     Bodies<Real> bodies;
     Handles handles;
-    Vec2 gravity;  ///< m/s²
+    EdgeStore edges;  ///< of segments and chains
+    Vec2 gravity;     ///< m/s²
     Drag drag;
     std::optional<Walls> walls;
     Effects effects;
@@ -60,7 +62,8 @@ struct WorldState {
     /// Appends a row for a body that has been validated.
     BodyId append(const Body& body);
     /// Takes a row out; the last row takes its place.
-    void remove(std::size_t row);
+    /// @return the edges that went with it.
+    EdgeStore::Removed remove(std::size_t row);
     /// Rolls a row whose next state would leave the limits out of the simulation, where it is.
     void quarantine(std::size_t row);
     /// Sorts rows: new row i is the old row order[i].

@@ -97,9 +97,35 @@ Scene rolling_sizes() {
     return scene;
 }
 
+/// A container that turns, a segment that moves, a static chain under all of them.
+Scene turning_chain() {
+    Scene scene;
+    scene.name = "turning chain";
+    scene.gravity = {0, -10};
+    const Material rough{.friction = 0.5, .restitution = 0.3};
+    scene.add({.type = BodyType::kinematic_body,
+               .shape = Chain{.points = {{-6, -5}, {0, -6}, {6, -5}, {6, 6}, {-6, 6}}, .loop = true},
+               .angle = 0.2,
+               .angular_velocity = 0.7,
+               .material = rough});
+    Lattice discs;
+    discs.count_x = 9, discs.count_y = 8, discs.origin = {-3.6, -3.2}, discs.spacing = {0.9, 0.9};
+    discs.jitter = 0.05, discs.seed = 8, discs.radius_range = RadiusRange{0.25, 0.4};
+    discs.body.material = rough;
+    add_lattice(scene, discs);
+    scene.add({.type = BodyType::kinematic_body,
+               .shape = Segment{{-0.5, 0}, {0.5, 0.3}},
+               .position = {0, 4.5},
+               .velocity = {0.3, -1},
+               .material = rough});
+    scene.add({.type = BodyType::static_body, .shape = Chain{.points = {{-9, -9}, {0, -9.5}, {9, -9}}}});
+    scene.add({.shape = Disc{0.5}, .position = {0.1, -8.5}, .material = rough});
+    return scene;
+}
+
 std::vector<Scene> scenes() {
-    return {rolling_sizes(),    gas(400, {0.5, 0.5}, 1), falling_sizes(),
-            moving_obstacles(), stack_at_rest(),         rough_sizes()};
+    return {rolling_sizes(), gas(400, {0.5, 0.5}, 1), falling_sizes(), moving_obstacles(),
+            stack_at_rest(), rough_sizes(),           turning_chain()};
 }
 
 template <class Real>
@@ -122,6 +148,7 @@ constexpr Golden kGolden[] = {
     {"stack at rest", 0xa436021f760768ad, 0xfd75b447dc578a50},
     {"rough sizes", 0xfd0f21b34fcf5613, 0x7813cddc0b99920b},
     {"rolling sizes", 0xedd34aed0c745f41, 0xc7121a8d05d93d0f},
+    {"turning chain", 0xf96322876a35ce5e, 0xb3837a8695f703aa},
 };
 
 }  // namespace

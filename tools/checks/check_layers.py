@@ -16,10 +16,11 @@ LAYER_OF_FOLDER = {
     "math": 0,
     "state": 1, "simd": 1, "parallel": 1,
     "effects": 2,
+    "narrowphase": 2,  # geometry of two shapes: no columns, no physics
     "kernels": 3,
     "world": 4, "isa": 4,
     "broadphase": 4.5,  # below the solvers: `impulse` asks it for neighbours while it works
-    "narrowphase": 5, "solver": 5, "joints": 5, "ledger": 5, "scene": 5,
+    "solver": 5, "joints": 5, "ledger": 5, "scene": 5,
     "stages": 5.5,  # what the step calls, one function a stage: they join the parts of layer 5
     "reference": 5,  # and see SHARES_NOTHING
 }

@@ -75,6 +75,7 @@ inline constexpr double kLargestPosition = 1e8;             // m
 inline constexpr double kLargestSpeed = 1e7;                // m/s; its fourth power must stay finite in float
 inline constexpr double kSmallestRadius = 1e-9;             // m
 inline constexpr double kLargestRadius = 1e7;               // m
+inline constexpr double kSmallestEdge = 1e-9;               // m, of a segment and of each edge of a chain
 inline constexpr double kLargestRadiusRatio = 1e7;          // largest / smallest in one scene
 inline constexpr double kSmallestMass = 1e-30;              // kg, and kg/m² for densities
 inline constexpr double kLargestMass = 1e30;                // kg, and kg/m² for densities

@@ -48,7 +48,7 @@ struct Graph {
     void renew() {
         candidates.update(bodies, flight_clock_at(1.0 / 60, 0), {}, {}, 0, select_kernels("auto").of<float>(),
                           executor);
-        graph.renew(candidates, bodies, nullptr, executor);
+        graph.renew(candidates, EdgeCandidates<float>{}, bodies, nullptr, executor);
     }
     std::set<PairOfRows> candidate_pairs() const {
         std::set<PairOfRows> pairs;

@@ -27,6 +27,29 @@ Body read_body(const Node& node, const Materials& materials) {
     return body;
 }
 
+Disc read_disc(const Node& shape) {
+    static constexpr std::array<std::string_view, 1> kKeys{"radius"};
+    shape.expect_keys(kKeys);
+    return {shape.at("radius").number()};
+}
+
+Segment read_segment(const Node& shape) {
+    static constexpr std::array<std::string_view, 2> kKeys{"a", "b"};
+    shape.expect_keys(kKeys);
+    return {shape.at("a").vec2(), shape.at("b").vec2()};
+}
+
+Chain read_chain(const Node& shape) {
+    static constexpr std::array<std::string_view, 2> kKeys{"points", "loop"};
+    shape.expect_keys(kKeys);
+    Chain chain;
+    const Node points = shape.at("points");
+    points.expect_array("points");
+    for (std::size_t i = 0; i < points.size(); ++i) chain.points.push_back(points[i].vec2());
+    shape.read("loop", chain.loop);
+    return chain;
+}
+
 }  // namespace
 
 BodyType read_body_type(const Node& node) {
@@ -39,14 +62,13 @@ BodyType read_body_type(const Node& node) {
 Shape read_shape(const Node& node) {
     static constexpr std::array<std::string_view, 6> kShapes{"disc",    "box",     "capsule",
                                                              "polygon", "segment", "chain"};
-    static constexpr std::array<std::string_view, 1> kDiscKeys{"radius"};
     const Node shape = node.only_member(kShapes, "shape");
-    if (shape.key() != "disc")
-        shape.fail(ErrorCode::not_built_yet,
-                   "the shape \"" + std::string(shape.key()) +
-                       "\" is not built yet; this version has discs. Use \"disc\".");
-    shape.expect_keys(kDiscKeys);
-    return Disc{shape.at("radius").number()};
+    if (shape.key() == "disc") return read_disc(shape);
+    if (shape.key() == "segment") return read_segment(shape);
+    if (shape.key() == "chain") return read_chain(shape);
+    shape.fail(ErrorCode::not_built_yet,
+               "the shape \"" + std::string(shape.key()) +
+                   "\" is not built yet; this version has discs, segments and chains. Use \"disc\".");
 }
 
 void read_bodies(const Node& root, const Materials& materials, Scene& scene) {

@@ -32,6 +32,10 @@ Pattern read_pattern(const Node& node, const Materials& materials) {
     if (const auto shape = node.find("shape")) {
         pattern.body.shape = read_shape(*shape);
         pattern.has_shape = true;
+        if (!std::holds_alternative<Disc>(pattern.body.shape))
+            shape->fail(ErrorCode::inconsistent,
+                        "the shape is no disc; expected a disc, as generators place discs. Add other shapes "
+                        "to \"bodies\", one by one.");
     }
     if (const auto type = node.find("type")) pattern.body.type = read_body_type(*type);
     const auto material = node.find("material");

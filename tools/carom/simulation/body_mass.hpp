@@ -7,8 +7,10 @@
 
 namespace carom::tool {
 
+/// Zero for what is no disc.
 inline double radius_of(const Body& body) {
-    return std::get<Disc>(body.shape).radius;
+    const Disc* disc = std::get_if<Disc>(&body.shape);
+    return disc ? disc->radius : 0;
 }
 
 /// kg: given, or density times area.

@@ -1,0 +1,161 @@
+#include "broadphase/edge_candidates.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "narrowphase/disc_edge.hpp"
+
+namespace carom {
+namespace {
+
+// The margin of an edge that moves: this many steps of its fastest point, but no more than this many of the
+// largest radius, unless a single step needs more. It has to last a little longer than the margins of the
+// discs that a wall carries, because with it all pairs are found anew; what it costs is that two or three
+// layers of discs are looked at instead of one.
+constexpr double kStepsOfEdge = 6;
+constexpr double kLargestEdgeMargin = 4;
+constexpr double kOwnEdgeMargin = 1.25;  // of one step's way
+
+// Discs that leave their margins get new ones where they are. Pairs are found as if every reach was larger by
+// this share of the smallest radius, so that most of these discs need not be looked at again.
+constexpr double kAllowance = 0.5;
+
+// An edge that is long beside the discs is looked at in pieces, so that the search stays near it. More pieces
+// than this share of the bodies would cost more than to look at all of them.
+constexpr double kBodiesPerPiece = 4;
+
+// Positions are rounded to Real where the grid sees them.
+template <class Real>
+constexpr double kRoundingOfPlace = sizeof(Real) == sizeof(float) ? 2e-7 : 1e-15;
+
+/// Farthest that a point of the body is from where it was.
+double way_between(Vec2 from, double from_angle, Vec2 to, double to_angle, double reach) {
+    return std::sqrt(length_squared(to - from)) + std::fabs(to_angle - from_angle) * reach;
+}
+
+}  // namespace
+
+template <class Real>
+void EdgeCandidates<Real>::place(const WorldState<Real>& world, double dt) {
+    const Bodies<Real>& bodies = world.bodies;
+    poses_.resize(world.edges.bodies.size());
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+        EdgePose& pose = poses_[i];
+        pose.row = world.handles.row_of_slot(world.edges.bodies[i].id.index);
+        const std::size_t row = pose.row;
+        pose.takes_part = (bodies.flags_of(row) & kDisabled) == 0;
+        pose.position = {bodies.position_x[row], bodies.position_y[row]};
+        pose.end_position = pose.position + dt * Vec2{bodies.velocity_x[row], bodies.velocity_y[row]};
+        pose.angle = bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0;
+        const double spin = bodies.has_rotation ? static_cast<double>(bodies.angular_velocity[row]) : 0;
+        pose.end_angle = pose.angle + dt * spin;
+        pose.turn = rotation_by(pose.angle);
+        pose.end_turn = spin == 0 ? pose.turn : rotation_by(pose.end_angle);
+    }
+}
+
+template <class Real>
+bool EdgeCandidates<Real>::has_left_margin() const {
+    for (std::size_t i = 0; i < poses_.size() && i < found_at_.size(); ++i) {
+        const EdgePose& pose = poses_[i];
+        const FoundAt& found = found_at_[i];
+        // Most edges stand still.
+        if (pose.end_position == found.position && pose.end_angle == found.angle) continue;
+        if (way_between(found.position, found.angle, pose.end_position, pose.end_angle, found.reach) >
+            found.margin)
+            return true;
+    }
+    return false;
+}
+
+template <class Real>
+void EdgeCandidates<Real>::find(const WorldState<Real>& world, const Candidates<Real>& candidates) {
+    pairs_.clear(), new_pairs_.clear();
+    allowance_ = kAllowance * candidates.smallest_radius();
+    found_at_.resize(poses_.size());
+    double largest_reach = 0;
+    const Bodies<Real>& bodies = world.bodies;
+    for (std::size_t row = 0; row < bodies.count; ++row)
+        if ((bodies.flags_of(row) & kNotInGrid) == 0)
+            largest_reach = std::fmax(largest_reach, static_cast<double>(candidates.reach()[row]));
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+        const EdgePose& pose = poses_[i];
+        const EdgeBody& body = world.edges.bodies[i];
+        const double way =
+            way_between(pose.position, pose.angle, pose.end_position, pose.end_angle, body.reach);
+        const double margin =
+            std::fmax(kOwnEdgeMargin * way,
+                      std::fmin(kStepsOfEdge * way, kLargestEdgeMargin * candidates.largest_radius()));
+        found_at_[i] = {pose.position, pose.turn, pose.angle, body.reach, margin};
+        if (!pose.takes_part || largest_reach == 0) continue;
+        for (std::int32_t n = 0; n < body.count; ++n)
+            find_near_edge(world, candidates, body.first + n, margin + allowance_, largest_reach);
+    }
+    std::sort(pairs_.begin(), pairs_.end());
+}
+
+template <class Real>
+void EdgeCandidates<Real>::add_strays(const WorldState<Real>& world, const Candidates<Real>& candidates) {
+    new_pairs_.clear();
+    for (const std::int32_t stray : candidates.strays()) {
+        const auto row = static_cast<std::size_t>(stray);
+        if (world.bodies.is_immovable(row)) continue;
+        const Vec2 p{candidates.built_x()[row], candidates.built_y()[row]};
+        const Vec2 first{candidates.grid().built_x()[row], candidates.grid().built_y()[row]};
+        const double reach = candidates.reach()[row];
+        const double grown = reach - static_cast<double>(candidates.first_reach(row));
+        if (std::sqrt(length_squared(p - first)) + grown <= allowance_) continue;
+        for (std::size_t i = 0; i < found_at_.size(); ++i) {
+            if (!poses_[i].takes_part) continue;
+            const FoundAt& at = found_at_[i];
+            const Vec2 place = rotate_back(at.turn, p - at.position);
+            const double near = reach + at.margin;
+            const EdgeBody& body = world.edges.bodies[i];
+            for (std::int32_t edge = body.first; edge < body.first + body.count; ++edge) {
+                const EdgePair pair{stray, edge};
+                if (distance_squared(place, world.edges[edge].a, world.edges[edge].b) >= near * near)
+                    continue;
+                const auto where = std::lower_bound(pairs_.begin(), pairs_.end(), pair);
+                if (where != pairs_.end() && *where == pair) continue;
+                pairs_.insert(where, pair);
+                new_pairs_.push_back(pair);
+            }
+        }
+    }
+}
+
+template <class Real>
+void EdgeCandidates<Real>::find_near_edge(const WorldState<Real>& world, const Candidates<Real>& candidates,
+                                          std::int32_t number, double margin, double largest_reach) {
+    const Edge& edge = world.edges[number];
+    const EdgePose& pose = pose_of(edge);
+    const Vec2 a = pose.position + rotate(pose.turn, edge.a), b = pose.position + rotate(pose.turn, edge.b);
+    const Bodies<Real>& bodies = world.bodies;
+    const double length = std::sqrt(length_squared(b - a));
+    const double rounding =
+        kRoundingOfPlace<Real> * (std::fabs(a.x) + std::fabs(a.y) + std::fabs(b.x) + std::fabs(b.y));
+    // Half a piece and the margin are to be no more than the size of a cell: the quickest kind of query.
+    const double half = std::fmax(largest_reach - margin, 0.25 * largest_reach);
+    const double most = std::fmax(1, static_cast<double>(bodies.count) / kBodiesPerPiece);
+    const double pieces = std::fmax(1, std::fmin(std::ceil(length / (2 * half)), std::floor(most)));
+    for (double piece = 0; piece < pieces; ++piece) {
+        const Vec2 middle = a + ((piece + 0.5) / pieces) * (b - a);
+        const std::size_t found =
+            candidates.find_near(middle, 0.5 * length / pieces + margin + rounding, near_);
+        for (std::size_t n = 0; n < found; ++n) {
+            const auto row = static_cast<std::size_t>(near_[n]);
+            if (bodies.is_immovable(row)) continue;
+            const Vec2 p{candidates.built_x()[row], candidates.built_y()[row]};
+            const double share = nearest_share(p, a, b);
+            // Each disc belongs to the piece it is nearest to.
+            if (std::fmin(std::floor(share * pieces), pieces - 1) != piece) continue;
+            const double near = static_cast<double>(candidates.reach()[row]) + margin + rounding;
+            if (length_squared(p - point_at(a, b, share)) < near * near) pairs_.push_back({near_[n], number});
+        }
+    }
+}
+
+template class EdgeCandidates<float>;
+template class EdgeCandidates<double>;
+
+}  // namespace carom

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "broadphase/candidates.hpp"
+#include "math/rotation.hpp"
+#include "world/world_state.hpp"
+
+namespace carom {
+
+/// Where a body is at the start and at the end of a step.
+struct EdgePose {
+    Vec2 position, end_position;  // m
+    Rotation turn, end_turn;
+    double angle = 0, end_angle = 0;  // rad
+    bool takes_part = true;           // false: quarantined
+    std::uint32_t row = 0;
+};
+
+/// The turn at a share of the step.
+inline Rotation turn_at(const EdgePose& pose, double share) {
+    if (pose.angle == pose.end_angle) return pose.turn;
+    return rotation_by(pose.angle + share * (pose.end_angle - pose.angle));
+}
+
+/// A disc and an edge that can touch.
+struct EdgePair {
+    std::int32_t row;   // of the disc
+    std::int32_t edge;  // in the EdgeStore
+
+    friend auto operator<=>(const EdgePair&, const EdgePair&) = default;
+};
+
+/// Which discs can touch which edges. They are found together with the candidate pairs of discs and hold as
+/// long as these do: discs have margins of their own there. Edges that move have a margin too; when one of
+/// them has used it up, all candidates are void.
+template <class Real>
+class EdgeCandidates {
+  public:
+    /// To be called first in every step: where edges are at its start and, after dt [s], at its end.
+    void place(const WorldState<Real>& world, double dt);
+    /// Whether some edge leaves the margin with which its discs were found, before the end of the step.
+    bool has_left_margin() const;
+
+    /// Finds all discs that can touch an edge, by edge, in an order that depends on the input alone.
+    /// Cost: O(edges + their length / radii + what is found).
+    void find(const WorldState<Real>& world, const Candidates<Real>& candidates);
+    std::span<const EdgePair> pairs() const { return pairs_; }  ///< by row, then by edge
+
+    /// Adds what discs reach with new margins that they got in this step. Cost: O(strays), and O(edges) for
+    /// each that has got far.
+    void add_strays(const WorldState<Real>& world, const Candidates<Real>& candidates);
+    /// What the last call of add_strays added.
+    std::span<const EdgePair> new_pairs() const { return new_pairs_; }
+
+    const EdgePose& pose_of(const Edge& edge) const { return poses_[static_cast<std::size_t>(edge.body)]; }
+
+    std::size_t bytes() const {
+        return poses_.capacity() * sizeof(EdgePose) + found_at_.capacity() * sizeof(FoundAt) +
+               (pairs_.capacity() + new_pairs_.capacity()) * sizeof(EdgePair) + near_.bytes();
+    }
+
+  private:
+    struct FoundAt {
+        Vec2 position;
+        Rotation turn;
+        double angle = 0, reach = 0, margin = 0;  // rad, m, m
+    };
+    void find_near_edge(const WorldState<Real>& world, const Candidates<Real>& candidates, std::int32_t edge,
+                        double margin, double largest_reach);
+
+    std::vector<EdgePose> poses_;    // a body of the EdgeStore
+    std::vector<FoundAt> found_at_;  // likewise
+    std::vector<EdgePair> pairs_, new_pairs_;
+    double allowance_ = 0;  // m, that a disc's reach may grow beyond what was looked at
+    Column<std::int32_t> near_;
+};
+
+extern template class EdgeCandidates<float>;
+extern template class EdgeCandidates<double>;
+
+}  // namespace carom

@@ -1,0 +1,59 @@
+#include "state/edges.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom {
+namespace {
+
+void link(EdgeStore& store, const EdgeBody& body, bool is_loop) {
+    for (std::int32_t n = 0; n < body.count; ++n) {
+        Edge& edge = store.edges[static_cast<std::size_t>(body.first + n)];
+        edge.previous = n > 0 ? body.first + n - 1 : is_loop ? body.first + body.count - 1 : -1;
+        edge.next = n + 1 < body.count ? body.first + n + 1 : is_loop ? body.first : -1;
+    }
+}
+
+}  // namespace
+
+void EdgeStore::append(BodyId id, const Shape& shape) {
+    const auto number = static_cast<std::int32_t>(bodies.size());
+    EdgeBody body{id, static_cast<std::int32_t>(edges.size()), 0, 0};
+    const auto add = [&](Vec2 a, Vec2 b) {
+        edges.push_back({a, b, number});
+        ++body.count;
+        for (const Vec2 point : {a, b}) body.reach = std::fmax(body.reach, std::sqrt(length_squared(point)));
+    };
+    bool is_loop = false;
+    if (const auto* segment = std::get_if<Segment>(&shape)) {
+        add(segment->a, segment->b);
+    } else if (const auto* chain = std::get_if<Chain>(&shape)) {
+        is_loop = chain->loop;
+        for (std::size_t i = 0; i + 1 < chain->points.size(); ++i)
+            add(chain->points[i], chain->points[i + 1]);
+        if (is_loop) add(chain->points.back(), chain->points.front());
+    } else {
+        return;
+    }
+    link(*this, body, is_loop);
+    bodies.push_back(body);
+}
+
+EdgeStore::Removed EdgeStore::remove(BodyId id) {
+    const auto found =
+        std::find_if(bodies.begin(), bodies.end(), [id](const EdgeBody& body) { return body.id == id; });
+    if (found == bodies.end()) return {};
+    const Removed gone{found->first, found->count};
+    edges.erase(edges.begin() + gone.first, edges.begin() + gone.first + gone.count);
+    for (auto later = bodies.erase(found); later != bodies.end(); ++later) later->first -= gone.count;
+    const auto move_up = [&gone](std::int32_t& edge) {
+        if (edge >= 0) edge -= gone.count;
+    };
+    for (std::size_t i = static_cast<std::size_t>(gone.first); i < edges.size(); ++i) {
+        --edges[i].body;
+        move_up(edges[i].previous), move_up(edges[i].next);
+    }
+    return gone;
+}
+
+}  // namespace carom

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <carom/scene.hpp>
+
+#include <cstdint>
+#include <vector>
+
+#include "math/vec2_math.hpp"
+
+// The edges of segments and chains: few beside the discs, so they have no columns.
+
+namespace carom {
+
+/// What is not a body's row in the `b` of a contact: walls are -1 ... -4 (WallSide), edges lie beyond them.
+inline constexpr std::int32_t kFirstEdgeSupport = -5;
+constexpr bool is_edge_support(std::int32_t b) {
+    return b <= kFirstEdgeSupport;
+}
+constexpr bool is_wall_support(std::int32_t b) {
+    return b < 0 && b > kFirstEdgeSupport;
+}
+constexpr std::int32_t support_of_edge(std::int32_t edge) {
+    return kFirstEdgeSupport - edge;
+}
+constexpr std::int32_t edge_of_support(std::int32_t b) {
+    return kFirstEdgeSupport - b;
+}
+
+/// A line between two points, in the frame of its body.
+struct Edge {
+    Vec2 a, b;                   // m
+    std::int32_t body = 0;       // number in EdgeStore::bodies
+    std::int32_t previous = -1;  // edge that ends where this begins; -1: none
+    std::int32_t next = -1;      // edge that begins where this ends; -1: none
+};
+
+/// A body that consists of edges [first, first + count).
+struct EdgeBody {
+    BodyId id;
+    std::int32_t first = 0, count = 0;
+    double reach = 0;  // m, of the point that is farthest from the body's position
+};
+
+/// Every edge of a world.
+struct EdgeStore {
+    std::vector<EdgeBody> bodies;
+    std::vector<Edge> edges;
+
+    bool empty() const { return bodies.empty(); }
+    const Edge& operator[](std::int32_t edge) const { return edges[static_cast<std::size_t>(edge)]; }
+    const EdgeBody& body_of(std::int32_t edge) const {
+        return bodies[static_cast<std::size_t>((*this)[edge].body)];
+    }
+
+    /// Nothing if the shape is a disc.
+    void append(BodyId id, const Shape& shape);
+
+    struct Removed {
+        std::int32_t first = 0, count = 0;
+    };
+    /// Takes the edges of a body out; later ones move up. Cost: O(edges).
+    /// @return which they were; none if the body has no edges.
+    Removed remove(BodyId id);
+
+    std::size_t bytes() const {
+        return bodies.capacity() * sizeof(EdgeBody) + edges.capacity() * sizeof(Edge);
+    }
+};
+
+}  // namespace carom
