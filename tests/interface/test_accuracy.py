@@ -79,6 +79,23 @@ class AccuracyCommandTest(ProgramTest):
             if source["solver"] == "soft":  # what is left is round-off: 4e-6 of a radius in float at 9.5 m height
                 self.assertLess(source["step"][-1]["error"], 1e-5 if source["precision"] == "float" else 1e-11)
 
+    def test_charts_have_one_colour_a_solver_and_a_line_a_sweep(self):
+        case = self.measure("A4")["cases"][0]
+        page = (self.folder / "results/report.html").read_text()
+        charts = [json.loads(text) for text in re.findall(r'id="data-A4-[^"]*">(.*?)</script>', page, re.DOTALL)]
+        self.assertEqual(len(charts), 5)
+        colours = {}
+        for series in (series for chart in charts for series in chart["series"]):
+            solver = re.split("[,:]", series["name"])[0]
+            self.assertEqual(colours.setdefault(solver, series["colour"]), series["colour"], solver)
+        solvers = {point["solver"] for point in case["points"]}
+        self.assertEqual(len({colours[solver] for solver in solvers}), len(solvers))
+        by_time = next(chart for chart in charts if chart["x_label"].startswith("time"))
+        soft = next(series for series in by_time["series"] if series["name"] == "soft, double")
+        shown = [y for y in soft["y"] if y is not None]
+        self.assertEqual(len(shown), sum((p["solver"], p["precision"]) == ("soft", "double") for p in case["points"]))
+        self.assertIn(None, soft["y"])  # the step's sweep, then that of substeps: no line joins them
+
     def test_an_interrupted_run_goes_on_where_it_was(self):
         command = [PROGRAM, "accuracy", "--quick", "--out", "results", "A1", "A2", "A4", "A5", "A20"]
         run = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

@@ -9,8 +9,14 @@ namespace carom::accuracy {
 namespace {
 
 using tool::format;
+using tool::joined;
 
 constexpr double kPercent = 100;
+
+/// Two digits, never as a power of ten.
+std::string times(double ratio) {
+    return ratio < 10 ? format("%.2g", ratio) : format("%.0f", ratio);
+}
 
 /// The cheapest point of a solver, in whichever precision, that reaches the target.
 const Point* cheapest_of(const CaseResult& result, const std::string& name, double target) {
@@ -61,8 +67,8 @@ std::string distances(const std::vector<const CaseResult*>& cases, double target
         if (!(most > 1) && !fails) continue;
         text += (text.empty() ? "" : "; ") + name;
         if (most > 0)
-            text += least < most ? format(" takes %.2g to %.2g times the time of the cheapest", least, most)
-                                 : format(" takes %.2g times the time of the cheapest", most);
+            text += joined(" takes ", least < most ? joined(times(least), " to ") : "", times(most),
+                           " times the time of the cheapest");
         if (fails) text += most > 0 ? ", or does not get there" : " does not get there";
     }
     return text;

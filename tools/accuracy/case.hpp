@@ -28,6 +28,7 @@ struct Case {
     std::string_view exact;    ///< the exact answer, in words
     std::vector<ErrorMeasure> errors;       ///< charts and tables of time use the first
     std::vector<std::string_view> solvers;  ///< it makes sense for, by name
+    std::string_view note{};                ///< what to know when reading its charts; may be empty
     std::vector<double> steps;              ///< s, the longest first
     int members = 1;                        ///< starts: more than 1 where motion is chaotic
     bool counts = false;  ///< whether it asks how many impacts there were, and the walls' impulse

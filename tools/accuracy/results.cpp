@@ -90,6 +90,7 @@ Json to_json(const CaseResult& result) {
     for (const ErrorMeasure& error : of.errors)
         json["errors"].push_back(
             {{"name", error.name}, {"meaning", error.meaning}, {"is_statistic", error.is_statistic}});
+    if (!of.note.empty()) json["note"] = of.note;
     json["left_out"] = Json::array();
     for (const LeftOut& out : left_out_of(of))
         json["left_out"].push_back({{"engine", out.engine}, {"why", out.why}});

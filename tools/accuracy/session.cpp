@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr Effort kQuick{
-    .seconds_a_point = 0.03, .longest_run = 0.4, .long_run = 0.15, .most_runs = 5, .most_members = 4};
+    .seconds_a_point = 0.03, .longest_run = 0.25, .long_run = 0.15, .most_runs = 5, .most_members = 4};
 
 fs::path points_file(const fs::path& folder) {
     return folder / "points.jsonl";

@@ -31,7 +31,8 @@ const std::vector<SweptSolver> kOurs{
      true,
      {4, 1, 2, 8, 16},
      {1},
-     "holds contacts at rest with friction, which the others cannot; impacts take effect where a step ends, "
+     "holds contacts at rest with friction, which no other solver here does; impacts take effect where a "
+     "step ends, "
      "so bounces are first order in the step",
      true},
     {Solver::pairwise,

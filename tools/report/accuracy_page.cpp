@@ -53,6 +53,8 @@ double work_of(const Json& point) {
     return sum;
 }
 
+constexpr int kColourOfFailures = 7;
+
 /// A relative error below this is none: 1e-18 of a way is no number that anything computes.
 constexpr double kNothing = 1e-18;
 
@@ -86,37 +88,68 @@ Point point_at(const Json& point, std::size_t error, double x, const Edges& edge
             .label = label_of(point)};
 }
 
-/// One line a solver and precision, in the order of x; failures are marks of their own at the upper edge.
+/// A colour of the page's palette for each solver and engine, the same in all charts.
+int colour_of(const Json& point) {
+    static const std::map<std::string, int> colours{{"event", 0},    {"impulse", 1}, {"soft", 2},
+                                                    {"pairwise", 4}, {"Box2D 3", 3}, {"Box2D 2", 6},
+                                                    {"Chipmunk", 5}};
+    const auto found = colours.find(plain(point.at("solver")));
+    return found != colours.end() ? found->second : kColourOfFailures;
+}
+
+bool same_work(const Json& a, const Json& b) {
+    return a.at("substeps") == b.at("substeps") && a.at("iterations") == b.at("iterations");
+}
+
+/// One line a solver and precision; where another sweep begins it is broken, or with `steps_only` what is not
+/// of the sweep over steps is marks alone. Failures are marks of their own at the upper edge.
 template <class Abscissa>
 std::vector<Series> series_of(const Json& result, std::size_t error, const Abscissa& x_of, bool steps_only) {
-    std::vector<Series> series;
+    struct Drawn {
+        Series line, marks;
+        Json first, last;
+    };
+    std::vector<Drawn> drawn;
     std::map<std::string, std::size_t> place;
-    Series failed{.name = "failed", .line = false};
+    Series failed{.name = "failed", .line = false, .colour = kColourOfFailures};
     const Edges edges = edges_of(result, error);
     for (const Json& point : result.at("points")) {
         if (!is_known(point, error)) continue;
         if (!(x_of(point) > 0)) continue;  // other engines do not count their work
-        const Point drawn = point_at(point, error, x_of(point), edges);
+        const Point at = point_at(point, error, x_of(point), edges);
         if (has_failed(point)) {
-            failed.points.push_back(drawn);
+            failed.points.push_back(at);
             continue;
         }
         const std::string name = contender_of(point);
-        if (!place.contains(name)) place[name] = series.size(), series.push_back({.name = name});
-        series[place[name]].points.push_back(drawn);
+        if (!place.contains(name)) {
+            place[name] = drawn.size();
+            const Series line{.name = name, .colour = colour_of(point)};
+            const Series marks{.name = name, .line = false, .colour = line.colour, .in_legend = false};
+            drawn.push_back({line, marks, point, point});
+        }
+        Drawn& own = drawn[place[name]];
+        if (steps_only && !same_work(point, own.first)) {
+            own.marks.points.push_back(at);
+            continue;
+        }
+        const bool by_step = same_work(point, own.first) && same_work(own.last, own.first);
+        if (!by_step && point.at("dt") != own.last.at("dt")) own.line.points.push_back({.x = at.x, .y = NAN});
+        own.line.points.push_back(at);
+        own.last = point;
     }
-    for (Series& each : series) {
-        const auto before = [](const Point& a, const Point& b) { return a.x < b.x; };
-        if (steps_only) std::stable_sort(each.points.begin(), each.points.end(), before);
-    }
+    std::vector<Series> series;
+    for (Drawn& own : drawn) series.push_back(std::move(own.line));
     if (!failed.points.empty()) series.push_back(std::move(failed));
+    for (Drawn& own : drawn)
+        if (!own.marks.points.empty()) series.push_back(std::move(own.marks));
     return series;
 }
 
 void name_orders(const Json& result, const std::string& error, std::vector<Series>& series) {
     for (const Json& fit : result.at("orders"))
         for (Series& each : series)
-            if (plain(fit.at("error")) == error && each.name == contender_of(fit))
+            if (plain(fit.at("error")) == error && each.in_legend && each.name == contender_of(fit))
                 each.name += ": order " + number(fit.at("order").get<double>(), "%.2f");
 }
 
@@ -213,6 +246,7 @@ void add_case(const Json& result, Page& page) {
                 " starts are compared (fewer in a quick run): median with 10–90 % band, or mean with "
                 "standard error.";
     page.paragraph(text);
+    if (result.contains("note")) page.paragraph(plain(result.at("note")));
     std::string failures;
     for (const Json& point : result.at("points"))
         if (has_failed(point))
