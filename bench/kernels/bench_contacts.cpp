@@ -73,7 +73,8 @@ struct PressedPairs {
                 .h = static_cast<Real>(kSubstep),
                 .elapsed = 0,
                 .recovery = Real(0.1),
-                .push = Real(0.0001)};
+                .push = Real(0.0001),
+                .over_relaxation = Real(1.8)};
     }
 
     Column<std::int32_t> a, b;

@@ -57,11 +57,12 @@ struct SolveContacts {
     Real* displacement;  // [rows][2]
     Real uniform_friction;
     Real uniform_rolling;
-    Real inverse_h;  // 1/s, of the substep
-    Real h;          // s
-    Real elapsed;    // s, since the start of the step, at the start of the substep
-    Real recovery;   // share of an overlap that one sweep takes away, by displacement
-    Real push;       // m, largest displacement of that kind
+    Real inverse_h;        // 1/s, of the substep
+    Real h;                // s
+    Real elapsed;          // s, since the start of the step, at the start of the substep
+    Real recovery;         // share of an overlap that one sweep takes away, by displacement
+    Real push;             // m, largest displacement of that kind
+    Real over_relaxation;  // of pairs' normal impulses in the first sweep, 1 ... 2
 };
 
 /// What changes from step to step in the contacts of a group. They stay where they are; blocks of them

@@ -51,14 +51,17 @@ struct Held {
 // The contact laws. For discs the normal one does not couple with the others: a normal impulse changes
 // neither the tangential velocity nor a spin.
 
-/// Signorini: the relative normal velocity is at least `floor`, the impulse pushes.
-template <class Lanes, class Real>
+/// Signorini: the relative normal velocity is at least `floor`, the impulse pushes. Over-relaxed (Young 1950)
+/// it goes farther than the contact alone would want, since the next one will push back.
+template <bool kOverRelaxed, class Lanes, class Real>
 Held<typename Lanes::Batch> solve_normal(const SolveContacts<Real>& k, std::size_t c,
                                          typename Lanes::Batch mass, typename Lanes::Batch velocity,
                                          typename Lanes::Batch floor) {
     using F = typename Lanes::Batch;
     const F before = Lanes::load(k.contacts.normal_impulse + c);
-    const F impulse = simd::max(before + mass * (floor - velocity), F(0));
+    F wanted = mass * (floor - velocity);
+    if constexpr (kOverRelaxed) wanted *= F(k.over_relaxation);
+    const F impulse = simd::max(before + wanted, F(0));
     Lanes::store(k.contacts.normal_impulse + c, impulse);
     return {impulse, impulse - before};
 }
@@ -172,7 +175,7 @@ void solve_pairs(const SolveContacts<Real>& k, std::size_t first, std::size_t la
                     mass * F(Real(1) / Real(3));  // 1/ma + 1/mb + ra²/Ia + rb²/Ib = 3 (1/ma + 1/mb)
             }
         }
-        const auto normal = solve_normal<Lanes>(k, c, mass, dvx * nx + dvy * ny, floor);
+        const auto normal = solve_normal<kFirst, Lanes>(k, c, mass, dvx * nx + dvy * ny, floor);
         if constexpr ((kVariant & kRolling) != 0) {
             const F of_a = share_of<Lanes>(k, c), of_b = F(1) - of_a;
             const F inverse_a = of_a * a.template inverse_inertia<kVariant>();
@@ -233,7 +236,7 @@ void solve_supports(const SolveContacts<Real>& k, std::size_t first, std::size_t
             }
         }
         const F normal_velocity = surface - (body.record[0] * nx + body.record[1] * ny);
-        const auto normal = solve_normal<Lanes>(k, c, mass, normal_velocity, floor);
+        const auto normal = solve_normal<false, Lanes>(k, c, mass, normal_velocity, floor);
         if constexpr ((kVariant & kRolling) != 0) {
             const F share = share_of<Lanes>(k, c);
             const F inverse = share * body.template inverse_inertia<kVariant>();

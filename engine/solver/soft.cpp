@@ -14,6 +14,9 @@ namespace {
 
 /// Share of an overlap that one substep takes away. Below 0.15 piles sink deeper, above 0.5 they jitter.
 constexpr double kRecovery = 0.4;
+/// Of pairs' normal impulses in a substep's first sweep: docs/decisions/0004-soft-solver.md has the
+/// measurements.
+constexpr double kOverRelaxation = 1.7;
 /// Bodies as near as this, in radii of the smallest, are solved together even if they hardly move: what
 /// pushes one of them in the middle of a step is felt by the other.
 constexpr double kNearFraction = 0.04;
@@ -107,6 +110,7 @@ SolveContacts<Real> SoftSolver<Real>::arguments(LiveContacts<Real>& live) {
     k.inverse_h = static_cast<Real>(1 / h_), k.h = static_cast<Real>(h_);
     k.elapsed = static_cast<Real>(elapsed_);
     k.recovery = static_cast<Real>(kRecovery), k.push = static_cast<Real>(push_);
+    k.over_relaxation = static_cast<Real>(kOverRelaxation);
     return k;
 }
 

@@ -146,9 +146,9 @@ constexpr Golden kGolden[] = {
     {"falling sizes", 0x4fe0c9b61ea50e9c, 0xc84f698047eb650e},
     {"moving obstacles", 0x9450532e75523df8, 0x81f8d27062c9d725},
     {"stack at rest", 0xa436021f760768ad, 0xfd75b447dc578a50},
-    {"rough sizes", 0xfd0f21b34fcf5613, 0x7813cddc0b99920b},
-    {"rolling sizes", 0xedd34aed0c745f41, 0xc7121a8d05d93d0f},
-    {"turning chain", 0xf96322876a35ce5e, 0xb3837a8695f703aa},
+    {"rough sizes", 0xc03b4357cff3d84d, 0x1ceb70bf3945dab9},
+    {"rolling sizes", 0x4a03a598f29a034d, 0xd102b8235214af01},
+    {"turning chain", 0x7ab8ecf0b1fddbc, 0xf7f511ad324ef90c},
 };
 
 }  // namespace

@@ -64,7 +64,7 @@ TEST_SUITE("hard cases/heavy on light") {
             CAPTURE(set.ratio);
             CAPTURE(set.substeps);
             CHECK(sink < 1.01 * law);
-            CHECK(sink > 0.5 * law);
+            CHECK(sink > 0.25 * law);  // over-relaxation takes a part of it away
         }
     }
 }
