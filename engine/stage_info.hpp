@@ -12,6 +12,7 @@ enum class StageName : std::uint8_t {
     sort_rows,
     begin_flight,
     update_candidates,
+    wake_sleepers,
     find_impacts,
     settle_contacts,
     resolve_impacts,
@@ -28,6 +29,7 @@ enum class StageName : std::uint8_t {
     end_contacts,
     end_substeps,
     book_displacements,
+    put_to_sleep,
 };
 
 /// What a stage touches; `carom explain` and docs/how-a-step-works.md print it.
@@ -41,6 +43,7 @@ inline constexpr std::array kStages{
     StageInfo{"sort_rows", "position", "rows of all columns"},
     StageInfo{"begin_flight", "position, velocity", "motion, rows near walls, rows out of margin"},
     StageInfo{"update_candidates", "position, velocity, radius", "candidate pairs"},
+    StageInfo{"wake_sleepers", "position, velocity, candidate pairs", "rows of all columns, supports"},
     StageInfo{"find_impacts", "motion, candidate pairs", "meetings"},
     StageInfo{"settle_contacts", "meetings, motion", "motion, accelerations, impact queue"},
     StageInfo{"resolve_impacts", "impact queue, motion, candidate pairs", "motion"},
@@ -58,6 +61,8 @@ inline constexpr std::array kStages{
     StageInfo{"end_substeps", "velocity records, displacements",
               "position, velocity, angle, angular velocity"},
     StageInfo{"book_displacements", "motion, position", "books"},
+    StageInfo{"put_to_sleep", "velocity, angular velocity, coloured candidates, impulses",
+              "rows of all columns, velocity, angular velocity, books"},
 };
 
 constexpr const StageInfo& info_of(StageName stage) {

@@ -24,6 +24,7 @@ void step(Simulation<Real>& sim, double dt, StageTimes& times) {
         run(StageName::sort_rows, plan.sort_rows);
         run(StageName::begin_flight, plan.begin_flight);
         run(StageName::update_candidates, plan.update_candidates);
+        run(StageName::wake_sleepers, plan.wake_sleepers);
 
         run(StageName::find_impacts, plan.find_impacts);
         run(StageName::settle_contacts, plan.settle_contacts);
@@ -44,6 +45,7 @@ void step(Simulation<Real>& sim, double dt, StageTimes& times) {
     run(StageName::end_contacts, plan.end_contacts);
     run(StageName::end_substeps, plan.end_substeps);
     run(StageName::book_displacements, plan.book_displacements);
+    run(StageName::put_to_sleep, plan.put_to_sleep);
     sim.world.time += dt;
     ++sim.step_count;
 }

@@ -107,7 +107,7 @@ CalledEffects call_effects(const Scene& scene, const EffectOverrides& overrides)
     decide(reports, "continuous collision", {}, "every solver looks ahead over the whole step", "");
     on.ledger = decide(reports, "ledger", either(overrides.ledger, own.ledger), "", "not asked for");
     decide(reports, "joints", {}, "", "the scene has no joints");
-    decide(reports, "sleeping", {}, "", "not asked for");
+    on.sleeping = decide(reports, "sleeping", either(overrides.sleep, own.sleep), "", "not asked for");
     return called;
 }
 
@@ -141,7 +141,7 @@ StepPlan<Real> make_step_plan(const Simulation<Real>& sim, double dt) {
     const double largest_drag = std::fmax(world.drag.linear, world.drag.angular);
     const int substeps =
         std::max(sim.substeps, static_cast<int>(std::ceil(dt * largest_drag / kLargestDragTimesStep)));
-    const bool can_meet = world.bodies.count > 1 || world.effects.walls;
+    const bool can_meet = world.bodies.rows() > 1 || world.effects.walls;
     if (sim.method == Solver::event) {
         plan.flights = 1;
         plan.run_events = run_events<Real>;
@@ -163,6 +163,8 @@ StepPlan<Real> make_step_plan(const Simulation<Real>& sim, double dt) {
         plan.find_contacts = find_contacts<Real>;
         plan.solve_contacts = solve_contacts<Real>;
         plan.end_contacts = end_contacts<Real>;
+        if (world.effects.sleeping)
+            plan.wake_sleepers = wake_sleepers<Real>, plan.put_to_sleep = put_to_sleep<Real>;
         return plan;
     }
     plan.flights = substeps;
@@ -202,6 +204,7 @@ Plan describe_plan(Simulation<Real>& sim, const CalledEffects& called) {
     list(stages.sort_rows, StageName::sort_rows, "");
     list(stages.begin_flight, StageName::begin_flight, plan.isa + variant);
     list(stages.update_candidates, StageName::update_candidates, plan.isa);
+    list(stages.wake_sleepers, StageName::wake_sleepers, "");
     list(stages.find_impacts, StageName::find_impacts, plan.isa + variant);
     list(stages.settle_contacts, StageName::settle_contacts, "");
     list(stages.resolve_impacts, StageName::resolve_impacts, "");
@@ -221,6 +224,7 @@ Plan describe_plan(Simulation<Real>& sim, const CalledEffects& called) {
     list(stages.end_contacts, StageName::end_contacts, "");
     list(stages.end_substeps, StageName::end_substeps, plan.isa);
     list(stages.book_displacements, StageName::book_displacements, "");
+    list(stages.put_to_sleep, StageName::put_to_sleep, "");
 
     sim.world.bodies.for_each_column([&](const char* name, const char* unit, auto& column) {
         plan.columns.push_back({name, unit, sizeof(column[0])});

@@ -14,6 +14,7 @@ struct StepPlan {
     Stage sort_rows = nullptr;
     Stage begin_flight = nullptr;
     Stage update_candidates = nullptr;
+    Stage wake_sleepers = nullptr;
     Stage find_impacts = nullptr;
     Stage settle_contacts = nullptr;
     Stage resolve_impacts = nullptr;
@@ -32,6 +33,7 @@ struct StepPlan {
     Stage end_contacts = nullptr;
     Stage book_displacements = nullptr;
     Stage end_substeps = nullptr;
+    Stage put_to_sleep = nullptr;
 };
 
 /// Which effects a scene calls for, its overrides applied, each with the reason.

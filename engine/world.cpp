@@ -6,8 +6,10 @@
 
 #include "isa/select_isa.hpp"
 #include "scene/choose_solver.hpp"
+#include "scene/mass.hpp"
 #include "scene/validation.hpp"
 #include "stages/measure.hpp"
+#include "stages/sleep.hpp"
 #include "stages/stages.hpp"
 #include "step.hpp"
 
@@ -84,7 +86,7 @@ struct BasicWorld<Real>::Implementation {
         Bodies<Real>& b = bodies();
         if (b.has_rotation) return;
         b.has_rotation = true;
-        b.angle.resize(b.count), b.angular_velocity.resize(b.count);
+        b.angle.resize(b.rows()), b.angular_velocity.resize(b.rows());
         world().effects.rotation = true;
     }
 
@@ -95,6 +97,18 @@ struct BasicWorld<Real>::Implementation {
         change();
         world().initial = world().initial + (world().sums_of(row) - before);
         sim.forget_derived_state();
+    }
+
+    /// Wakes a body that is about to be changed, and those that touch it. @return its row then
+    std::size_t wake_around(std::size_t row) {
+        const Bodies<Real>& b = bodies();
+        if (b.asleep == 0) return row;
+        const BodyId id = b.id[row];
+        if (b.flags_of(row) & kEdges) wake_all(sim);
+        wake_body(sim, row);
+        const std::size_t now = world().handles.row_of_slot(id.index);
+        wake_at(sim, {b.position_x[now], b.position_y[now]}, b.radius[now]);
+        return world().handles.row_of_slot(id.index);
     }
 
     /// Solver `event` refuses bodies that overlap: then undo() takes the change back.
@@ -146,6 +160,7 @@ BasicWorld<Real>::BasicWorld(const Scene& scene, const WorldOptions& options) {
     world.walls = scene.walls;
     world.books.is_open = world.effects.ledger;
     world.bodies.has_rotation = world.effects.rotation;
+    world.bodies.has_sleep = world.effects.sleeping;
     for (const Body& body : scene.bodies) world.append(body);
     if (sim.method == Solver::event) load_events(sim, "World");
 }
@@ -166,15 +181,15 @@ void BasicWorld<Real>::step(double dt) {
 
 template <class Real>
 std::size_t BasicWorld<Real>::body_count() const noexcept {
-    return implementation_->bodies().count;
+    return implementation_->bodies().rows();
 }
 
 template <class Real>
 BodyView<Real> BasicWorld<Real>::bodies() const noexcept {
     const Bodies<Real>& b = implementation_->sim.world.bodies;
     BodyView<Real> view{
-        b.count, b.position_x.span(), b.position_y.span(), b.velocity_x.span(), b.velocity_y.span(), {},
-        {},      b.id.span()};
+        b.rows(), b.position_x.span(), b.position_y.span(), b.velocity_x.span(), b.velocity_y.span(), {},
+        {},       b.id.span()};
     if (b.has_rotation) view.angle = b.angle.span(), view.angular_velocity = b.angular_velocity.span();
     return view;
 }
@@ -182,6 +197,11 @@ BodyView<Real> BasicWorld<Real>::bodies() const noexcept {
 template <class Real>
 std::uint32_t BasicWorld<Real>::row(BodyId body) const {
     return implementation_->sim.world.handles.row_of(body, "World::row");
+}
+
+template <class Real>
+bool BasicWorld<Real>::is_asleep(BodyId body) const {
+    return implementation_->row_of(body, "World::is_asleep") >= implementation_->sim.world.bodies.count;
 }
 
 template <class Real>
@@ -203,6 +223,10 @@ BodyId BasicWorld<Real>::add(const Body& body) {
         throw Error(ErrorCode::too_large, "World::add: the world has " + std::to_string(body_count()) +
                                               " bodies, which is the limit. Remove some first.");
     if (body.angular_velocity != 0 || body.angle != 0) implementation_->turn_rotation_on();
+    if (is_disc(body.shape))
+        wake_at(implementation_->sim, body.position, radius_of(body.shape));
+    else
+        wake_all(implementation_->sim);
     const BodyId id = implementation_->world().append(body);
     implementation_->sim.forget_derived_state();
     implementation_->undo_if_refused("World::add",
@@ -212,18 +236,30 @@ BodyId BasicWorld<Real>::add(const Body& body) {
 
 template <class Real>
 void BasicWorld<Real>::remove(BodyId body) {
-    const std::size_t row = implementation_->row_of(body, "World::remove");
-    implementation_->sim.soft.graph.trail.follow_removed(row, body_count() - 1);
-    const EdgeStore::Removed edges = implementation_->world().remove(row);
-    implementation_->sim.soft.graph.follow_removed_edges(edges);
-    implementation_->sim.forget_derived_state();
+    Simulation<Real>& sim = implementation_->sim;
+    std::size_t row = implementation_->row_of(body, "World::remove");
+    row = implementation_->wake_around(row);
+    // What carried a weight would throw up the rest: better to start from nothing.
+    constexpr double kHeavy = 4;  // times the mean mass
+    const Bodies<Real>& bodies = sim.world.bodies;
+    if (!bodies.is_immovable(row) &&
+        bodies.mass[row] * static_cast<double>(bodies.count) > kHeavy * sim.world.dynamic_mass)
+        sim.soft.doubt_impulses(), sim.sleepers.forget_woken();
+    sim.soft.graph.trail.follow_removed(row, sim.world.bodies.count - 1);
+    const EdgeStore::Removed edges = sim.world.remove(row);
+    sim.soft.graph.follow_removed_edges(edges);
+    if (edges.count > 0) sim.sleepers.forget_woken();
+    sim.forget_derived_state();
 }
 
 template <class Real>
 void BasicWorld<Real>::set_position(BodyId body, Vec2 position) {
-    const std::size_t row = implementation_->row_of(body, "World::set_position");
+    std::size_t row = implementation_->row_of(body, "World::set_position");
     validate_position(position, "World::set_position");
     Bodies<Real>& b = implementation_->bodies();
+    row = implementation_->wake_around(row);
+    wake_at(implementation_->sim, position, b.radius[row]);
+    row = implementation_->row_of(body, "World::set_position");
     const auto move_to = [&](Real x, Real y) {
         implementation_->change_row(row, [&] { b.position_x[row] = x, b.position_y[row] = y; });
     };
@@ -234,8 +270,9 @@ void BasicWorld<Real>::set_position(BodyId body, Vec2 position) {
 
 template <class Real>
 void BasicWorld<Real>::set_velocity(BodyId body, Vec2 velocity) {
-    const std::size_t row = implementation_->row_of(body, "World::set_velocity");
+    std::size_t row = implementation_->row_of(body, "World::set_velocity");
     validate_velocity(velocity, "World::set_velocity");
+    row = implementation_->wake_around(row);
     Bodies<Real>& b = implementation_->bodies();
     implementation_->change_row(row, [&] {
         b.velocity_x[row] = static_cast<Real>(velocity.x), b.velocity_y[row] = static_cast<Real>(velocity.y);
@@ -244,11 +281,12 @@ void BasicWorld<Real>::set_velocity(BodyId body, Vec2 velocity) {
 
 template <class Real>
 void BasicWorld<Real>::set_angular_velocity(BodyId body, double angular_velocity) {
-    const std::size_t row = implementation_->row_of(body, "World::set_angular_velocity");
+    std::size_t row = implementation_->row_of(body, "World::set_angular_velocity");
     validate_angular_velocity(angular_velocity, "World::set_angular_velocity");
     if (angular_velocity != 0) implementation_->turn_rotation_on();
     Bodies<Real>& b = implementation_->bodies();
     if (!b.has_rotation) return;
+    row = implementation_->wake_around(row);
     implementation_->change_row(row, [&] { b.angular_velocity[row] = static_cast<Real>(angular_velocity); });
 }
 
@@ -273,14 +311,15 @@ Ledger BasicWorld<Real>::ledger() const {
     EnergyByCause& energy = ledger.energy_by_cause;
     energy.gravity = start.energy.potential - now.energy.potential;
     energy.drag = books.drag, energy.restitution = books.restitution, energy.friction = books.friction;
-    energy.correction = books.correction, energy.drive = books.drive;
+    energy.correction = books.correction, energy.drive = books.drive, energy.sleep = books.sleep;
     energy.unexplained = (now.energy.kinetic + now.energy.rotational) -
                          (start.energy.kinetic + start.energy.rotational) - energy.sum();
     MomentumByCause& momentum = ledger.momentum_by_cause;
     momentum.gravity = books.gravity_momentum, momentum.drag = books.drag_momentum;
     momentum.walls = books.wall_momentum, momentum.immovable = books.immovable_momentum;
+    momentum.sleep = books.sleep_momentum;
     momentum.unexplained = now.momentum - start.momentum - momentum.gravity - momentum.drag - momentum.walls -
-                           momentum.immovable;
+                           momentum.immovable - momentum.sleep;
     return ledger;
 }
 
@@ -310,6 +349,9 @@ Profile BasicWorld<Real>::profile() const {
     profile.residual = solve.residual, profile.residual_max = solve.residual_max;
     profile.overlaps_corrected = counters.overlaps_corrected;
     profile.unresolved_impacts = counters.unresolved_impacts;
+    profile.asleep = static_cast<std::int64_t>(sim.world.bodies.asleep);
+    profile.islands_asleep = sim.sleepers.island_count();
+    profile.islands_woken = sim.sleepers.woken_count();
     profile.quarantined = sim.world.quarantined_count;
     profile.bytes = bytes_of(implementation_->sim);
     return profile;

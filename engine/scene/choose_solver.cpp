@@ -44,6 +44,7 @@ SolverChoice choose(const Scene& scene) {
     if (const std::string rough = what_is_rough(scene); !rough.empty()) return {Solver::soft, rough};
     if (scene.effects.friction == true) return {Solver::soft, "friction is forced on"};
     if (scene.effects.rolling_resistance == true) return {Solver::soft, "rolling resistance is forced on"};
+    if (scene.effects.sleep == true) return {Solver::soft, "sleeping is asked for"};
     if (scene.bodies.size() <= 1 && !scene.walls)
         return {Solver::impulse, "there is nothing to touch: free flight is exact"};
     if (scene.gravity == Vec2{})
@@ -82,10 +83,15 @@ SolverChoice choose_solver(const Scene& scene, Solver asked_for) {
 }
 
 std::optional<Problem> find_solver_problem(const EffectOverrides& effects, Solver solver) {
-    if (solver == Solver::soft || effects.rolling_resistance != true) return std::nullopt;
-    return problem(ErrorCode::inconsistent, {"the scene has", "/effects", -1, ""}, "/rolling_resistance",
-                   "the effect rolling_resistance forced on, but the solver ", quoted(name_of(solver)),
-                   " does not have it. Use \"soft\" or \"auto\", or leave \"rolling_resistance\" out.");
+    const auto refuse = [solver](std::string_view effect) {
+        return problem(ErrorCode::inconsistent, {"the scene has", "/effects", -1, ""}, join("/", effect),
+                       "the effect ", effect, " forced on, but the solver ", quoted(name_of(solver)),
+                       " does not have it. Use \"soft\" or \"auto\", or leave \"", effect, "\" out.");
+    };
+    if (solver == Solver::soft) return std::nullopt;
+    if (effects.sleep == true) return refuse("sleep");
+    if (effects.rolling_resistance == true) return refuse("rolling_resistance");
+    return std::nullopt;
 }
 
 std::optional<Problem> find_solver_problem(const Item& item, const Body& body, Solver solver) {

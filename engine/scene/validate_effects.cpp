@@ -75,10 +75,6 @@ std::optional<Problem> find_friction_problem(const Scene& scene, const EffectOve
 }  // namespace
 
 std::optional<Problem> find_effects_problem(const Scene& scene, const EffectOverrides& effects) {
-    if (effects.sleep == true)
-        return problem(ErrorCode::not_built_yet, kEffectsItem, "/sleep",
-                       "the effect sleep forced on; sleeping is not built yet. "
-                       "Leave \"sleep\" out.");
     if (effects.continuous == false && scene.accuracy.solver != Solver::pairwise)
         return problem(ErrorCode::inconsistent, kEffectsItem, "/continuous",
                        "the effect continuous forced off, but the solver \"impulse\" always is continuous. "

@@ -318,6 +318,9 @@ void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const EdgeCan
     if (walls) list_walls(candidates, bodies, *walls);
     for (const EdgePair pair : edges.pairs())
         listed_a_.push_back(pair.row), listed_b_.push_back(support_of_edge(pair.edge));
+    for (const SleeperPair pair : sleepers)
+        if (!bodies.is_immovable(static_cast<std::size_t>(pair.row)))
+            listed_a_.push_back(pair.row), listed_b_.push_back(pair.sleeper);
     group_supports();
 
     for (Column<std::uint64_t>& colours : colours_of_) colours.resize_for_overwrite(rows);

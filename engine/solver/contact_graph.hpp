@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "broadphase/candidates.hpp"
@@ -14,6 +15,11 @@
 #include "state/bodies.hpp"
 
 namespace carom {
+
+/// A body that is awake, or kinematic, and one that sleeps, near enough to touch before the pairs are void.
+struct SleeperPair {
+    std::int32_t row, sleeper;
+};
 
 /// Which bodies can touch which, in groups and colours, until the candidate pairs change.
 ///
@@ -38,11 +44,12 @@ class ContactGraph {
     /// Edges were removed; later ones moved up. Cost: O(supports).
     void follow_removed_edges(EdgeStore::Removed gone);
 
-    bool keeps_rolling = false;     ///< rolling impulses, too
-    std::int64_t version = 0;       ///< counts renewals and additions
-    RowTrail trail;                 ///< to be told of rows that change between renewals
-    ContactGroups groups;           ///< of the last renewal
-    ContactCandidates<Real> pairs;  ///< of two bodies that move, a < b
+    bool keeps_rolling = false;             ///< rolling impulses, too
+    std::int64_t version = 0;               ///< counts renewals and additions
+    std::span<const SleeperPair> sleepers;  ///< supports besides those that `renew` finds
+    RowTrail trail;                         ///< to be told of rows that change between renewals
+    ContactGroups groups;                   ///< of the last renewal
+    ContactCandidates<Real> pairs;          ///< of two bodies that move, a < b
     /// Of a body that moves and what nothing moves: walls, immovable bodies.
     ContactCandidates<Real> supports;
 

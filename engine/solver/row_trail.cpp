@@ -19,10 +19,11 @@ void RowTrail::keep() {
 
 void RowTrail::follow_sorted(const std::int32_t* order, std::size_t count) {
     keep();
-    old_row_.resize(count, kGone);  // rows that were appended
     new_row_.resize(count);
-    for (std::size_t row = 0; row < count; ++row)
-        new_row_[row] = old_row_[static_cast<std::size_t>(order[row])];
+    for (std::size_t row = 0; row < count; ++row) {
+        const auto old = static_cast<std::size_t>(order[row]);
+        new_row_[row] = old < old_row_.size() ? old_row_[old] : kGone;  // or it was appended
+    }
     old_row_.swap(new_row_);
 }
 

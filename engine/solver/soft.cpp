@@ -265,7 +265,8 @@ void SoftSolver<Real>::solve_contacts(int number) {
     const ContactKernels<Real>& kernels = contact_kernels();
     const SolveContacts<Real> on_supports = arguments(supports_), on_pairs = arguments(pairs_);
     sweep({kernels.first_pairs, on_pairs}, {kernels.first_supports, on_supports});
-    const int sweeps = number == 0 && !are_impulses_known_ ? kFirstSweeps : 1;
+    const int sweeps = number == 0 && (!are_impulses_known_ || are_impulses_doubtful_) ? kFirstSweeps : 1;
+    are_impulses_doubtful_ = false;
     for (int i = 0; i < sweeps; ++i)
         sweep({kernels.next_pairs, on_pairs}, {kernels.next_supports, on_supports});
 }

@@ -68,8 +68,26 @@ void add_edges(Simulation<Real>& sim, Overlaps& overlaps) {
 }  // namespace
 
 template <class Real>
+OverlapReport measure_overlaps(Simulation<Real>& sim);
+
+/// As if all were awake: those that sleep are in no candidate pair.
+template <class Real>
+OverlapReport measure_with_sleepers(Simulation<Real>& sim) {
+    Bodies<Real>& bodies = sim.world.bodies;
+    const std::size_t asleep = bodies.asleep;
+    Candidates<Real> of_those_awake;
+    std::swap(of_those_awake, sim.candidates);
+    bodies.count += asleep, bodies.asleep = 0;
+    const OverlapReport report = measure_overlaps(sim);
+    bodies.count -= asleep, bodies.asleep = asleep;
+    std::swap(of_those_awake, sim.candidates);
+    return report;
+}
+
+template <class Real>
 OverlapReport measure_overlaps(Simulation<Real>& sim) {
     const Bodies<Real>& bodies = sim.world.bodies;
+    if (bodies.asleep > 0) return measure_with_sleepers(sim);
     sim.candidates.prepare(bodies.count);
     // A clock that stands still: if there are no pairs yet, those of the present positions.
     if (!sim.candidates.is_valid())

@@ -11,6 +11,7 @@
 #include "parallel/executor.hpp"
 #include "solver/event/event_dynamics.hpp"
 #include "solver/impulse.hpp"
+#include "solver/sleepers.hpp"
 #include "solver/soft.hpp"
 #include "state/chunked_list.hpp"
 #include "world/world_state.hpp"
@@ -25,6 +26,7 @@ struct Simulation {
     EdgeCandidates<Real> edges;  ///< solver `soft`
     ImpulseSolver<Real> solver;
     SoftSolver<Real> soft;
+    Sleepers<Real> sleepers;
     Executor executor;
     const KernelTable<Real>* kernels = nullptr;
     Solver method = Solver::impulse;       ///< never `automatic`

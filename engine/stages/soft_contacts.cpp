@@ -12,6 +12,9 @@ template <class Real>
 void update_contacts(Simulation<Real>& sim) {
     sim.soft.graph.keeps_rolling = sim.world.effects.rolling_resistance;
     const Walls* walls = sim.world.walls ? &*sim.world.walls : nullptr;
+    sim.soft.graph.sleepers = sim.sleepers.pairs();
+    if (sim.graph_of_rebuild != sim.candidates.rebuild_count() && sim.world.effects.sleeping)
+        Sleepers<Real>::forget_contacts(sim.soft.graph, sim.world);
     const bool has_edges = !sim.world.edges.empty();
     if (sim.graph_of_rebuild == sim.candidates.rebuild_count()) {
         if (has_edges) sim.edges.add_strays(sim.world, sim.candidates);
@@ -21,6 +24,7 @@ void update_contacts(Simulation<Real>& sim) {
         sim.soft.graph.renew(sim.candidates, sim.edges, sim.world.bodies, walls, sim.executor);
     }
     sim.graph_of_rebuild = sim.candidates.rebuild_count();
+    sim.sleepers.restore_impulses(sim.soft.graph, sim.world, sim.soft.substep_of_impulses());
 }
 
 template <class Real>

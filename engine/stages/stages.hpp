@@ -21,6 +21,16 @@ void begin_flight(Simulation<Real>& sim);
 template <class Real>
 void update_candidates(Simulation<Real>& sim);
 
+/// Wakes islands that something is about to hit; lists sleepers near those awake as supports.
+/// reads pose, velocity, pairs; writes rows, supports
+template <class Real>
+void wake_sleepers(Simulation<Real>& sim);
+
+/// Wakes islands that something presses on, puts islands to sleep that have been still for long enough.
+/// reads velocity, spin, graph; writes rows of everything, velocity, spin, books
+template <class Real>
+void put_to_sleep(Simulation<Real>& sim);
+
 /// Lists the few meetings that can happen in this substep.   reads motion, pairs; writes meetings
 template <class Real>
 void find_impacts(Simulation<Real>& sim);

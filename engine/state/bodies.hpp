@@ -54,18 +54,22 @@ class Property {
 /// effect needs do not exist.
 template <class Real>
 struct Bodies {
-    std::size_t count = 0;
+    std::size_t count = 0;                 ///< rows that a step works on
+    std::size_t asleep = 0;                ///< rows behind them: bodies that sleep
     Column<Real> position_x, position_y;   // m
     Column<Real> velocity_x, velocity_y;   // m/s
     Column<Real> angle, angular_velocity;  // rad, rad/s; only with rotation
     Column<std::uint8_t> flags;            // BodyFlag bits; only if some row has one
     Column<BodyId> id;                     // handle of each row
+    Column<float> still;                   // s, for how long slow enough to sleep; only with sleeping
+    Column<std::int32_t> island;           // of rows that sleep; only with sleeping
     Property<Real> mass;                   // kg
     Property<Real> radius;                 // m
     Property<Real> restitution;            // no unit
     Property<Real> friction;               // Coulomb coefficient
     Property<Real> rolling_resistance;     // coefficient
     bool has_rotation = false;
+    bool has_sleep = false;
     bool has_flags = false;
 
     std::uint8_t flags_of(std::size_t row) const { return has_flags ? flags[row] : std::uint8_t{0}; }
@@ -89,18 +93,22 @@ struct Bodies {
         if (!friction.is_uniform()) fn("friction", "1", friction.column());
         if (!rolling_resistance.is_uniform()) fn("rolling_resistance", "1", rolling_resistance.column());
         if (has_flags) fn("flags", "bits", flags);
+        if (has_sleep) fn("still", "s", still), fn("island", "1", island);
     }
 
-    /// Changes the number of rows; new rows and padding are zero.
+    /// All bodies, awake or not.
+    std::size_t rows() const { return count + asleep; }
+
+    /// Changes the number of rows, those that sleep included; new rows and padding are zero.
     void resize(std::size_t rows) {
         for_each_column([rows](auto, auto, auto& column) { column.resize(rows); });
-        count = rows;
+        count = rows - asleep;
     }
 
     void set_flags(std::size_t row, std::uint8_t value) {
         if (!has_flags) {
             if (value == 0) return;
-            flags.resize(count);
+            flags.resize(rows());
             has_flags = true;
         }
         flags[row] = value;

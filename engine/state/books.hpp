@@ -16,10 +16,12 @@ struct Books {
     double friction = 0;     // J
     double correction = 0;   // J
     double drive = 0;        // J
+    double sleep = 0;        // J
     Vec2 gravity_momentum;   // kg m/s, and below
     Vec2 drag_momentum;
     Vec2 wall_momentum;
     Vec2 immovable_momentum;
+    Vec2 sleep_momentum;
     double wall_impulse = 0;  // N s, magnitude
 
     /// An impulse from the walls on a body.

@@ -2,6 +2,7 @@
 
 #include <cstring>
 #include <type_traits>
+#include <utility>
 
 #include "math/vec2_math.hpp"
 #include "scene/mass.hpp"
@@ -40,14 +41,21 @@ Sums WorldState<Real>::sums_of(std::size_t row) const {
 template <class Real>
 Sums WorldState<Real>::sums() const {
     Sums sums;
-    for (std::size_t row = 0; row < bodies.count; ++row) sums = sums + sums_of(row);
+    for (std::size_t row = 0; row < bodies.rows(); ++row) sums = sums + sums_of(row);
     return sums;
 }
 
 template <class Real>
 BodyId WorldState<Real>::append(const Body& body) {
-    const std::size_t row = bodies.count;
-    bodies.resize(row + 1);
+    const std::size_t row = bodies.count, rows = bodies.rows() + 1;
+    bodies.resize(rows);
+    if (bodies.asleep > 0) {  // the first that sleeps makes room
+        bodies.for_each_column([&](auto, auto, auto& column) {
+            column[rows - 1] = column[row];
+            column[row] = {};
+        });
+        handles.set_row(bodies.id[rows - 1], static_cast<std::uint32_t>(rows - 1));
+    }
     const BodyId id = handles.add(static_cast<std::uint32_t>(row));
     const auto real = [](double value) { return static_cast<Real>(value); };
     const double mass = mass_of(body);
@@ -59,19 +67,19 @@ BodyId WorldState<Real>::append(const Body& body) {
         bodies.angle[row] = real(body.angle), bodies.angular_velocity[row] = real(body.angular_velocity);
     if (has_edges) {
         edges.append(id, body.shape);
-        bodies.radius.set_any(row, bodies.count, Real(1));
+        bodies.radius.set_any(row, rows, Real(1));
     } else {
-        bodies.radius.set(row, bodies.count, real(radius_of(body.shape)));
+        bodies.radius.set(row, rows, real(radius_of(body.shape)));
     }
-    bodies.restitution.set(row, bodies.count, real(body.material.restitution));
-    bodies.friction.set(row, bodies.count, real(body.material.friction));
-    bodies.rolling_resistance.set(row, bodies.count, real(body.material.rolling_resistance));
+    bodies.restitution.set(row, rows, real(body.material.restitution));
+    bodies.friction.set(row, rows, real(body.material.friction));
+    bodies.rolling_resistance.set(row, rows, real(body.material.rolling_resistance));
     if (body.type == BodyType::dynamic_body) {
-        bodies.mass.set(row, bodies.count, real(mass));
+        bodies.mass.set(row, rows, real(mass));
         bodies.set_flags(row, body.fixed_rotation && effects.friction ? kFixedAngle : 0);
         dynamic_mass += static_cast<double>(bodies.mass[row]);
     } else {
-        bodies.mass.set_any(row, bodies.count, Real(1));  // it counts as infinite
+        bodies.mass.set_any(row, rows, Real(1));  // it counts as infinite
         const bool moves = body.type == BodyType::kinematic_body;
         bodies.set_flags(
             row, static_cast<std::uint8_t>(kImmovable | (moves ? kKinematic : 0) | (has_edges ? kEdges : 0)));
@@ -87,11 +95,13 @@ EdgeStore::Removed WorldState<Real>::remove(std::size_t row) {
     initial = initial - sums_of(row);
     if (!bodies.is_immovable(row)) dynamic_mass -= static_cast<double>(bodies.mass[row]);
     handles.remove(bodies.id[row]);
-    const std::size_t last = bodies.count - 1;
-    if (row != last) {
-        bodies.for_each_column([&](auto, auto, auto& column) { column[row] = column[last]; });
-        handles.set_row(bodies.id[row], static_cast<std::uint32_t>(row));
-    }
+    const std::size_t last_awake = bodies.count - 1, last = bodies.rows() - 1;
+    const auto fill = [&](std::size_t to, std::size_t from) {
+        if (to == from) return;
+        bodies.for_each_column([&](auto, auto, auto& column) { column[to] = column[from]; });
+        handles.set_row(bodies.id[to], static_cast<std::uint32_t>(to));
+    };
+    fill(row, last_awake), fill(last_awake, last);
     bodies.resize(last);
     list_immovable_rows();
     return gone;
@@ -115,6 +125,14 @@ void WorldState<Real>::list_immovable_rows() {
     if (!bodies.has_flags) return;
     for (std::size_t row = 0; row < bodies.count; ++row)
         if (bodies.is_immovable(row)) immovable_rows.push_back(static_cast<std::int32_t>(row));
+}
+
+template <class Real>
+void WorldState<Real>::swap_rows(std::size_t a, std::size_t b) {
+    if (a == b) return;
+    bodies.for_each_column([&](auto, auto, auto& column) { std::swap(column[a], column[b]); });
+    handles.set_row(bodies.id[a], static_cast<std::uint32_t>(a));
+    handles.set_row(bodies.id[b], static_cast<std::uint32_t>(b));
 }
 
 template <class Real>

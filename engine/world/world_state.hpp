@@ -25,6 +25,7 @@ struct Effects {
     bool friction = false;
     bool rolling_resistance = false;
     bool ledger = false;
+    bool sleeping = false;
 };
 
 /// Sums over the dynamic bodies, in double precision.
@@ -51,7 +52,7 @@ struct WorldState {
     std::uint64_t falls = 0;  ///< flights so far: says how speeds are rounded in the next one
     Books books;
     Sums initial;                              ///< of the bodies there are, at the moment each joined
-    double dynamic_mass = 0;                   ///< kg
+    double dynamic_mass = 0;                   ///< kg, of those awake
     std::vector<std::int32_t> immovable_rows;  ///< static, kinematic and disabled ones
     std::int64_t quarantined_count = 0;
 
@@ -66,12 +67,13 @@ struct WorldState {
     EdgeStore::Removed remove(std::size_t row);
     /// Rolls a row whose next state would leave the limits out of the simulation, where it is.
     void quarantine(std::size_t row);
-    /// Sorts rows: new row i is the old row order[i].
+    /// Exchanges two rows. `list_immovable_rows` is to be called after it.
+    void swap_rows(std::size_t a, std::size_t b);
+    void list_immovable_rows();
+    /// Sorts the rows that are awake: new row i is the old row order[i].
     void reorder(const std::int32_t* order);
 
   private:
-    void list_immovable_rows();
-
     Column<std::byte> spare_;  // one column's worth, kept so that reordering allocates nothing
 };
 

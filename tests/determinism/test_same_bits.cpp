@@ -123,9 +123,26 @@ Scene turning_chain() {
     return scene;
 }
 
+/// Discs on a floor that fall asleep and are woken by one that drops among them.
+Scene woken_sleepers() {
+    Scene scene;
+    scene.name = "woken sleepers";
+    scene.gravity = {0, -10};
+    scene.walls = Walls{.min = {0, 0}, .max = {20, 20}, .material = {.friction = 0.5}};
+    scene.effects.sleep = true;
+    for (int i = 0; i < 30; ++i) {
+        const double radius = 0.3 + 0.01 * (i % 5);
+        scene.add({.shape = Disc{radius},
+                   .position = {0.7 + 0.64 * i, radius},
+                   .material = {.friction = 0.4, .rolling_resistance = 0.05}});
+    }
+    scene.add({.shape = Disc{0.5}, .position = {10.1, 7.3}, .material = {.friction = 0.4}});
+    return scene;
+}
+
 std::vector<Scene> scenes() {
-    return {rolling_sizes(), gas(400, {0.5, 0.5}, 1), falling_sizes(), moving_obstacles(),
-            stack_at_rest(), rough_sizes(),           turning_chain()};
+    return {woken_sleepers(),   rolling_sizes(), gas(400, {0.5, 0.5}, 1), falling_sizes(),
+            moving_obstacles(), stack_at_rest(), rough_sizes(),           turning_chain()};
 }
 
 template <class Real>
@@ -149,6 +166,7 @@ constexpr Golden kGolden[] = {
     {"rough sizes", 0xc03b4357cff3d84d, 0x1ceb70bf3945dab9},
     {"rolling sizes", 0x4a03a598f29a034d, 0xd102b8235214af01},
     {"turning chain", 0x7ab8ecf0b1fddbc, 0xf7f511ad324ef90c},
+    {"woken sleepers", 0x72e009d1b97840fd, 0x4d32cdeab531e886},
 };
 
 }  // namespace

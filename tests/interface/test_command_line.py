@@ -23,7 +23,7 @@ class WrongInputTest(ProgramTest):
     def test_command_lines_that_make_no_sense_are_refused(self):
         for arguments in ([], ["fly"], ["run"], ["check"], ["explain"], ["run", SEED, SEED], ["--bogus"],
                           ["run", SEED, "--bogus"], ["run", "--out"], [""], ["run", ""], ["check", SEED, "--steps", "3"],
-                          ["prices", SEED], ["report"], ["torture"], ["accuracy", "A99"], ["accuracy", "--out"]):
+                          ["prices"], ["report"], ["torture"], ["accuracy", "A99"], ["accuracy", "--out"]):
             self.check_refused(*arguments)
 
     def test_values_out_of_range_are_refused(self):
@@ -37,7 +37,7 @@ class WrongInputTest(ProgramTest):
             "--isa": ["", "bogus", "AVX2", "avx3", "neon"],
             "--solver": ["", "bogus", "Impulse", "rigid", "rattle"],
             "--effects": ["", "sleep", "+", "-", "+bogus", "++ledger", "+ledger,-ledger", "-ledger,+ledger",
-                          "+sleep", "+ledger,,", "-gravity", "-restitution", "-drag", "-continuous", "+frictoin"],
+                          "+ledger,,", "-gravity", "-restitution", "-drag", "-continuous", "+frictoin"],
         }.items():
             for value in values:
                 self.check_refused("run", SEED, option, value)
@@ -176,7 +176,7 @@ class OtherCommandsTest(ProgramTest):
         text = self.carom("--help").stdout
         for command in ("run", "explain", "check", "report", "--version"):
             self.assertIn(command, text)
-        for later in ("prices", "torture"):
+        for later in ("torture",):
             self.assertNotIn(f"  {later}", text)
         text = self.carom("run", "--help").stdout
         for option in ("--out", "--steps", "--dt", "--solver", "--substeps", "--iterations", "--precision", "--threads",

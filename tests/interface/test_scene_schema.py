@@ -153,6 +153,7 @@ VALID = [
     scene(effects={"sleep": False, "continuous": True, "ledger": True}),
     scene(effects={"gravity": False, "drag": True, "rotation": True, "restitution": False}),
     scene(effects={"friction": True, "rolling_resistance": True}),
+    scene(effects={"sleep": True}),
     scene(record={"every": 1, "trail": 80}),
     scene(record={}),
 ]
@@ -175,7 +176,6 @@ NOT_BUILT_YET = [
     joint("target", anchor=[0, 0], target=[1, 1], max_force=100, frequency=5, damping_ratio=0.7),
     scene(accuracy={"solver": "rigid"}),
     scene(accuracy={"solver": "rattle"}),
-    scene(effects={"sleep": True}),
 ]
 
 INVALID = [

@@ -71,6 +71,7 @@ std::string ledger_line(const EnergyByCause& work) {
     add("correction", work.correction, false);
     add("joints", work.joints, false);
     add("drive", work.drive, false);
+    add("sleep", work.sleep, false);
     add("unexplained", work.unexplained, true);
     text.back() = '\n';
     return text;
@@ -82,6 +83,13 @@ std::string contact_line(const RunOutcome& run) {
         "radius\n",
         static_cast<long long>(run.overlaps.touching), static_cast<long long>(run.overlaps.candidates),
         100 * run.overlaps.mean, 100 * run.overlaps.max);
+}
+
+std::string sleep_line(const Profile& profile) {
+    if (profile.asleep == 0 && profile.islands_woken == 0) return "";
+    return format("  asleep: %lld bodies in %lld islands; %lld islands were woken\n",
+                  static_cast<long long>(profile.asleep), static_cast<long long>(profile.islands_asleep),
+                  static_cast<long long>(profile.islands_woken));
 }
 
 std::string time_line(const RunOutcome& run) {
@@ -99,7 +107,7 @@ std::string time_line(const RunOutcome& run) {
 std::string summary_table(const RunOutcome& run) {
     std::string text = heading(run) + course_table(run);
     text += run.keeps_ledger ? ledger_line(run.ledger.energy_by_cause) : "\n";
-    text += contact_line(run) + time_line(run);
+    text += contact_line(run) + sleep_line(run.profile) + time_line(run);
     return text;
 }
 

@@ -94,6 +94,8 @@ void add_accuracy(const Json& summary, Page& page) {
     table.rows.push_back({"impacts", plain(counters.at("impacts")), ""});
     table.rows.push_back({"of these at walls", plain(counters.at("wall_impacts")), ""});
     table.rows.push_back({"left unresolved by a step", plain(counters.at("unresolved_impacts")), ""});
+    if (counters.value("asleep", 0) > 0)
+        table.rows.push_back({"asleep at the end", plain(counters.at("asleep")), "bodies"});
     page.table(table);
 }
 

@@ -23,9 +23,10 @@ struct EnergyByCause {
     double correction = 0;   ///< spent on pushing overlapping bodies apart against gravity
     double joints = 0;       ///< zero in this version
     double drive = 0;        ///< by kinematic bodies
+    double sleep = 0;        ///< what bodies still had when they were put to sleep
     double unexplained = 0;  ///< what the columns say minus what the causes add up to: the error of the run
     double sum() const {
-        return gravity + drag + restitution + friction + correction + joints + drive + unexplained;
+        return gravity + drag + restitution + friction + correction + joints + drive + sleep + unexplained;
     }
 };
 
@@ -35,6 +36,7 @@ struct MomentumByCause {
     Vec2 drag;
     Vec2 walls;
     Vec2 immovable;  ///< by static and kinematic bodies
+    Vec2 sleep;      ///< taken from bodies that were put to sleep
     Vec2 unexplained;
 };
 

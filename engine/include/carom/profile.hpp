@@ -36,6 +36,9 @@ struct Profile {
     double residual_max = 0;
     std::int64_t overlaps_corrected = 0;  ///< pairs or walls pushed apart
     std::int64_t unresolved_impacts = 0;  ///< left to the next step at the limit of impacts a body and step
+    std::int64_t asleep = 0;              ///< bodies that sleep now
+    std::int64_t islands_asleep = 0;      ///< the islands they are
+    std::int64_t islands_woken = 0;       ///< ever
     std::int64_t quarantined = 0;         ///< bodies disabled because their state left the limits
     std::size_t bytes = 0;                ///< memory the world holds now
 };

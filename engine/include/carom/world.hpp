@@ -85,6 +85,9 @@ class BasicWorld {
     /// @throws Error (stale_handle)
     BodyState state(BodyId body) const;
 
+    /// Whether a body sleeps: it stands still, and steps do not look at it. @throws Error (stale_handle)
+    bool is_asleep(BodyId body) const;
+
     /// Adds a body between steps. @throws Error as `Scene::validate`; names need not be unique here.
     BodyId add(const Body& body);
     /// Removes a body; its handle goes stale. @throws Error (stale_handle)

@@ -255,8 +255,13 @@ const std::vector<Fault> kSettingFaults{
      },
      ErrorCode::inconsistent, "/bodies/1/material/restitution",
      "comes to rest at once; the solver \"event\""},
-    {"sleep", [](Scene& s) { s.effects.sleep = true; }, ErrorCode::not_built_yet, "/effects/sleep",
-     "sleeping is not built yet"},
+    {"sleep with a solver that never rests",
+     [](Scene& s) {
+         s.accuracy.solver = Solver::impulse;
+         s.effects.sleep = true;
+     },
+     ErrorCode::inconsistent, "/effects/sleep",
+     "the effect sleep forced on, but the solver \"impulse\" does not have it. Use \"soft\" or \"auto\""},
     {"not continuous", [](Scene& s) { s.effects.continuous = false; }, ErrorCode::inconsistent,
      "/effects/continuous", "always is continuous"},
     {"gravity forced off", [](Scene& s) { s.effects.gravity = false; }, ErrorCode::inconsistent,

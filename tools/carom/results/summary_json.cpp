@@ -34,15 +34,14 @@ Json to_json(const EnergyByCause& work) {
             {"correction", work.correction},
             {"joints", work.joints},
             {"drive", work.drive},
+            {"sleep", work.sleep},
             {"unexplained", work.unexplained}};
 }
 
 Json to_json(const MomentumByCause& given) {
-    return {{"gravity", to_json(given.gravity)},
-            {"drag", to_json(given.drag)},
-            {"walls", to_json(given.walls)},
-            {"immovable", to_json(given.immovable)},
-            {"unexplained", to_json(given.unexplained)}};
+    return {{"gravity", to_json(given.gravity)}, {"drag", to_json(given.drag)},
+            {"walls", to_json(given.walls)},     {"immovable", to_json(given.immovable)},
+            {"sleep", to_json(given.sleep)},     {"unexplained", to_json(given.unexplained)}};
 }
 
 Json effects_of(const Plan& plan) {
@@ -85,6 +84,9 @@ Json counters_of(const Profile& profile) {
             {"residual_max", profile.residual_max},
             {"overlaps_corrected", profile.overlaps_corrected},
             {"unresolved_impacts", profile.unresolved_impacts},
+            {"asleep", profile.asleep},
+            {"islands_asleep", profile.islands_asleep},
+            {"islands_woken", profile.islands_woken},
             {"bytes", profile.bytes}};
 }
 
