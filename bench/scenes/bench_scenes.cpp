@@ -58,7 +58,7 @@ void sizes(benchmark::internal::Benchmark* benchmark) {
         ->UseRealTime()
         ->MeasureProcessCPUTime();
     for (const std::int64_t bodies : {1'000, 10'000, 100'000, 1'000'000}) benchmark->Args({bodies, 1});
-    benchmark->Args({100'000, 2});
+    for (const std::int64_t bodies : {10'000, 100'000}) benchmark->Args({bodies, 2});
 }
 
 const bool kAdded = [] {
