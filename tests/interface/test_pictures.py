@@ -1,4 +1,5 @@
 """Pictures and videos that `carom run` draws without a browser, and those of the gallery."""
+import math
 import os
 import re
 import shutil
@@ -98,6 +99,20 @@ class PicturesTest(ProgramTest):
         done = self.carom("run", SEED, "--out", "out", "--video", "a.mp4", expect=2, env={**os.environ, "PATH": "/nonexistent"})
         self.assertIn("ffmpeg is not installed; --frames", done.stderr)
         self.assertEqual(self.everything(), [])
+
+    def test_a_chain_is_drawn_where_it_stands(self):
+        square = {"type": "static", "angle": math.pi / 4, "shape": {"chain": {"points": [[-1, -1], [1, -1], [1, 1], [-1, 1]], "loop": True}}}
+        scene = {"carom": 1, "bodies": [square, {"shape": {"disc": {"radius": 0.1}}}]}
+        self.run_scene(scene, "--steps", 1, "--no-report", "--picture", "now.png", "--picture-width", 400)
+        picture = read_png(self.folder / "now.png")
+        self.assertEqual(picture.shape[:2], (400, 400))
+        half = 200 / 1.06  # pixels from the middle to a corner of the square, with a margin of 3 % around
+        for right, up in ((1, 0), (0, 1), (-1, 0), (0, -1), (0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5), (0.5, -0.5)):
+            x, y = round(200 + half * right), round(200 - half * up)
+            self.assertLess(picture[y - 2:y + 3, x - 2:x + 3].min(), 100, (right, up))
+        for right, up in ((0.3, 0.3), (0.8, 0.8), (-0.3, 0.3)):  # inside and outside
+            x, y = round(200 + half * right), round(200 - half * up)
+            self.assertGreater(picture[y - 2:y + 3, x - 2:x + 3].min(), 200, (right, up))
 
     def test_a_place_that_cannot_be_written_is_an_error_and_leaves_no_half_picture(self):
         scene = self.write_scene(gas(2, steps=5))

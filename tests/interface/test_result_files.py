@@ -196,6 +196,18 @@ class TrajectoryTest(ProgramTest):
             settings = json.loads(file.attrs["settings"])
         self.assertEqual((settings["solver"], settings["steps"], settings["dt"]), ("pairwise", 3, 0.016))
 
+    def test_settings_have_the_points_of_segments_and_chains(self):
+        scene = {"carom": 1, "bodies": [
+            {"shape": {"disc": {"radius": 0.5}}},
+            {"type": "static", "position": [0, -1], "shape": {"segment": {"a": [-1, 0], "b": [1, 0.5]}}},
+            {"type": "static", "shape": {"chain": {"points": [[-9, -9], [9, -9], [0, 9]], "loop": True}}}]}
+        results = self.run_scene(scene, "--steps", 1)
+        with h5py.File(results.folder / "trajectory.h5", "r") as file:
+            edges = json.loads(file.attrs["settings"])["edges"]
+            self.assertEqual(list(file["radius"][:]), [0.5, 0, 0])
+        self.assertEqual(edges, [{"body": 1, "points": [[-1, 0], [1, 0.5]], "loop": False},
+                                 {"body": 2, "points": [[-9, -9], [9, -9], [0, 9]], "loop": True}])
+
     def test_long_scene_text_is_kept_whole(self):
         path = self.write_scene(json.dumps(gas(40, steps=1)) + " " * 3_000_000)
         results = self.run_scene(path)

@@ -3,12 +3,14 @@
 #include <carom/version.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "format.hpp"
 #include "interrupt.hpp"
@@ -42,6 +44,22 @@ nlohmann::ordered_json walls_json(const std::optional<Walls>& walls) {
     return {{"min", {walls->min.x, walls->min.y}}, {"max", {walls->max.x, walls->max.y}}, {"sides", sides}};
 }
 
+/// The bodies that are lines, which have no radius: their points, in the body's frame [m].
+nlohmann::ordered_json edges_json(const std::vector<Body>& bodies) {
+    nlohmann::ordered_json edges = nlohmann::ordered_json::array();
+    const auto add = [&](std::size_t body, std::span<const Vec2> points, bool loop) {
+        nlohmann::ordered_json list = nlohmann::ordered_json::array();
+        for (const Vec2& point : points) list.push_back({point.x, point.y});
+        edges.push_back({{"body", body}, {"points", std::move(list)}, {"loop", loop}});
+    };
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        if (const auto* segment = std::get_if<Segment>(&bodies[i].shape))
+            add(i, std::array{segment->a, segment->b}, false);
+        if (const auto* chain = std::get_if<Chain>(&bodies[i].shape)) add(i, chain->points, chain->loop);
+    }
+    return edges;
+}
+
 /// What the run does with the scene, for whoever opens the trajectory alone.
 std::string settings_text(const Scene& scene, const Plan& plan) {
     nlohmann::ordered_json json{{"version", kVersion},
@@ -52,6 +70,7 @@ std::string settings_text(const Scene& scene, const Plan& plan) {
                                 {"gravity", {scene.gravity.x, scene.gravity.y}},
                                 {"drag", {{"linear", scene.drag.linear}, {"angular", scene.drag.angular}}},
                                 {"walls", walls_json(scene.walls)},
+                                {"edges", edges_json(scene.bodies)},
                                 {"solver", plan.solver},
                                 {"substeps", plan.substeps},
                                 {"precision", plan.precision},

@@ -51,6 +51,7 @@ Picture::Picture(const std::filesystem::path& trajectory_h5, int width)
       time_(trajectory_.times()),
       radius_(trajectory_.body_column("radius")),
       settings_(Json::parse(trajectory_.text("settings"), nullptr, false)),
+      edges_(edge_bodies(settings_)),
       trail_(settings_.is_object() ? settings_.value("trail", std::size_t{0}) : 0),
       width_(width) {
     if (time_.empty()) throw ResultError(trajectory_h5.string() + ": has no frames to draw");
@@ -85,7 +86,14 @@ Picture::Box Picture::world() const {
         box.max_y = std::max(box.max_y, up.base + kSteps * up.step);
     }
     const double around = radius_.empty() ? 1 : *std::max_element(radius_.begin(), radius_.end());
-    return {box.min_x - around, box.min_y - around, box.max_x + around, box.max_y + around};
+    box = {box.min_x - around, box.min_y - around, box.max_x + around, box.max_y + around};
+    if (!edges_.empty()) trajectory_.read_frame("position", 0, position);
+    for (const EdgeBody& edges : edges_) {
+        const double at_x = position[2 * edges.body], at_y = position[2 * edges.body + 1];
+        box = {std::min(box.min_x, at_x - edges.reach), std::min(box.min_y, at_y - edges.reach),
+               std::max(box.max_x, at_x + edges.reach), std::max(box.max_y, at_y + edges.reach)};
+    }
+    return box;
 }
 
 void Picture::choose_colours() {
@@ -125,6 +133,7 @@ void Picture::draw(std::size_t frame) {
     draw_bodies(frame);
     draw_rotation_marks(frame);
     draw_walls();
+    draw_edges(frame);
     draw_time(frame);
     cairo_surface_flush(surface_->image);
 }
@@ -151,6 +160,7 @@ void Picture::draw_bodies(std::size_t frame) {
     cairo_t* const pen = surface_->pen;
     const std::vector<float>& position = positions(frame);
     for (std::size_t body = 0; body < colour_.size(); ++body) {
+        if (radius_[body] == 0) continue;  // lines
         const double px = x(position[2 * body]), py = y(position[2 * body + 1]);
         const double r = std::max(radius_[body] * scale_, 0.5);
         if (!(px > -r && px < width_ + r && py > -r && py < height_ + r)) continue;
@@ -161,9 +171,7 @@ void Picture::draw_bodies(std::size_t frame) {
 }
 
 void Picture::draw_rotation_marks(std::size_t frame) {
-    if (!trajectory_.holds_data("angle")) return;
-    std::vector<float> angle(trajectory_.body_count());
-    trajectory_.read_frame("angle", frame, angle);
+    const std::vector<float> angle = angles(frame);
     const std::vector<float>& position = positions(frame);
     cairo_t* const pen = surface_->pen;
     cairo_set_source_rgb(pen, 1, 1, 1);
@@ -173,6 +181,38 @@ void Picture::draw_rotation_marks(std::size_t frame) {
         if (r < kSmallestMark) continue;
         cairo_move_to(pen, px, py);
         cairo_line_to(pen, px + r * std::cos(angle[body]), py - r * std::sin(angle[body]));
+        cairo_stroke(pen);
+    }
+}
+
+/// Of all bodies; none if nothing turns.
+std::vector<float> Picture::angles(std::size_t frame) const {
+    if (!trajectory_.holds_data("angle")) return {};
+    std::vector<float> angle(trajectory_.body_count());
+    trajectory_.read_frame("angle", frame, angle);
+    return angle;
+}
+
+void Picture::draw_edges(std::size_t frame) {
+    if (edges_.empty()) return;
+    const std::vector<float> angle = angles(frame);
+    const std::vector<float>& position = positions(frame);
+    cairo_t* const pen = surface_->pen;
+    cairo_set_source_rgb(pen, 0.11, 0.13, 0.15);
+    cairo_set_line_width(pen, 2);
+    cairo_set_line_cap(pen, CAIRO_LINE_CAP_ROUND);
+    for (const EdgeBody& edges : edges_) {
+        const double turn = angle.empty() ? 0 : static_cast<double>(angle[edges.body]);
+        const double cos = std::cos(turn), sin = std::sin(turn);
+        const double at_x = position[2 * edges.body], at_y = position[2 * edges.body + 1];
+        for (std::size_t i = 0; i < edges.x.size(); ++i) {
+            const double px = x(at_x + cos * edges.x[i] - sin * edges.y[i]),
+                         py = y(at_y + sin * edges.x[i] + cos * edges.y[i]);
+            if (i == 0)
+                cairo_move_to(pen, px, py);
+            else
+                cairo_line_to(pen, px, py);
+        }
         cairo_stroke(pen);
     }
 }

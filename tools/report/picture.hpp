@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "report/edges.hpp"
 #include "report/h5_reader.hpp"
 #include "report/markup.hpp"
 
@@ -54,12 +55,15 @@ class Picture {
     void draw_bodies(std::size_t frame);
     void draw_rotation_marks(std::size_t frame);
     void draw_walls();
+    void draw_edges(std::size_t frame);
+    std::vector<float> angles(std::size_t frame) const;
     void draw_time(std::size_t frame);
 
     mutable H5Reader trajectory_;
     std::vector<double> time_, radius_;
     std::vector<Colour> colour_;
     Json settings_;
+    std::vector<EdgeBody> edges_;
     std::size_t trail_;
     Box box_;
     int width_, height_;

@@ -10,6 +10,7 @@
 #include "report/assets.hpp"
 #include "report/base64.hpp"
 #include "report/csv_reader.hpp"
+#include "report/edges.hpp"
 #include "report/frame_choice.hpp"
 #include "report/h5_reader.hpp"
 #include "report/quantised_frame.hpp"
@@ -139,6 +140,20 @@ Json names(const RunFiles& files, const FrameChoice& choice) {
     return names;
 }
 
+/// The lines among the chosen bodies: [body's place among the chosen, its points [m]].
+Json edges(const Json& settings, const FrameChoice& choice) {
+    Json list = Json::array();
+    for (const EdgeBody& edges : edge_bodies(settings)) {
+        const auto found = std::lower_bound(choice.bodies.begin(), choice.bodies.end(), edges.body);
+        if (found == choice.bodies.end() || *found != edges.body) continue;
+        list.push_back({{"body", found - choice.bodies.begin()},
+                        {"x", edges.x},
+                        {"y", edges.y},
+                        {"reach", edges.reach}});
+    }
+    return list;
+}
+
 Json description(const H5Reader& trajectory, const RunFiles& files, const FrameChoice& choice) {
     Json json{{"bodies", choice.bodies.size()},
               {"all_bodies", trajectory.body_count()},
@@ -152,6 +167,7 @@ Json description(const H5Reader& trajectory, const RunFiles& files, const FrameC
     const Json settings = Json::parse(trajectory.text("settings"), nullptr, false);
     for (const char* key : {"walls", "gravity", "drag", "trail"})
         json[key] = settings.is_object() && settings.contains(key) ? settings[key] : Json();
+    json["edges"] = edges(settings, choice);
     return json;
 }
 

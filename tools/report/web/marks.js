@@ -28,6 +28,25 @@ carom.marks = (() => {
     pen.stroke();
   };
 
+  /** Segments and chains, where their bodies are. */
+  const edges = (pen, frame) => {
+    const place = carom.view.ofFrame(frame), scale = carom.view.scale();
+    pen.strokeStyle = carom.theme.named("--text");
+    pen.lineWidth = 2 * carom.view.sharpness();
+    pen.lineCap = pen.lineJoin = "round";
+    pen.beginPath();
+    for (const { body, x, y } of carom.frames.data.edges) {
+      if (frame.x[body] === carom.frames.nowhere) continue;
+      const px = place.x0 + place.dx * frame.x[body], py = place.y0 + place.dy * frame.y[body];
+      const angle = frame.angle ? frame.angle[body] * carom.frames.turn : 0, cos = Math.cos(angle) * scale, sin = Math.sin(angle) * scale;
+      for (let i = 0; i < x.length; ++i) {
+        const toX = px + cos * x[i] - sin * y[i], toY = py - sin * x[i] - cos * y[i];
+        if (i === 0) pen.moveTo(toX, toY); else pen.lineTo(toX, toY);
+      }
+    }
+    pen.stroke();
+  };
+
   /** Calls `draw` with the place of every body of the frame that is on the canvas. */
   const each = (frame, draw) => {
     const place = carom.view.ofFrame(frame), { width, height } = carom.view.canvas, scale = carom.view.scale();
@@ -111,5 +130,5 @@ carom.marks = (() => {
     pen.globalAlpha = 1;
   };
 
-  return { walls, rotation, arrows, impacts };
+  return { walls, edges, rotation, arrows, impacts };
 })();

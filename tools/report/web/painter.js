@@ -29,7 +29,7 @@ carom.painter = carom.frames && (() => {
     pen.fillStyle = colour;
     pen.beginPath();
     for (const body of bodies) {
-      if (x[body] === frames.nowhere) continue;
+      if (x[body] === frames.nowhere || frames.radius[body] === 0) continue;
       const px = place.x0 + place.dx * x[body], py = place.y0 + place.dy * y[body], r = Math.max(frames.radius[body] * scale, 0.5);
       if (px < -r || py < -r || px > width + r || py > height + r) continue;
       pen.moveTo(px + r, py);
@@ -71,6 +71,7 @@ carom.painter = carom.frames && (() => {
       bodiesByColour.forEach((bodies, colour) => discs(frame, bodies, colours[colour]));
     }
     carom.marks.walls(pen);
+    carom.marks.edges(pen, frame);
     if (wishes.marks) carom.marks.rotation(pen, frame);
     if (wishes.arrows) carom.marks.arrows(pen, frame);
     if (wishes.impacts) carom.marks.impacts(pen, index);

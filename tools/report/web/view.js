@@ -14,7 +14,14 @@ carom.view = carom.frames && (() => {
     let largest = 0;
     for (const radius of carom.frames.radius) largest = Math.max(largest, radius);
     const [x0, y0, x1, y1] = view.every(Number.isFinite) ? view : [0, 0, 1, 1];
-    return { min: [x0 - largest, y0 - largest], max: [x1 + largest, y1 + largest] };
+    const box = { min: [x0 - largest, y0 - largest], max: [x1 + largest, y1 + largest] };
+    for (const { body, reach } of carom.frames.data.edges) {
+      const { x, y } = carom.frames.state(0, body);
+      if (!Number.isFinite(x)) continue;
+      box.min = [Math.min(box.min[0], x - reach), Math.min(box.min[1], y - reach)];
+      box.max = [Math.max(box.max[0], x + reach), Math.max(box.max[1], y + reach)];
+    }
+    return box;
   })();
   const width = Math.max(world.max[0] - world.min[0], 1e-9), height = Math.max(world.max[1] - world.min[1], 1e-9);
 

@@ -1,0 +1,23 @@
+#include "report/edges.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom::report {
+
+std::vector<EdgeBody> edge_bodies(const Json& settings) {
+    std::vector<EdgeBody> bodies;
+    if (!settings.is_object() || !settings.contains("edges")) return bodies;
+    for (const Json& each : settings["edges"]) {
+        EdgeBody edges{.body = each["body"], .x = {}, .y = {}};
+        for (const Json& point : each["points"]) {
+            edges.x.push_back(point[0]), edges.y.push_back(point[1]);
+            edges.reach = std::max(edges.reach, std::hypot(edges.x.back(), edges.y.back()));
+        }
+        if (each["loop"] == true) edges.x.push_back(edges.x.front()), edges.y.push_back(edges.y.front());
+        bodies.push_back(std::move(edges));
+    }
+    return bodies;
+}
+
+}  // namespace carom::report

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "report/markup.hpp"
+
+namespace carom::report {
+
+/// A body that is lines, a segment or a chain: its points in its own frame.
+struct EdgeBody {
+    std::size_t body;
+    std::vector<double> x, y;  // m; a loop ends with the point it began with
+    double reach = 0;          // m, from the body's position to the farthest point
+};
+
+/// Those that a trajectory's settings name.
+std::vector<EdgeBody> edge_bodies(const Json& settings);
+
+}  // namespace carom::report
