@@ -1,7 +1,6 @@
 // A4 and A5 of the design notes: balls dropped onto a floor. Until a ball comes to rest every bounce happens
 // at its exact time, whatever the step; it comes to rest about a step off the exact time.
 #include "support/convergence.hpp"
-#include "support/effort.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"
 #include "support/trial.hpp"
@@ -63,7 +62,7 @@ struct RestError {
 /// fall, and whether a step ends at the top of one that is too low to matter, is chance.
 template <class Real>
 RestError rest_error(int rate) {
-    constexpr int kHeights = scaled(24, 12);
+    constexpr int kHeights = 24;
     RestError error{0, 0};
     for (int i = 0; i < kHeights; ++i) {
         const double height = kHeight * (0.8 + 0.4 * i / kHeights);
