@@ -32,7 +32,7 @@ class ContactGraph {
     static constexpr std::size_t kColours = 64;  // one bit each of a word a body
 
     /// Takes the candidate pairs over. Contacts that were there before keep their impulses.
-    /// Cost: about 15 ns a pair on one thread.
+    /// Cost: about 20 ns a pair on one thread.
     void renew(const Candidates<Real>& candidates, const EdgeCandidates<Real>& edges,
                const Bodies<Real>& bodies, const Walls* walls, const Executor& executor);
 
