@@ -239,12 +239,6 @@ void BasicWorld<Real>::remove(BodyId body) {
     Simulation<Real>& sim = implementation_->sim;
     std::size_t row = implementation_->row_of(body, "World::remove");
     row = implementation_->wake_around(row);
-    // What carried a weight would throw up the rest: better to start from nothing.
-    constexpr double kHeavy = 4;  // times the mean mass
-    const Bodies<Real>& bodies = sim.world.bodies;
-    if (!bodies.is_immovable(row) &&
-        bodies.mass[row] * static_cast<double>(bodies.count) > kHeavy * sim.world.dynamic_mass)
-        sim.soft.doubt_impulses(), sim.sleepers.forget_woken();
     sim.soft.graph.trail.follow_removed(row, sim.world.bodies.count - 1);
     const EdgeStore::Removed edges = sim.world.remove(row);
     sim.soft.graph.follow_removed_edges(edges);

@@ -26,12 +26,18 @@ constexpr std::size_t kOverflow = 64;  // the colour of what found none
 template <class Real>
 void ContactGraph<Real>::rename_rows() {
     const std::vector<std::int32_t>& now = trail.new_rows();
+    lost.clear();
     for (ContactCandidates<Real>* contacts : {&pairs, &supports})
         contacts->for_each([&](std::size_t i) {
             std::int32_t &a = contacts->a[i], &b = contacts->b[i];
+            const std::int32_t old_a = a, old_b = b;
             a = now[static_cast<std::size_t>(a)];
             if (b >= 0) b = now[static_cast<std::size_t>(b)];
-            if (a == RowTrail::kGone || b == RowTrail::kGone) contacts->normal_impulse[i] = 0;
+            if (a == RowTrail::kGone || b == RowTrail::kGone) {
+                if (contacts->normal_impulse[i] > 0 && a >= 0) lost.push_back({old_b, a});
+                if (contacts->normal_impulse[i] > 0 && b >= 0) lost.push_back({old_a, b});
+                contacts->normal_impulse[i] = 0;
+            }
             // The impulses of a pair do not depend on the order of its bodies, but for the rolling one:
             // spin_b - spin_a changes its sign.
             if (contacts == &pairs && a > b) {
@@ -52,7 +58,7 @@ void ContactGraph<Real>::follow_removed_edges(EdgeStore::Removed gone) {
         if (edge >= gone.first + gone.count)
             b = support_of_edge(edge - gone.count);
         else if (edge >= gone.first)
-            b = RowTrail::kGone, supports.normal_impulse[i] = 0;
+            b = RowTrail::kGone;
     });
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -19,6 +20,12 @@ namespace carom {
 /// A body that is awake, or kinematic, and one that sleeps, near enough to touch before the pairs are void.
 struct SleeperPair {
     std::int32_t row, sleeper;
+};
+
+/// A body pushed another one that was removed.
+struct LostContact {
+    std::int32_t gone, row;  // a number for who is not there any more; of who is
+    friend auto operator<=>(const LostContact&, const LostContact&) = default;
 };
 
 /// Which bodies can touch which, in groups and colours, until the candidate pairs change.
@@ -48,6 +55,7 @@ class ContactGraph {
     std::int64_t version = 0;               ///< counts renewals and additions
     std::span<const SleeperPair> sleepers;  ///< supports besides those that `renew` finds
     RowTrail trail;                         ///< to be told of rows that change between renewals
+    std::vector<LostContact> lost;          ///< that pushed, until they are dealt with
     ContactGroups groups;                   ///< of the last renewal
     ContactCandidates<Real> pairs;          ///< of two bodies that move, a < b
     /// Of a body that moves and what nothing moves: walls, immovable bodies.

@@ -237,10 +237,16 @@ void Sleepers<Real>::restore_impulses(ContactGraph<Real>& graph, const WorldStat
     std::vector<Woken> filed;
     for (std::size_t i = 0; i < woken_.size(); ++i) {
         const Kept& kept = woken_[i];
-        if (!world.handles.is_alive(kept.a) || !world.handles.is_alive(kept.b)) continue;
         const auto row_of = [&](BodyId id) {
             return static_cast<std::int32_t>(world.handles.row_of_slot(id.index));
         };
+        if (!world.handles.is_alive(kept.a) || !world.handles.is_alive(kept.b)) {
+            if (world.handles.is_alive(kept.a))
+                graph.lost.push_back({-1 - static_cast<std::int32_t>(kept.b.index), row_of(kept.a)});
+            if (world.handles.is_alive(kept.b))
+                graph.lost.push_back({-1 - static_cast<std::int32_t>(kept.a.index), row_of(kept.b)});
+            continue;
+        }
         filed.push_back({row_of(kept.a), kept.support < 0 ? kept.support : row_of(kept.b), i});
     }
     std::sort(filed.begin(), filed.end());

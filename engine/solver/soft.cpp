@@ -205,6 +205,11 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const Candid
     impulses_of_h_ = h_;
     find_pairs(world.bodies, motion);
     find_supports(world, edges);
+    if (!graph.lost.empty()) {
+        std::sort(graph.lost.begin(), graph.lost.end());
+        unloading_.balance(graph.lost, pairs_, supports_, world.bodies, uniform_friction_, gain_);
+        graph.lost.clear();
+    }
     for (LiveContacts<Real>* live : {&pairs_, &supports_})
         if (bounces_)
             for (Column<Real>* column : {&live->largest_impulse, &live->bounce_impulse})
@@ -265,8 +270,7 @@ void SoftSolver<Real>::solve_contacts(int number) {
     const ContactKernels<Real>& kernels = contact_kernels();
     const SolveContacts<Real> on_supports = arguments(supports_), on_pairs = arguments(pairs_);
     sweep({kernels.first_pairs, on_pairs}, {kernels.first_supports, on_supports});
-    const int sweeps = number == 0 && (!are_impulses_known_ || are_impulses_doubtful_) ? kFirstSweeps : 1;
-    are_impulses_doubtful_ = false;
+    const int sweeps = number == 0 && !are_impulses_known_ ? kFirstSweeps : 1;
     for (int i = 0; i < sweeps; ++i)
         sweep({kernels.next_pairs, on_pairs}, {kernels.next_supports, on_supports});
 }
@@ -332,7 +336,7 @@ void SoftSolver<Real>::end_substeps(Bodies<Real>& bodies, std::vector<std::int32
 template <class Real>
 std::size_t SoftSolver<Real>::bytes() const {
     return graph.bytes() + pairs_.bytes() + supports_.bytes() + inverse_mass_.bytes() + velocity_.bytes() +
-           start_velocity_.bytes() + displacement_.bytes() + turn_.bytes();
+           start_velocity_.bytes() + displacement_.bytes() + turn_.bytes() + unloading_.bytes();
 }
 
 template class SoftSolver<float>;

@@ -8,6 +8,7 @@
 #include "parallel/executor.hpp"
 #include "solver/contact_graph.hpp"
 #include "solver/live_contacts.hpp"
+#include "solver/unloading.hpp"
 #include "state/chunked_list.hpp"
 #include "world/world_state.hpp"
 
@@ -81,8 +82,6 @@ class SoftSolver {
 
     /// Looks at the contacts of the last step again. Cost: O(contacts), and nothing in the step itself.
     SolveQuality quality() const;
-    /// What contacts carried is far from what they will carry: the next step begins with more sweeps.
-    void doubt_impulses() { are_impulses_doubtful_ = true; }
     /// Length of the substep that the impulses of contacts belong to [s].
     double substep_of_impulses() const { return impulses_of_h_; }
 
@@ -166,7 +165,8 @@ class SoftSolver {
     std::vector<std::int32_t> strayed_;    // rows that have left their margins in this step
     ChunkedList lost_rows_;
     double impulses_of_h_ = 0;  // s, substep of the candidates' impulses; 0 = there are none
-    bool are_impulses_known_ = false, are_impulses_doubtful_ = false;
+    bool are_impulses_known_ = false;
+    Unloading<Real> unloading_;
     double fastest_bounce_ = 0;   // m/s, of this step
     Column<Real> before_bounce_;  // velocity records; only with the ledger
     double gravity_work_ = 0;     // J, of this step, on velocities; only with the ledger
