@@ -41,12 +41,18 @@ void SoftSolver<Real>::derive_masses(const Bodies<Real>& bodies) {
     masses_vary_ = !bodies.mass.is_uniform() || bodies.has_flags;
     some_are_fixed_ = false;
     if (masses_vary_) inverse_mass_.resize(bodies.count);
+    double lightest = 0, heaviest = 0;  // inverse
     for (std::size_t row = 0; row < bodies.count && masses_vary_; ++row) {
         const bool is_fixed = (bodies.flags_of(row) & kFixedAngle) != 0;
         const double inverse = bodies.inverse_mass(row);
         inverse_mass_[row] = static_cast<Real>(is_fixed ? -inverse : inverse);
         some_are_fixed_ = some_are_fixed_ || is_fixed;
+        if (!(inverse > 0)) continue;
+        lightest = std::fmax(lightest, inverse);
+        heaviest = heaviest > 0 ? std::fmin(heaviest, inverse) : inverse;
     }
+    are_masses_uneven_ = lightest > UnevenContacts<Real>::kUneven * heaviest;
+    uneven_.clear();
     masses_are_known_ = true;
 }
 
@@ -178,6 +184,7 @@ void SoftSolver<Real>::find_pairs(const Bodies<Real>& bodies, const Column<Real>
         list_runs(group);
     });
     described_version_ = graph.version;
+    if (is_new && are_masses_uneven_) uneven_.find(pairs_, inverse_mass_, count_);
 }
 
 /// What lasts from step to step is force: after substeps of another length the impulses are of another size.
@@ -205,6 +212,7 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const Candid
     impulses_of_h_ = h_;
     find_pairs(world.bodies, motion);
     find_supports(world, edges);
+    uneven_.begin_step(pairs_, supports_);
     if (!graph.lost.empty()) {
         std::sort(graph.lost.begin(), graph.lost.end());
         unloading_.balance(graph.lost, pairs_, supports_, world.bodies, uniform_friction_, gain_);
@@ -273,6 +281,7 @@ void SoftSolver<Real>::solve_contacts(int number) {
     const int sweeps = number == 0 && !are_impulses_known_ ? kFirstSweeps : 1;
     for (int i = 0; i < sweeps; ++i)
         sweep({kernels.next_pairs, on_pairs}, {kernels.next_supports, on_supports});
+    uneven_.solve(on_pairs, on_supports, std::sqrt(length_squared(gain_)));
 }
 
 template <class Real>
@@ -336,7 +345,8 @@ void SoftSolver<Real>::end_substeps(Bodies<Real>& bodies, std::vector<std::int32
 template <class Real>
 std::size_t SoftSolver<Real>::bytes() const {
     return graph.bytes() + pairs_.bytes() + supports_.bytes() + inverse_mass_.bytes() + velocity_.bytes() +
-           start_velocity_.bytes() + displacement_.bytes() + turn_.bytes() + unloading_.bytes();
+           start_velocity_.bytes() + displacement_.bytes() + turn_.bytes() + unloading_.bytes() +
+           uneven_.bytes();
 }
 
 template class SoftSolver<float>;

@@ -8,6 +8,7 @@
 #include "parallel/executor.hpp"
 #include "solver/contact_graph.hpp"
 #include "solver/live_contacts.hpp"
+#include "solver/uneven_contacts.hpp"
 #include "solver/unloading.hpp"
 #include "state/chunked_list.hpp"
 #include "world/world_state.hpp"
@@ -154,7 +155,7 @@ class SoftSolver {
     double uniform_friction_ = 0, uniform_rolling_ = 0;
 
     bool masses_are_known_ = false;
-    bool masses_vary_ = false;
+    bool masses_vary_ = false, are_masses_uneven_ = false;
     Column<Real> inverse_mass_;  // signed as in the records
 
     Column<Real> velocity_, start_velocity_, displacement_, turn_;
@@ -167,6 +168,7 @@ class SoftSolver {
     double impulses_of_h_ = 0;  // s, substep of the candidates' impulses; 0 = there are none
     bool are_impulses_known_ = false;
     Unloading<Real> unloading_;
+    UnevenContacts<Real> uneven_;
     double fastest_bounce_ = 0;   // m/s, of this step
     Column<Real> before_bounce_;  // velocity records; only with the ledger
     double gravity_work_ = 0;     // J, of this step, on velocities; only with the ledger

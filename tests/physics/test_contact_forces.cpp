@@ -105,7 +105,8 @@ TEST_SUITE("physics/contact forces") {
         CHECK(one.sim.soft.quality().touching == 1);
         CHECK(one.sim.soft.quality().residual < 1e-6);
         // A heavy one on a light one: sweeps take the light one's share of what is left, so much is left.
-        Inside<Real> two(stack_of({1, 1000}));
+        // (Beyond a ratio of ten they are solved on their own.)
+        Inside<Real> two(stack_of({1, 10}));
         two.run(1);
         const SolveQuality early = two.sim.soft.quality();
         CHECK(early.touching == 2);
