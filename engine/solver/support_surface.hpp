@@ -87,9 +87,11 @@ SupportSurface surface_of_edge(const WorldState<Real>& world, const EdgeCandidat
         n = (dot(Vec2{-along.y, along.x}, way) < 0 ? -1 / length : 1 / length) * Vec2{-along.y, along.x};
     }
     // What touches already is held over the whole step: by the normal of its middle, beside which the points
-    // of a wall that turns move along it.
+    // of a wall that turns move along it, and where the disc is then, as it may roll on.
     const Rotation turn = turn_at(pose, time > 0 ? time : 0.5);
-    const Vec2 normal = rotate(turn, n), arm = rotate(turn, point);
+    const Vec2 held = time > 0 ? there : p + 0.5 * way;
+    const Vec2 arm = rotate(turn, point_at(edge.a, edge.b, nearest_share(held, edge.a, edge.b)));
+    const Vec2 normal = rotate(turn, n);
     const double spin = (pose.end_angle - pose.angle) / dt;
     const Vec2 surface = (1 / dt) * (pose.end_position - pose.position) + spin * Vec2{-arm.y, arm.x};
     return {normal,

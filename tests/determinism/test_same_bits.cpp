@@ -165,7 +165,7 @@ constexpr Golden kGolden[] = {
     {"stack at rest", 0xa436021f760768ad, 0xfd75b447dc578a50},
     {"rough sizes", 0xc03b4357cff3d84d, 0x1ceb70bf3945dab9},
     {"rolling sizes", 0x4a03a598f29a034d, 0xd102b8235214af01},
-    {"turning chain", 0x7ab8ecf0b1fddbc, 0xf7f511ad324ef90c},
+    {"turning chain", 0xfd0610b0dc157151, 0xa95fb069cd9521c1},
     {"woken sleepers", 0x72e009d1b97840fd, 0x4d32cdeab531e886},
 };
 
