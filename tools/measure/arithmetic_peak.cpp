@@ -8,7 +8,7 @@
 namespace carom::measure {
 namespace {
 
-constexpr int kTries = 5;
+constexpr int kPeakTries = 5;
 constexpr int kChains = 14;  // with two constants they fill the sixteen registers
 constexpr int kRepeats = 20'000;
 
@@ -92,14 +92,14 @@ double rate(const std::string& isa, double seconds) {
 #endif
     const double operations = static_cast<double>(lanes) * kChains * kRepeats;
     double best = 0;
-    for (int attempt = 0; attempt < kTries; ++attempt) {
+    for (int attempt = 0; attempt < kPeakTries; ++attempt) {
         const double start = thread_seconds();
         double spent = 0, done = 0;
         do {
             run();
             done += operations;
             spent = thread_seconds() - start;
-        } while (spent < seconds / kTries);
+        } while (spent < seconds / kPeakTries);
         best = std::max(best, done / spent);
     }
     return best;

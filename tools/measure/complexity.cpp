@@ -10,7 +10,7 @@
 namespace carom::measure {
 namespace {
 
-constexpr int kResamples = 1000;
+constexpr int kFitResamples = 1000;
 
 struct Candidate {
     std::string_view name;
@@ -110,7 +110,7 @@ Crossover find_crossover(std::span<const Duel> duels) {
     }
     Resampler random;
     std::vector<double> sizes;
-    for (int i = 0; i < kResamples; ++i)
+    for (int i = 0; i < kFitResamples; ++i)
         if (const auto at = crossing(duels, resampled_log_ratios(duels, random))) sizes.push_back(*at);
     if (sizes.empty()) sizes.push_back(*size);
     return {Crossover::Kind::crosses, {*size, quantile(sizes, 0.025), quantile(sizes, 0.975)}};

@@ -10,11 +10,6 @@
 namespace carom::report {
 namespace {
 
-/// JSON as a person writes it: texts without quotes.
-std::string plain(const Json& value) {
-    return value.is_string() ? value.get<std::string>() : value.dump();
-}
-
 std::string number(double value, const char* pattern = "%.3g") {
     char text[32];
     std::snprintf(text, sizeof text, pattern, value);

@@ -18,4 +18,7 @@ std::string as_script_data(const Json& json);
 /// The number, or NaN where the file has null: JSON knows no other way to write what is not finite.
 double number_of(const Json& json);
 
+/// JSON as a person writes it: texts without quotes.
+std::string plain(const Json& value);
+
 }  // namespace carom::report

@@ -19,11 +19,10 @@ constexpr double kFlattest = 1.0 / 3, kTallest = 2;  // height of a picture / wi
 constexpr std::size_t kMostSegments = 60'000;        // of all trails in a picture
 constexpr std::size_t kFewBodies = 50;               // up to which bodies without a colour get one each
 constexpr double kSmallestMark = 4;                  // pixels of radius
-constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kFullCircle = 2 * std::numbers::pi;
 // The page's light palette (web/theme.js).
 constexpr std::array<std::uint32_t, 8> kPalette{0x0072b2, 0xc2410c, 0x00815f, 0xb5568f,
                                                 0xa06a00, 0x2a8fd0, 0x5b3fa0, 0x5b5b5b};
-constexpr double kNoColour = 0xFFFFFFFF;
 
 /// An even number of pixels: videos need that.
 int even(double pixels) {
@@ -165,7 +164,7 @@ void Picture::draw_bodies(std::size_t frame) {
         const double r = std::max(radius_[body] * scale_, 0.5);
         if (!(px > -r && px < width_ + r && py > -r && py < height_ + r)) continue;
         cairo_set_source_rgb(pen, colour_[body].red, colour_[body].green, colour_[body].blue);
-        cairo_arc(pen, px, py, r, 0, kTurn);
+        cairo_arc(pen, px, py, r, 0, kFullCircle);
         cairo_fill(pen);
     }
 }

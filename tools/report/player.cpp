@@ -20,8 +20,7 @@ namespace {
 
 constexpr std::size_t kBytesABlock = 256 * 1024;  // frames are decoded by blocks, when they are first shown
 constexpr std::size_t kRestOfPage = 1'500'000;    // bytes: scripts, charts and tables
-constexpr std::uint32_t kNoColour = UINT32_MAX;
-constexpr std::size_t kMostColours = 4096;  // the others are drawn as if they had none
+constexpr std::size_t kMostColours = 4096;        // the others are drawn as if they had none
 
 /// Only the chosen bodies' values, `components` each.
 template <class Value>

@@ -17,6 +17,9 @@ struct Scale {
 /// A place that cannot be drawn: not finite, or so far off that the others would lose their place.
 inline constexpr std::uint16_t kNowhere = 65535;
 
+/// What trajectories have in place of a colour 0xRRGGBB for a body without one.
+inline constexpr std::uint32_t kNoColour = UINT32_MAX;
+
 /// One frame as the page's player reads it: columns of 16 bits, x, y, then velocities and angles if there are
 /// any.
 struct QuantisedFrame {

@@ -12,8 +12,8 @@
 namespace carom::report {
 namespace {
 
-constexpr std::size_t kMostRows = 2000;  // of the ledger: more than a chart has pixels
-constexpr double kBooksClose = 0.01;     // of the energy that moved: beyond, the reader is warned
+constexpr std::size_t kMostLedgerRows = 2000;  // of the ledger: more than a chart has pixels
+constexpr double kBooksClose = 0.01;           // of the energy that moved: beyond, the reader is warned
 
 /// "2.5 %": a part of something, in words.
 std::string percent(double part) {
@@ -72,7 +72,7 @@ void add_stage_times(const Json& summary, Page& page) {
 void add_charts(const RunFiles& files, Page& page) {
     page.heading("What happened over time");
     if (!files.ledger_csv.empty()) {
-        const NumberTable ledger = read_numbers(files.ledger_csv, kMostRows);
+        const NumberTable ledger = read_numbers(files.ledger_csv, kMostLedgerRows);
         if (ledger.row_count() < ledger.rows_in_file)
             page.paragraph("The charts show " + std::to_string(ledger.row_count()) + " of " +
                            std::to_string(ledger.rows_in_file) +

@@ -11,11 +11,7 @@
 namespace carom::report {
 namespace {
 
-constexpr std::size_t kMostRows = 1000;
-
-std::string plain(const Json& value) {
-    return value.is_string() ? value.get<std::string>() : value.dump();
-}
+constexpr std::size_t kMostTableRows = 1000;
 
 /// With so many decimals, and without the sign of a zero.
 std::string fixed(double value, int decimals) {
@@ -141,7 +137,7 @@ void add_body_table(const RunFiles& files, Page& page) {
     std::size_t lines = 0;
     read_csv(files.final_csv, [&](const CsvRow& row) {
         if (lines++ == 0 || row.size() < 8) return true;
-        more = table.rows.size() == kMostRows;
+        more = table.rows.size() == kMostTableRows;
         if (more) return false;
         const auto value = [&row](std::size_t column) {
             double number = NAN;
@@ -159,7 +155,7 @@ void add_body_table(const RunFiles& files, Page& page) {
         table.headers.erase(table.headers.begin() + 1);
         for (auto& row : table.rows) row.erase(row.begin() + 1);
     }
-    if (more) table.caption += ", the first " + std::to_string(kMostRows);
+    if (more) table.caption += ", the first " + std::to_string(kMostTableRows);
     page.table(table);
 }
 

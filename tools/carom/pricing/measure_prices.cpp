@@ -16,7 +16,7 @@
 namespace carom::tool {
 namespace {
 
-using measure::Json;
+using Json = measure::Json;
 
 constexpr double kNano = 1e9;
 // A world that was just made finds and sorts its first pairs; contacts have to find the forces they carry.

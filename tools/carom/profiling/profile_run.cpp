@@ -15,7 +15,7 @@
 namespace carom::tool {
 namespace {
 
-using measure::Json;
+using Json = measure::Json;
 
 // The first steps find the first pairs, sort and allocate: they are not those of a run in its stride.
 constexpr std::int64_t kStepsBefore = 5;

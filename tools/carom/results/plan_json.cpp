@@ -2,7 +2,9 @@
 
 namespace carom::tool {
 
+namespace {
 using Json = nlohmann::ordered_json;
+}
 
 Json plan_json(const Plan& plan) {
     Json json{{"solver", {{"name", plan.solver}, {"reason", plan.solver_reason}}},

@@ -60,7 +60,7 @@ void check_settings(const Scene& scene) {
                "; expected 1: the naive engine looks at every pair once a step.");
 }
 
-PairwiseWalls to_pairwise(const Walls& walls, double body_restitution) {
+PairwiseWalls to_pairwise_walls(const Walls& walls, double body_restitution) {
     return {.min_x = walls.min.x,
             .min_y = walls.min.y,
             .max_x = walls.max.x,
@@ -83,7 +83,7 @@ PairwiseScene to_pairwise(const Scene& scene) {
     converted.linear_drag = scene.drag.linear;
     converted.angular_drag = scene.drag.angular;
     converted.restitution = scene.bodies.empty() ? 0 : scene.bodies[0].material.restitution;
-    if (scene.walls) converted.walls = to_pairwise(*scene.walls, converted.restitution);
+    if (scene.walls) converted.walls = to_pairwise_walls(*scene.walls, converted.restitution);
     for (const Body& body : scene.bodies)
         converted.bodies.push_back({.x = body.position.x,
                                     .y = body.position.y,
