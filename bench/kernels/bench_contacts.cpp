@@ -34,7 +34,8 @@ struct PressedPairs {
           friction_impulse(count),
           floor(count),
           velocity(8 * count),
-          displacement(4 * count) {
+          displacement(4 * count),
+          is_restless(count / kContactBlock) {
         std::mt19937 random(19);
         std::uniform_real_distribution<double> speed(-0.1, 0.1);
         for (std::size_t c = 0; c < count; ++c) {
@@ -74,12 +75,16 @@ struct PressedPairs {
                 .elapsed = 0,
                 .recovery = Real(0.1),
                 .push = Real(0.0001),
-                .over_relaxation = Real(1.8)};
+                .calm = 0,
+                .over_relaxation = Real(1.7),
+                .calm_over_relaxation = Real(1.4),
+                .is_restless = is_restless.data()};
     }
 
     Column<std::int32_t> a, b;
     Column<Real> normal_x, normal_y, separation, mass, normal_impulse, friction_impulse, floor;
     Column<Real> velocity, displacement;
+    Column<std::uint8_t> is_restless;
 };
 
 /// @param numbers     of an item, read and written

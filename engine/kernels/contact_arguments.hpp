@@ -57,12 +57,16 @@ struct SolveContacts {
     Real* displacement;  // [rows][2]
     Real uniform_friction;
     Real uniform_rolling;
-    Real inverse_h;        // 1/s, of the substep
-    Real h;                // s
-    Real elapsed;          // s, since the start of the step, at the start of the substep
-    Real recovery;         // share of an overlap that one sweep takes away, by displacement
-    Real push;             // m, largest displacement of that kind
-    Real over_relaxation;  // of pairs' normal impulses in the first sweep, 1 ... 2
+    Real inverse_h;  // 1/s, of the substep
+    Real h;          // s
+    Real elapsed;    // s, since the start of the step, at the start of the substep
+    Real recovery;   // share of an overlap that one sweep takes away, by displacement
+    Real push;       // m, largest displacement of that kind
+    // Of pairs, in the first sweep.
+    Real calm;  // m/s: a contact that changes by no more needs no second sweep; below zero: all need one
+    Real over_relaxation;       // of normal impulses, 1 ... 2
+    Real calm_over_relaxation;  // of those of calm contacts
+    std::uint8_t* is_restless;  // out, [last / kContactBlock]: set where a contact of the block is not calm
 };
 
 /// What changes from step to step in the contacts of a group. They stay where they are; blocks of them

@@ -52,7 +52,8 @@ struct Held {
 // neither the tangential velocity nor a spin.
 
 /// Signorini: the relative normal velocity is at least `floor`, the impulse pushes. Over-relaxed (Young 1950)
-/// it goes farther than the contact alone would want, since the next one will push back.
+/// it goes farther than the contact alone would want, since the next one will push back; less so where it
+/// hardly changes, because nothing follows on the first sweep there.
 template <bool kOverRelaxed, class Lanes, class Real>
 Held<typename Lanes::Batch> solve_normal(const SolveContacts<Real>& k, std::size_t c,
                                          typename Lanes::Batch mass, typename Lanes::Batch velocity,
@@ -60,7 +61,9 @@ Held<typename Lanes::Batch> solve_normal(const SolveContacts<Real>& k, std::size
     using F = typename Lanes::Batch;
     const F before = Lanes::load(k.contacts.normal_impulse + c);
     F wanted = mass * (floor - velocity);
-    if constexpr (kOverRelaxed) wanted *= F(k.over_relaxation);
+    if constexpr (kOverRelaxed)
+        wanted *= simd::select(simd::abs(wanted) > mass * F(k.calm), F(k.over_relaxation),
+                               F(k.calm_over_relaxation));
     const F impulse = simd::max(before + wanted, F(0));
     Lanes::store(k.contacts.normal_impulse + c, impulse);
     return {impulse, impulse - before};
@@ -122,12 +125,22 @@ typename Lanes::Batch begin_contact(const SolveContacts<Real>& k, std::size_t c,
     return simd::min(mass * (F(k.recovery) * depth), mass * F(k.push) + F(k.h) * load);
 }
 
-/// For restitution: a contact that pushed in some substep has had an impact.
+/// For restitution: a contact that pushed in some substep has had an impact. At the start of a substep, the
+/// impulses are what the one before came to.
 template <class Lanes, class Real>
 void note_largest_impulse(const SolveContacts<Real>& k, std::size_t c) {
     if (!k.contacts.largest_impulse) return;
     Lanes::store(k.contacts.largest_impulse + c, simd::max(Lanes::load(k.contacts.largest_impulse + c),
                                                            Lanes::load(k.contacts.normal_impulse + c)));
+}
+
+/// Marks the block of a batch in which a contact has changed too much to be left after one sweep.
+template <class Lanes, class Real>
+void note_restless(const SolveContacts<Real>& k, std::size_t c, typename Lanes::Batch mass,
+                   typename Lanes::Batch normal_added, typename Lanes::Batch tangent_added) {
+    using F = typename Lanes::Batch;
+    const F added = simd::max(simd::abs(normal_added), simd::abs(tangent_added));
+    if (simd::any(added > mass * F(k.calm))) k.is_restless[c / kContactBlock] = 1;
 }
 
 /// Pairs of bodies that both move. kFirst: the first sweep of a substep.
@@ -144,6 +157,7 @@ void solve_pairs(const SolveContacts<Real>& k, std::size_t first, std::size_t la
 
         F floor(0);
         if constexpr (kFirst) {
+            note_largest_impulse<Lanes>(k, c);
             auto moved_a = Lanes::load_rows2(k.displacement, row_a);
             auto moved_b = Lanes::load_rows2(k.displacement, row_b);
             const F now = Lanes::load(k.contacts.separation + c) + (moved_b[0] - moved_a[0]) * nx +
@@ -191,7 +205,7 @@ void solve_pairs(const SolveContacts<Real>& k, std::size_t first, std::size_t la
         b.template take<kVariant>(normal.added, tangent, nx, ny, F(1));
         Lanes::store_rows4(k.velocity, row_a, a.record);
         Lanes::store_rows4(k.velocity, row_b, b.record);
-        if constexpr (!kFirst) note_largest_impulse<Lanes>(k, c);
+        if constexpr (kFirst) note_restless<Lanes>(k, c, mass, normal.added, tangent);
     }
 }
 
@@ -210,6 +224,7 @@ void solve_supports(const SolveContacts<Real>& k, std::size_t first, std::size_t
 
         F floor(0);
         if constexpr (kFirst) {
+            note_largest_impulse<Lanes>(k, c);
             auto moved = Lanes::load_rows2(k.displacement, row);
             const F now = Lanes::load(k.contacts.separation + c) + surface * F(k.elapsed) -
                           (moved[0] * nx + moved[1] * ny);
@@ -250,7 +265,6 @@ void solve_supports(const SolveContacts<Real>& k, std::size_t first, std::size_t
             solve_friction<kVariant, Lanes>(k, c, normal.impulse, tangent_mass, tangent_velocity);
         body.template take<kVariant>(normal.added, tangent, nx, ny, F(-1));
         Lanes::store_rows4(k.velocity, row, body.record);
-        if constexpr (!kFirst) note_largest_impulse<Lanes>(k, c);
     }
 }
 

@@ -46,7 +46,9 @@ void LiveContacts<Real>::resize_in_place(const ContactCandidates<Real>& candidat
     fit(friction, contacts, friction_varies);
     fit_bounces(contacts, bounces, true);
     is_live.resize_for_overwrite(contacts / kContactBlock),
+        is_restless.resize_for_overwrite(contacts / kContactBlock),
         run.resize_for_overwrite(contacts / kContactBlock);
+    is_uneven.assign(candidates.groups(), 0);
     run_count.assign(candidates.groups(), 0), live_count.assign(candidates.groups(), 0);
     group_begin.clear();
     for (std::size_t group = 0; group < candidates.groups(); ++group)
@@ -95,7 +97,8 @@ ContactColumns<Real> LiveContacts<Real>::columns() {
 
 template <class Real>
 std::size_t LiveContacts<Real>::bytes() const {
-    std::size_t bytes = a.bytes() + b.bytes() + candidate.bytes() + is_live.bytes() + run.bytes();
+    std::size_t bytes =
+        a.bytes() + b.bytes() + candidate.bytes() + is_live.bytes() + is_restless.bytes() + run.bytes();
     for (const Column<Real>* column :
          {&normal_x,        &normal_y,         &separation,      &mass,
           &normal_impulse,  &friction_impulse, &friction,        &floor,

@@ -14,9 +14,12 @@ namespace {
 
 /// Share of an overlap that one substep takes away. Below 0.15 piles sink deeper, above 0.5 they jitter.
 constexpr double kRecovery = 0.4;
-/// Of pairs' normal impulses in a substep's first sweep: docs/decisions/0004-soft-solver.md has the
-/// measurements.
-constexpr double kOverRelaxation = 1.7;
+// Of pairs in a substep's first sweep: docs/decisions/0004-soft-solver.md has the measurements.
+constexpr double kOverRelaxation = 1.7, kCalmOverRelaxation = 1.3;  // of normal impulses
+/// A contact is calm if the first sweep changes it by less than gravity does in this share of a substep.
+constexpr double kCalm = 0.5;
+/// Where masses differ more, forces need every sweep to build up, and no contact is calm.
+constexpr double kEvenMasses = 8;
 /// Bodies as near as this, in radii of the smallest, are solved together even if they hardly move: what
 /// pushes one of them in the middle of a step is felt by the other.
 constexpr double kNearFraction = 0.04;
@@ -116,7 +119,11 @@ SolveContacts<Real> SoftSolver<Real>::arguments(LiveContacts<Real>& live) {
     k.inverse_h = static_cast<Real>(1 / h_), k.h = static_cast<Real>(h_);
     k.elapsed = static_cast<Real>(elapsed_);
     k.recovery = static_cast<Real>(kRecovery), k.push = static_cast<Real>(push_);
+    const double fall = std::sqrt(length_squared(gain_));
+    k.calm = static_cast<Real>(fall > 0 ? kCalm * fall : -1);
     k.over_relaxation = static_cast<Real>(kOverRelaxation);
+    k.calm_over_relaxation = static_cast<Real>(kCalmOverRelaxation);
+    k.is_restless = live.is_restless.data();
     return k;
 }
 
@@ -129,12 +136,15 @@ void SoftSolver<Real>::describe_group(const Bodies<Real>& bodies, std::size_t gr
         if (!column->empty())
             std::fill(column->data() + first, column->data() + last, Real(0));  // of padding
     const Real same = static_cast<Real>(bodies.inverse_mass(0));
+    pairs_.is_uneven[group] = 0;
     pairs_.for_each(graph.pairs.first_colour[group], graph.pairs.first_colour[group + 1], [&](std::size_t i) {
         const auto a = static_cast<std::size_t>(pairs_.a[i]), b = static_cast<std::size_t>(pairs_.b[i]);
         pairs_.reach[i] = bodies.radius[a] + bodies.radius[b];
-        const Real inverse_mass =
-            masses_vary_ ? std::fabs(inverse_mass_[a]) + std::fabs(inverse_mass_[b]) : same + same;
-        pairs_.mass[i] = Real(1) / inverse_mass;
+        const Real of_a = masses_vary_ ? std::fabs(inverse_mass_[a]) : same,
+                   of_b = masses_vary_ ? std::fabs(inverse_mass_[b]) : same;
+        pairs_.mass[i] = Real(1) / (of_a + of_b);
+        if (std::max(of_a, of_b) > static_cast<Real>(kEvenMasses) * std::min(of_a, of_b))
+            pairs_.is_uneven[group] = 1;
         if (friction_varies_) pairs_.friction[i] = std::sqrt(bodies.friction[a] * bodies.friction[b]);
         if (!pairs_.rolling.empty())
             pairs_.rolling[i] = std::max(bodies.rolling_resistance[a], bodies.rolling_resistance[b]);
@@ -213,7 +223,8 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const Candid
     find_pairs(world.bodies, motion);
     find_supports(world, edges);
     uneven_.begin_step(pairs_, supports_);
-    if (!graph.lost.empty()) {
+    is_unloaded_ = !graph.lost.empty();
+    if (is_unloaded_) {
         std::sort(graph.lost.begin(), graph.lost.end());
         unloading_.balance(graph.lost, pairs_, supports_, world.bodies, uniform_friction_, gain_);
         graph.lost.clear();
@@ -231,13 +242,25 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const Candid
 }
 
 /// One colour after the other. Within a batch no two contacts share a body that moves, so a whole run of
-/// colours is one call.
+/// colours is one call, and may be cut anywhere: to leave out the blocks that the first sweep found calm.
 template <class Real>
 void SoftSolver<Real>::sweep_pairs(std::size_t group, const Sweep& sweep) const {
     const typename LiveContacts<Real>::Run* run =
         pairs_.run.data() + pairs_.first_place(group) / kContactBlock;
+    SolveContacts<Real> k = sweep.arguments;
+    if (pairs_.is_uneven[group]) k.calm = -1;
+    if (!sweep.only_restless) {
+        for (std::size_t i = 0; i < pairs_.run_count[group]; ++i)
+            sweep.kernel(k, kContactBlock * run[i].first, kContactBlock * run[i].last);
+        return;
+    }
+    const std::uint8_t* is_restless = pairs_.is_restless.data();
     for (std::size_t i = 0; i < pairs_.run_count[group]; ++i)
-        sweep.kernel(sweep.arguments, kContactBlock * run[i].first, kContactBlock * run[i].last);
+        for (std::size_t block = run[i].first; block < run[i].last; ++block) {
+            const std::size_t first = block;
+            while (block < run[i].last && is_restless[block]) ++block;
+            if (block > first) sweep.kernel(k, kContactBlock * first, kContactBlock * block);
+        }
 }
 
 template <class Real>
@@ -273,14 +296,18 @@ void SoftSolver<Real>::sweep(const Sweep& over_pairs, const Sweep& over_supports
 }
 
 template <class Real>
-void SoftSolver<Real>::solve_contacts(int number) {
+void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
     elapsed_ = number * h_;
     const ContactKernels<Real>& kernels = contact_kernels();
-    const SolveContacts<Real> on_supports = arguments(supports_), on_pairs = arguments(pairs_);
+    SolveContacts<Real> on_supports = arguments(supports_), on_pairs = arguments(pairs_);
+    if (number == 0)  // what contacts hold is of the step before
+        on_supports.contacts.largest_impulse = on_pairs.contacts.largest_impulse = nullptr;
+    std::fill(pairs_.is_restless.begin(), pairs_.is_restless.end(), std::uint8_t{0});
     sweep({kernels.first_pairs, on_pairs}, {kernels.first_supports, on_supports});
-    const int sweeps = number == 0 && !are_impulses_known_ ? kFirstSweeps : 1;
-    for (int i = 0; i < sweeps; ++i)
-        sweep({kernels.next_pairs, on_pairs}, {kernels.next_supports, on_supports});
+    const bool starts_anew = number == 0 && !are_impulses_known_;
+    const bool only_restless = !starts_anew && !is_last && !is_unloaded_;
+    for (int i = 0; i < (starts_anew ? kFirstSweeps : 1); ++i)
+        sweep({kernels.next_pairs, on_pairs, only_restless}, {kernels.next_supports, on_supports});
     uneven_.solve(on_pairs, on_supports, std::sqrt(length_squared(gain_)));
 }
 

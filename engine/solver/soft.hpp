@@ -58,8 +58,8 @@ class SoftSolver {
     void find_contacts(const WorldState<Real>& world, const Candidates<Real>& candidates,
                        const EdgeCandidates<Real>& edges, const Column<Real>& motion, double dt);
 
-    /// Both sweeps of substep `number`.
-    void solve_contacts(int number);
+    /// Both sweeps of substep `number`. The second leaves out what is calm, but not in the last substep.
+    void solve_contacts(int number, bool is_last);
     /// Moves the bodies through the substep that was solved.
     void advance_bodies(bool is_last);
     /// Restitution, and the impulses back to the candidates.
@@ -93,6 +93,7 @@ class SoftSolver {
     struct Sweep {
         void (*kernel)(const SolveContacts<Real>&, std::size_t, std::size_t);
         SolveContacts<Real> arguments;
+        bool only_restless = false;  // pairs whose block the first sweep marked
     };
     /// What a body felt from an edge that it has left.
     struct LeftEdge {
@@ -167,6 +168,7 @@ class SoftSolver {
     ChunkedList lost_rows_;
     double impulses_of_h_ = 0;  // s, substep of the candidates' impulses; 0 = there are none
     bool are_impulses_known_ = false;
+    bool is_unloaded_ = false;  // bodies are gone on which others rested
     Unloading<Real> unloading_;
     UnevenContacts<Real> uneven_;
     double fastest_bounce_ = 0;   // m/s, of this step

@@ -58,6 +58,8 @@ bool SoftSolver<Real>::find_bounces(LiveContacts<Real>& live, const WorldState<R
     const double at_rest = kRestingFalls * std::sqrt(length_squared(gain_));
     bool any = false;
     live.for_each([&](std::size_t i) {
+        live.largest_impulse[i] =
+            std::max(live.largest_impulse[i], live.normal_impulse[i]);  // of the last substep
         live.floor[i] = live.largest_impulse[i] > 0 ? Real(0) : kNone;
         const double speed = impact_speed(live, i);
         if (!(speed > at_rest)) return;

@@ -163,10 +163,10 @@ constexpr Golden kGolden[] = {
     {"falling sizes", 0x4fe0c9b61ea50e9c, 0xc84f698047eb650e},
     {"moving obstacles", 0x9450532e75523df8, 0x81f8d27062c9d725},
     {"stack at rest", 0xa436021f760768ad, 0xfd75b447dc578a50},
-    {"rough sizes", 0xc03b4357cff3d84d, 0x1ceb70bf3945dab9},
-    {"rolling sizes", 0x4a03a598f29a034d, 0xd102b8235214af01},
-    {"turning chain", 0xfd0610b0dc157151, 0xa95fb069cd9521c1},
-    {"woken sleepers", 0x72e009d1b97840fd, 0x4d32cdeab531e886},
+    {"rough sizes", 0x1894364c4e7e46cd, 0xbfd262af8ed9bc79},
+    {"rolling sizes", 0x171cc3898bad3ca1, 0x7a2f0b5fd87a6ad5},
+    {"turning chain", 0x9b4e8ca2358900dc, 0x74be3d4cc25a19c},
+    {"woken sleepers", 0x36ce7ffd95575bed, 0x4b36e2f11759f0fe},
 };
 
 }  // namespace
