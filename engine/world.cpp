@@ -75,6 +75,8 @@ struct BasicWorld<Real>::Implementation {
     Simulation<Real> sim;
     StageTimes times;
     CalledEffects called;
+    EffectOverrides overrides;  // of the scene and of the options
+    double angular_drag = 0;    // 1/s, of the scene; in force once something turns
 
     WorldState<Real>& world() { return sim.world; }
     Bodies<Real>& bodies() { return sim.world.bodies; }
@@ -88,6 +90,39 @@ struct BasicWorld<Real>::Implementation {
         b.has_rotation = true;
         b.angle.resize(b.rows()), b.angular_velocity.resize(b.rows());
         world().effects.rotation = true;
+        report_on("rotation", "a body turns");
+        if (!(angular_drag > 0)) return;
+        world().drag.angular = angular_drag;
+        world().effects.angular_drag = true;
+        report_on("angular drag", "a body turns");
+    }
+
+    void report_on(std::string_view effect, const char* reason) {
+        for (EffectReport& report : called.reports)
+            if (report.name == effect) report.on = true, report.reason = reason;
+    }
+
+    /// Turns on what a body to be added calls for and no other body has.
+    void call_effects_of(const Body& body) {
+        Effects& on = world().effects;
+        const bool bounces = body.material.restitution > 0 && !on.restitution;
+        const bool resists = body.material.rolling_resistance > 0 && !on.rolling_resistance;
+        const bool rubs = (body.material.friction > 0 || resists) && !on.friction;
+        if (!bounces && !resists && !rubs) return;
+        Scene alone;  // what is forced off cannot be called for
+        alone.accuracy.solver = sim.method;
+        alone.add(body);
+        validate_effects(alone, overrides, "World::add");
+        const auto turn_on = [&](bool is_called, bool& effect, std::string_view name, const char* reason) {
+            if (!is_called) return;
+            effect = true;
+            report_on(name, reason);
+        };
+        turn_on(bounces, on.restitution, "restitution", "a body that was added has a restitution above zero");
+        turn_on(rubs, on.friction, "friction", "a body that was added has friction");
+        turn_on(resists, on.rolling_resistance, "rolling resistance",
+                "a body that was added has rolling resistance");
+        if (rubs) turn_rotation_on();
     }
 
     /// Calls change(row), which alters one body from outside, and keeps the books right.
@@ -149,6 +184,16 @@ BasicWorld<Real>::BasicWorld(const Scene& scene, const WorldOptions& options) {
     if (sim.method == Solver::soft) sim.candidates = Candidates<Real>(MarginRule::own);
     sim.substeps = accuracy.substeps.value_or(default_substeps(sim.method));
     implementation_->called = call_effects(scene, options.effects);
+    const auto either = [](const std::optional<bool>& first, const std::optional<bool>& second) {
+        return first ? first : second;
+    };
+    EffectOverrides& overrides = implementation_->overrides;
+    overrides.restitution = either(options.effects.restitution, scene.effects.restitution);
+    overrides.rotation = either(options.effects.rotation, scene.effects.rotation);
+    overrides.friction = either(options.effects.friction, scene.effects.friction);
+    overrides.rolling_resistance =
+        either(options.effects.rolling_resistance, scene.effects.rolling_resistance);
+    implementation_->angular_drag = scene.drag.angular;
     implementation_->called.solver_reason =
         choose_solver(scene, options.solver.value_or(scene.accuracy.solver)).reason;
 
@@ -222,6 +267,7 @@ BodyId BasicWorld<Real>::add(const Body& body) {
     if (body_count() >= kLargestBodyCount)
         throw Error(ErrorCode::too_large, "World::add: the world has " + std::to_string(body_count()) +
                                               " bodies, which is the limit. Remove some first.");
+    implementation_->call_effects_of(body);
     if (body.angular_velocity != 0 || body.angle != 0) implementation_->turn_rotation_on();
     if (is_disc(body.shape))
         wake_at(implementation_->sim, body.position, radius_of(body.shape));

@@ -46,7 +46,7 @@ void SoftSolver<Real>::derive_masses(const Bodies<Real>& bodies) {
     if (masses_vary_) inverse_mass_.resize(bodies.count);
     double lightest = 0, heaviest = 0;  // inverse
     for (std::size_t row = 0; row < bodies.count && masses_vary_; ++row) {
-        const bool is_fixed = (bodies.flags_of(row) & kFixedAngle) != 0;
+        const bool is_fixed = is_rough_ && (bodies.flags_of(row) & kFixedAngle) != 0;
         const double inverse = bodies.inverse_mass(row);
         inverse_mass_[row] = static_cast<Real>(is_fixed ? -inverse : inverse);
         some_are_fixed_ = some_are_fixed_ || is_fixed;

@@ -76,7 +76,7 @@ BodyId WorldState<Real>::append(const Body& body) {
     bodies.rolling_resistance.set(row, rows, real(body.material.rolling_resistance));
     if (body.type == BodyType::dynamic_body) {
         bodies.mass.set(row, rows, real(mass));
-        bodies.set_flags(row, body.fixed_rotation && effects.friction ? kFixedAngle : 0);
+        bodies.set_flags(row, body.fixed_rotation ? kFixedAngle : 0);
         dynamic_mass += static_cast<double>(bodies.mass[row]);
     } else {
         bodies.mass.set_any(row, rows, Real(1));  // it counts as infinite
