@@ -20,6 +20,21 @@ constexpr double kNanosecondsToGroup = 2, kNanosecondsToColour = 3, kNanoseconds
 
 constexpr std::size_t kOverflow = 64;  // the colour of what found none
 
+/// Candidates a body, all in all and of one body, from which on a heap of bodies in one place is thinned out.
+constexpr std::size_t kCrowdedMean = 8;
+constexpr std::size_t kCrowded = 128;
+/// Of the smaller radius: an overlap that is not one of bodies that merely lie on each other.
+constexpr double kDeep = 0.2;
+/// Of that many candidates of such a body are kept, on average, among those that overlap deeply.
+constexpr std::uint64_t kKept = 48;
+
+/// Spreads the bits of a pair evenly (Steele, Lea & Flood 2014).
+std::uint64_t mix(std::uint64_t bits) {
+    bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9u;
+    bits = (bits ^ (bits >> 27)) * 0x94D049BB133111EBu;
+    return bits ^ (bits >> 31);
+}
+
 }  // namespace
 
 /// The contacts of the last renewal in terms of today's rows.
@@ -86,6 +101,36 @@ void ContactGraph<Real>::choose_groups(const Candidates<Real>& candidates, std::
     }
 }
 
+/// Counts the candidates of each body, if they are many.
+template <class Real>
+void ContactGraph<Real>::find_crowds(const Candidates<Real>& candidates, std::size_t rows) {
+    crowd_.clear();
+    if (candidates.pair_count() < kCrowdedMean * rows) return;
+    crowd_.assign(rows, 0);
+    for (std::size_t p = 0; p < candidates.pair_count(); ++p) {
+        ++crowd_[static_cast<std::size_t>(candidates.pair_a()[p])];
+        ++crowd_[static_cast<std::size_t>(candidates.pair_b()[p])];
+    }
+    if (*std::max_element(crowd_.begin(), crowd_.end()) <= kCrowded) crowd_.clear();
+}
+
+/// Where hundreds of bodies are in one place each needs only some of the others to be pushed out of it: of
+/// pairs that overlap deeply a share is looked at, another one whenever the pairs
+/// are found anew. What merely touches is always looked at.
+template <class Real>
+bool ContactGraph<Real>::is_left_out(std::int32_t a, std::int32_t b, const Bodies<Real>& bodies) const {
+    const auto i = static_cast<std::size_t>(a), k = static_cast<std::size_t>(b);
+    const std::uint64_t crowd = std::min(crowd_[i], crowd_[k]);
+    if (crowd <= kCrowded) return false;
+    const Real dx = bodies.position_x[k] - bodies.position_x[i],
+               dy = bodies.position_y[k] - bodies.position_y[i];
+    const Real of_a = bodies.radius[i], of_b = bodies.radius[k];
+    const Real deep = of_a + of_b - static_cast<Real>(kDeep) * std::min(of_a, of_b);
+    if (!(dx * dx + dy * dy < deep * deep)) return false;
+    const auto name = static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b);
+    return mix(name + static_cast<std::uint64_t>(version) * 0x9E3779B97F4A7C15u) % crowd >= kKept;
+}
+
 /// Calls pair(piece, group, a, b) for all pairs, a < b; the group of pairs with an immovable body is the one
 /// beyond the last.
 template <class Real>
@@ -99,6 +144,7 @@ void ContactGraph<Real>::for_each_piece(const Candidates<Real>& candidates, cons
         const std::size_t last = std::min(count, (piece + 1) * piece_size);
         for (std::size_t p = piece * piece_size; p < last; ++p) {
             const std::int32_t a = std::min(pair_a[p], pair_b[p]), b = std::max(pair_a[p], pair_b[p]);
+            if (!crowd_.empty() && is_left_out(a, b, bodies)) continue;
             if (bodies.has_flags && bodies.is_immovable(static_cast<std::size_t>(a)))
                 pair(piece, groups.count(), b, a);
             else if (bodies.has_flags && bodies.is_immovable(static_cast<std::size_t>(b)))
@@ -320,6 +366,7 @@ void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const EdgeCan
     memory_.file(pairs, supports, rows, is_moved || pairs.groups() == 0 ? nullptr : &groups, executor);
 
     choose_groups(candidates, rows);
+    find_crowds(candidates, rows);
     group_pairs(candidates, bodies, executor);
     if (walls) list_walls(candidates, bodies, *walls);
     for (const EdgePair pair : edges.pairs())
@@ -436,7 +483,7 @@ std::size_t ContactGraph<Real>::bytes() const {
            memory_.bytes() + rolling_of_pairs_.bytes() + rolling_of_supports_.bytes() +
            colours_of_[0].bytes() + colours_of_[1].bytes() + trail.bytes() +
            (listed_a_.capacity() + listed_b_.capacity()) * sizeof(std::int32_t) +
-           (piece_counts_.capacity() + colour_counts_.capacity()) * sizeof(std::uint32_t);
+           (crowd_.capacity() + piece_counts_.capacity() + colour_counts_.capacity()) * sizeof(std::uint32_t);
 }
 
 template class ContactGraph<float>;

@@ -97,6 +97,8 @@ class ContactGraph {
     void rename_rows();
     double far_share(const Candidates<Real>& candidates, const ContactGroups& tried) const;
     void choose_groups(const Candidates<Real>& candidates, std::size_t rows);
+    void find_crowds(const Candidates<Real>& candidates, std::size_t rows);
+    bool is_left_out(std::int32_t a, std::int32_t b, const Bodies<Real>& bodies) const;
     void group_pairs(const Candidates<Real>& candidates, const Bodies<Real>& bodies,
                      const Executor& executor);
     template <class Pair>
@@ -115,6 +117,7 @@ class ContactGraph {
     Found found_pairs_, found_supports_;
     std::vector<std::int32_t> listed_a_, listed_b_;  // supports as they are found
     std::vector<Late> late_, new_pairs_, new_supports_;
+    std::vector<std::uint32_t> crowd_;          // candidates of each row; empty where no body has many
     std::vector<std::uint32_t> piece_counts_;   // by piece of the pair list and group
     Column<std::uint64_t> colours_of_[2];       // a row, bit a colour: inside or as a, as b of a border
     std::vector<std::uint32_t> colour_counts_;  // by group and colour

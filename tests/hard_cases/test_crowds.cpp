@@ -83,4 +83,62 @@ TEST_SUITE("hard cases/crowds") {
         CHECK(found.after < 0.01);
         CHECK(found.bytes_per_body < 2000);
     }
+
+    TEST_CASE_TEMPLATE("B16: a crowd in one point costs a bounded number of contacts a body", Real, float,
+                       double) {
+        constexpr int kCount = scaled(2000, 600);
+        Scene scene;
+        scene.accuracy.solver = Solver::soft;
+        for (int i = 0; i < kCount; ++i)
+            scene.add({.shape = Disc{0.5}, .position = {1, 2}, .material = {.friction = 0.3}});
+        BasicWorld<Real> world(scene, {.threads = 1});
+        world.step(kStep);
+        const Profile profile = world.profile();
+        const double contacts = static_cast<double>(profile.contacts) / kCount,
+                     bytes = static_cast<double>(profile.bytes) / kCount;
+        report(kCount, " bodies in one point: ", contacts, " contacts and ", bytes, " bytes a body");
+        CHECK(contacts > 10);
+        CHECK(contacts < 40);
+        CHECK(bytes < 30000);
+        CHECK(world.quarantined().empty());
+    }
+
+    TEST_CASE_TEMPLATE("B16: discs poured into a funnel jam without pressing into each other", Real, float,
+                       double) {
+        constexpr double kRadius = 0.5;
+        Scene scene;
+        scene.gravity = {0, -10};
+        scene.accuracy.solver = Solver::soft;
+        const Material rough{.friction = 0.8};
+        const double mouth = 1.1 * kRadius;  // too narrow for one
+        for (const double side : {-1.0, 1.0})
+            scene.add(
+                {.type = BodyType::static_body,
+                 .shape = Chain{{{side * mouth, 0}, {side * (mouth + 8), 10}, {side * (mouth + 8), 60}}},
+                 .material = rough});
+        scene.bodies[0].shape = Chain{{{-mouth - 8, 60}, {-mouth - 8, 10}, {-mouth, 0}}};
+        const std::size_t first = scene.bodies.size();
+        for (int i = 0; i < 300; ++i)
+            scene.add({.shape = Disc{kRadius * (1.15 + 0.05 * (i % 4))},
+                       .position = {-7.2 + 1.32 * (i % 12), 12 + 1.32 * (i / 12)},
+                       .velocity = {0, -5},
+                       .material = rough});
+        BasicWorld<Real> world(scene, {.threads = 1});
+        double pouring = 0;
+        for (int i = 0; i < 360; ++i) {
+            world.step(kStep);
+            pouring = std::fmax(pouring, world.overlaps().max);
+        }
+        for (int i = 0; i < 120; ++i) world.step(kStep);
+        const double after = world.overlaps().max;
+        double lowest = 1e9;
+        for (std::size_t i = first; i < scene.bodies.size(); ++i)
+            lowest = std::fmin(lowest, world.state({static_cast<std::uint32_t>(i), 0}).position.y);
+        report("funnel: overlap ", pouring, " while pouring, ", after, " two seconds later, lowest at ",
+               lowest, " m");
+        CHECK(pouring < 0.2);
+        CHECK(after < 0.01);
+        CHECK(lowest > 0);  // nobody is pressed through the mouth
+        CHECK(world.quarantined().empty());
+    }
 }
