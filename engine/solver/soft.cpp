@@ -15,7 +15,8 @@ namespace {
 /// Share of an overlap that one substep takes away. Below 0.15 piles sink deeper, above 0.5 they jitter.
 constexpr double kRecovery = 0.4;
 // Of pairs in a substep's first sweep: docs/decisions/0004-soft-solver.md has the measurements.
-constexpr double kOverRelaxation = 1.7, kCalmOverRelaxation = 1.3;  // of normal impulses
+constexpr double kOverRelaxation = 1.7;  // of normal impulses
+constexpr double kCalmOverRelaxation = 1.3;
 /// A contact is calm if the first sweep changes it by less than gravity does in this share of a substep.
 constexpr double kCalm = 0.5;
 /// Where masses differ more, forces need every sweep to build up, and no contact is calm.
