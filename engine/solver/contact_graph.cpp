@@ -95,7 +95,7 @@ void ContactGraph<Real>::choose_groups(const Candidates<Real>& candidates, std::
     groups = {};
     double least = 1;
     for (std::size_t chunks = kFewestChunks; rows / chunks >= kFewestRowsOfChunk; chunks *= 2) {
-        const ContactGroups tried{padded((rows + chunks - 1) / chunks), chunks};
+        const ContactGroups tried(padded((rows + chunks - 1) / chunks), chunks);
         const double cost = far_share(candidates, tried) + 2 / static_cast<double>(chunks);
         if (cost < least) least = cost, groups = tried;
     }
@@ -247,13 +247,21 @@ void ContactGraph<Real>::colour_group(Found& found, std::size_t group, std::uint
         if (of_b) of_b[b] |= std::uint64_t{1} << lowest;
     };
     const std::size_t first = found.begin[group], last = found.begin[group + 1];
+    if (first == last) return;
+    // Those that carry something from the front, the others from the back, without a branch that nobody can
+    // foresee.
+    std::uint32_t* order = found.order.data();
+    std::size_t front = first, back = last - 1;
     for (std::size_t i = first; i < last; ++i) {
-        const auto impulses = memory_.recall(found.a[i], found.b[i]);
+        const auto impulses = of_b ? memory_.recall_pair(found.a[i], found.b[i])
+                                   : memory_.recall_support(found.a[i], found.b[i]);
         found.normal_impulse[i] = impulses.normal, found.friction_impulse[i] = impulses.friction;
-        if (impulses.normal > 0) colour(i);
+        order[front] = order[back] = static_cast<std::uint32_t>(i);
+        const std::size_t carries = impulses.normal > 0;
+        front += carries, back -= 1 - carries;
     }
-    for (std::size_t i = first; i < last; ++i)
-        if (!(found.normal_impulse[i] > 0)) colour(i);
+    for (std::size_t k = first; k < front; ++k) colour(order[k]);
+    for (std::size_t k = last; k-- > front;) colour(order[k]);
 }
 
 template <class Real>

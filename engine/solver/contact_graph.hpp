@@ -74,16 +74,18 @@ class ContactGraph {
     struct Found {
         Column<std::int32_t> a, b;
         Column<std::uint8_t> colour;  // kColours: none was free
+        Column<std::uint32_t> order;  // in which a group's contacts are coloured
         Column<Real> normal_impulse, friction_impulse;
         std::vector<std::size_t> begin;  // of each group, and the end
 
         void resize(std::size_t contacts) {
             a.resize_for_overwrite(contacts), b.resize_for_overwrite(contacts);
-            colour.resize_for_overwrite(contacts);
+            colour.resize_for_overwrite(contacts), order.resize_for_overwrite(contacts);
             normal_impulse.resize_for_overwrite(contacts), friction_impulse.resize_for_overwrite(contacts);
         }
         std::size_t bytes() const {
-            return a.bytes() + b.bytes() + colour.bytes() + normal_impulse.bytes() + friction_impulse.bytes();
+            return a.bytes() + b.bytes() + colour.bytes() + order.bytes() + normal_impulse.bytes() +
+                   friction_impulse.bytes();
         }
     };
 

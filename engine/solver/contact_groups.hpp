@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -17,10 +18,19 @@ namespace carom {
 /// What is left, contacts of chunks that are no neighbours, is far: solved alone between the two. The groups
 /// depend on rows and pairs, never on threads.
 struct ContactGroups {
+    ContactGroups() = default;  // one chunk
+    ContactGroups(std::size_t rows, std::size_t count)
+        : rows_per_chunk(rows), chunks(count), shift_(31 + static_cast<unsigned>(std::bit_width(rows - 1))) {
+        reciprocal_ = ((std::uint64_t{1} << shift_) + rows - 1) / rows;
+    }
+
     std::size_t rows_per_chunk = SIZE_MAX;
     std::size_t chunks = 1;
 
-    std::size_t chunk_of(std::int32_t row) const { return static_cast<std::size_t>(row) / rows_per_chunk; }
+    /// row / rows_per_chunk: it is asked for every pair, and a division would be most of that.
+    std::size_t chunk_of(std::int32_t row) const {
+        return static_cast<std::size_t>(row) * reciprocal_ >> shift_;
+    }
 
     // Groups of pairs. The last chunk has no next one: the number of its border is that of the far group.
     std::size_t count() const { return 2 * chunks; }
@@ -39,6 +49,12 @@ struct ContactGroups {
 
     std::size_t tasks_of_part_1() const { return (chunks + 1) / 2; }
     std::size_t tasks_of_part_2() const { return chunks / 2 + 1; }
+
+  private:
+    // With l bits for rows_per_chunk the reciprocal, rounded up, is too large by less than 2^l / 2^shift;
+    // times any row below 2^31 that never reaches the next whole number (Granlund & Montgomery 1994).
+    unsigned shift_ = 0;
+    std::uint64_t reciprocal_ = 0;  // 2^shift / rows_per_chunk; zero: all rows are in chunk 0
 };
 
 }  // namespace carom

@@ -53,13 +53,14 @@ void ContactMemory<Real>::file(const ContactCandidates<Real>& pairs, const Conta
             grouped_.of_row[row] = {0, 0};  // appended since
     }
     const std::size_t first_other = groups ? groups->far() : 0;
-    std::size_t others = 0;
+    std::size_t others = 0, other_pairs = 0;
     const auto each_other = [&](const auto& fn) {
         if (pairs.groups() > 0)
             pairs.for_each(first_other, pairs.groups(), [&](std::size_t i) { fn(pairs, i); });
         supports.for_each([&](std::size_t i) { fn(supports, i); });
     };
-    each_other([&](const auto&, std::size_t) { ++others; });
+    each_other([&](const auto& contacts, std::size_t) { ++others, other_pairs += &contacts == &pairs; });
+    others_have_pairs_ = other_pairs > 0;
     others_.is_empty = others == 0;
     if (others == 0) return;
     others_.of_row.resize_for_overwrite(rows);

@@ -23,10 +23,15 @@ class ContactMemory {
     void file(const ContactCandidates<Real>& pairs, const ContactCandidates<Real>& supports, std::size_t rows,
               const ContactGroups* groups, const Executor& executor);
 
-    /// What contact (a, b) had; nothing if it was none.
-    Impulses recall(std::int32_t a, std::int32_t b) const {
+    /// What the pair (a, b) had; nothing if it was none.
+    Impulses recall_pair(std::int32_t a, std::int32_t b) const {
         const Impulses* found = grouped_.find(a, b);
-        if (!found) found = others_.find(a, b);
+        if (!found && others_have_pairs_) found = others_.find(a, b);
+        return found ? *found : Impulses{};
+    }
+    /// What body a had from its support b.
+    Impulses recall_support(std::int32_t a, std::int32_t b) const {
+        const Impulses* found = others_.find(a, b);
         return found ? *found : Impulses{};
     }
 
@@ -61,7 +66,8 @@ class ContactMemory {
     static void file_rows(File& file, std::size_t first, std::size_t last, std::uint32_t place,
                           const Each& each);
 
-    File grouped_, others_;
+    File grouped_, others_;  // the others: supports, and pairs that are in no chunk's group
+    bool others_have_pairs_ = false;
 };
 
 extern template class ContactMemory<float>;
