@@ -45,7 +45,7 @@ class PricesTest(ProgramTest):
         for scene in (pile(), gas(5)):
             result, effects = self.prices(scene)
             for name, effect in effects.items():
-                if "no_price" not in effect and name != "sleep":
+                if "no_price" not in effect and name != "sleep" and "solver_with" not in effect:
                     self.assertTrue(effect["same_bits"], f"{scene['name']}, {name}")
                     self.assertEqual({len(rounds) for rounds in effect["rounds"].values()}, {2})
             self.assertEqual(result["threads"], 1)
@@ -79,9 +79,18 @@ class PricesTest(ProgramTest):
         self.assertEqual(effects["rotation"]["stages"], ["advance_rotation"])
 
     def test_what_has_no_price_has_a_reason(self):
-        _, effects = self.prices(gas(3))
+        _, effects = self.prices(gas(3), "--solver", "impulse")
         self.assertIn("solver impulse has no friction", effects["friction"]["no_price"])
         self.assertIn("cannot be left out", effects["continuous"]["no_price"])
+
+    def test_an_effect_that_needs_another_solver_is_priced_with_it(self):
+        result, effects = self.prices(gas(4))
+        self.assertEqual(result["solver"], "impulse")
+        for name in ("friction", "friction and rotation"):
+            self.assertEqual(effects[name]["solver_with"], "soft")
+            self.assertIn("solve_contacts", effects[name]["stages"])
+        self.assertEqual([name for name, effect in effects.items() if "solver_with" in effect],
+                         ["friction", "friction and rotation"])
 
     def test_the_table_and_the_page_have_every_effect(self):
         path = self.write_scene(pile())

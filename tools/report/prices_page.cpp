@@ -54,7 +54,9 @@ void draw_prices(const std::vector<Result>& results, Page& page) {
             row.push_back(digits(effect.at("memory_bytes_per_body").get<double>(), 3));
             for (const char* key : {"columns", "stages", "kernels"}) row.push_back(list_of(effect.at(key)));
             row.push_back(effect.at("same_bits").get<bool>() ? "yes" : "no");
-            row.emplace_back();
+            row.push_back(effect.contains("solver_with")
+                              ? "with it the solver is " + effect.at("solver_with").get<std::string>()
+                              : "");
             table.rows.push_back(std::move(row));
         }
         chart.series.push_back(std::move(series));

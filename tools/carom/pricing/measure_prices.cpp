@@ -30,7 +30,12 @@ constexpr const char* kMethod =
     "both take the same steps bit for bit (same_bits); turns in alternation, median of the paired "
     "differences and "
     "ratios with the 95 % interval of the median (bootstrap). In use: the scene as it is against the scene "
-    "with what calls for the effect taken away, from the same state; bodies then move otherwise.";
+    "with what "
+    "calls for the effect taken away, from the same state; bodies then move otherwise. Where the solver has "
+    "no such "
+    "effect and the scene leaves the choice, another one takes its place (solver_with), and the price is "
+    "that of the "
+    "change.";
 
 /// The scene in the state a simulation has reached.
 Scene scene_of_state(Scene scene, const Simulation& simulation) {
@@ -120,15 +125,18 @@ Json additions_json(const Runner& without, const Runner& with) {
         {"kernels", kernels}};
 }
 
+bool is_of(const PricedEffect& effect, Wish wish) {
+    return std::find(effect.wishes.begin(), effect.wishes.end(), wish) != effect.wishes.end();
+}
+
 /// Why the effect has no price, or nothing.
 std::string reason_for_no_price(const PricedEffect& effect, const Scene& with, const Scene& without,
-                                const MachineSettings& machine, Solver solver) {
-    const auto is = [&](Wish wish) {
-        return std::find(effect.wishes.begin(), effect.wishes.end(), wish) != effect.wishes.end();
-    };
-    if (is(&EffectOverrides::friction) && solver == Solver::impulse) return "solver impulse has no friction";
-    if (is(&EffectOverrides::drag) && solver == Solver::event) return "solver event has no drag";
-    if (is(&EffectOverrides::continuous))
+                                const MachineSettings& machine) {
+    const Solver solver = with.accuracy.solver;
+    if (is_of(effect, &EffectOverrides::friction) && solver == Solver::impulse)
+        return "solver impulse has no friction";
+    if (is_of(effect, &EffectOverrides::drag) && solver == Solver::event) return "solver event has no drag";
+    if (is_of(effect, &EffectOverrides::continuous))
         return "it cannot be left out: every solver looks ahead over the whole step";
     for (const Scene* scene : {&without, &with}) try {
             make_simulation(*scene, machine);
@@ -154,8 +162,9 @@ Json head_of(const PricedEffect& effect) {
 }
 
 /// A price, or the reason why there is none; nothing if it was interrupted.
-Json price_of(const PricedEffect& effect, const Runner& whole, const Plan& plan, int repeats,
-              ProgressBar& bar, std::int64_t& turns) {
+/// @param chooses_solver  the scene leaves the choice to us: what is forced on may ask for another one
+Json price_of(const PricedEffect& effect, const Runner& whole, const Plan& plan, bool chooses_solver,
+              int repeats, ProgressBar& bar, std::int64_t& turns) {
     Json json = head_of(effect);
     const bool called = is_called(effect, plan);
     json["called"] = called;
@@ -167,9 +176,10 @@ Json price_of(const PricedEffect& effect, const Runner& whole, const Plan& plan,
     for (const Wish wish : effect.alongside) without.scene.effects.*wish = true;
     with.scene = without.scene;
     for (const Wish wish : effect.wishes) with.scene.effects.*wish = true;
-    const Solver solver = whole.scene.accuracy.solver;
-    if (const std::string reason =
-            reason_for_no_price(effect, with.scene, without.scene, whole.machine, solver);
+    if (chooses_solver && is_of(effect, &EffectOverrides::friction) &&
+        with.scene.accuracy.solver == Solver::impulse)
+        with.scene.accuracy.solver = Solver::automatic;  // impulse has no friction
+    if (const std::string reason = reason_for_no_price(effect, with.scene, without.scene, whole.machine);
         !reason.empty()) {
         json["no_price"] = reason;
         bar.update(turns += repeats);
@@ -178,6 +188,8 @@ Json price_of(const PricedEffect& effect, const Runner& whole, const Plan& plan,
     json["compared"] = called && effect.take_away
                            ? joined("the scene with ", effect.instead_of, ", effect forced on against off")
                            : joined("the scene with the effect forced on against off");
+    if (with.scene.accuracy.solver == Solver::automatic)
+        json["solver_with"] = make_simulation(with.scene, with.machine)->plan().solver;
     const bool measures_use = called && effect.take_away;
     for (int round = 0; round < repeats; ++round) {
         if (is_interrupted()) return nullptr;
@@ -226,7 +238,8 @@ Json measure_prices(const Scene& asked, const PriceOptions& options) {
     json["method"] = kMethod;
 
     Runner whole{scene_of_state(asked, *simulation), options.machine};
-    whole.scene.accuracy.solver = *solver_named(plan.solver);  // what is forced on must not change it
+    const bool chooses_solver = asked.accuracy.solver == Solver::automatic;
+    whole.scene.accuracy.solver = *solver_named(plan.solver);  // the same on both sides where it can be
     ProgressBar bar(turns_in_all, true, "turn");
     std::int64_t turns = 0;
     Runner alone = whole;
@@ -237,7 +250,8 @@ Json measure_prices(const Scene& asked, const PriceOptions& options) {
     json["ns_per_body_step"] =
         spread_json(scaled(alone.seconds, kNano / static_cast<double>(asked.bodies.size())));
     for (const PricedEffect& effect : priced_effects())
-        if (Json price = price_of(effect, whole, plan, options.repeats, bar, turns); !price.is_null())
+        if (Json price = price_of(effect, whole, plan, chooses_solver, options.repeats, bar, turns);
+            !price.is_null())
             json["effects"].push_back(std::move(price));
     return json;
 }
@@ -276,6 +290,8 @@ std::string prices_text(const Json& prices) {
         const std::string in_use =
             effect.contains("in_use") ? format("%+.1f", percent(effect.at("in_use").at("share").at("median")))
                                       : "";
+        if (effect.contains("solver_with"))
+            adds += joined(adds.empty() ? "" : ", ", "solver ", effect.at("solver_with").get<std::string>());
         text +=
             format("  %-22s %-6s %9.3g %+8.1f %-20s %12s %6.0f  %s%s\n", name.c_str(), called,
                    effect.at("ns_per_body_step").at("median").get<double>(), percent(share.at("median")),
