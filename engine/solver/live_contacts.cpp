@@ -48,7 +48,6 @@ void LiveContacts<Real>::resize_in_place(const ContactCandidates<Real>& candidat
     is_live.resize_for_overwrite(contacts / kContactBlock),
         is_restless.resize_for_overwrite(contacts / kContactBlock),
         run.resize_for_overwrite(contacts / kContactBlock);
-    is_uneven.assign(candidates.groups(), 0);
     run_count.assign(candidates.groups(), 0), live_count.assign(candidates.groups(), 0);
     group_begin.clear();
     for (std::size_t group = 0; group < candidates.groups(); ++group)

@@ -30,7 +30,6 @@ struct LiveContacts {
     Column<std::uint8_t> is_live;                    // a block
     Column<std::uint8_t> is_restless;                // a block: kernels/contact_arguments.hpp
     Column<Run> run;                                 // those of a group begin at its first block
-    std::vector<std::uint8_t> is_uneven;             // a group: whether some masses differ much
     std::vector<std::size_t> run_count, live_count;  // a group: runs, contacts that can touch
     std::vector<std::size_t> group_begin;            // place of each group, and the end
     std::size_t first_place(std::size_t group) const { return group_begin[group]; }

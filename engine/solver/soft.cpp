@@ -19,8 +19,6 @@ constexpr double kOverRelaxation = 1.7;  // of normal impulses
 constexpr double kCalmOverRelaxation = 1.3;
 /// A contact is calm if the first sweep changes it by less than gravity does in this share of a substep.
 constexpr double kCalm = 0.5;
-/// Where masses differ more, forces need every sweep to build up, and no contact is calm.
-constexpr double kEvenMasses = 8;
 /// Bodies as near as this, in radii of the smallest, are solved together even if they hardly move: what
 /// pushes one of them in the middle of a step is felt by the other.
 constexpr double kNearFraction = 0.04;
@@ -137,15 +135,12 @@ void SoftSolver<Real>::describe_group(const Bodies<Real>& bodies, std::size_t gr
         if (!column->empty())
             std::fill(column->data() + first, column->data() + last, Real(0));  // of padding
     const Real same = static_cast<Real>(bodies.inverse_mass(0));
-    pairs_.is_uneven[group] = 0;
     pairs_.for_each(graph.pairs.first_colour[group], graph.pairs.first_colour[group + 1], [&](std::size_t i) {
         const auto a = static_cast<std::size_t>(pairs_.a[i]), b = static_cast<std::size_t>(pairs_.b[i]);
         pairs_.reach[i] = bodies.radius[a] + bodies.radius[b];
         const Real of_a = masses_vary_ ? std::fabs(inverse_mass_[a]) : same,
                    of_b = masses_vary_ ? std::fabs(inverse_mass_[b]) : same;
         pairs_.mass[i] = Real(1) / (of_a + of_b);
-        if (std::max(of_a, of_b) > static_cast<Real>(kEvenMasses) * std::min(of_a, of_b))
-            pairs_.is_uneven[group] = 1;
         if (friction_varies_) pairs_.friction[i] = std::sqrt(bodies.friction[a] * bodies.friction[b]);
         if (!pairs_.rolling.empty())
             pairs_.rolling[i] = std::max(bodies.rolling_resistance[a], bodies.rolling_resistance[b]);
@@ -248,11 +243,9 @@ template <class Real>
 void SoftSolver<Real>::sweep_pairs(std::size_t group, const Sweep& sweep) const {
     const typename LiveContacts<Real>::Run* run =
         pairs_.run.data() + pairs_.first_place(group) / kContactBlock;
-    SolveContacts<Real> k = sweep.arguments;
-    if (pairs_.is_uneven[group]) k.calm = -1;
     if (!sweep.only_restless) {
         for (std::size_t i = 0; i < pairs_.run_count[group]; ++i)
-            sweep.kernel(k, kContactBlock * run[i].first, kContactBlock * run[i].last);
+            sweep.kernel(sweep.arguments, kContactBlock * run[i].first, kContactBlock * run[i].last);
         return;
     }
     const std::uint8_t* is_restless = pairs_.is_restless.data();
@@ -260,7 +253,7 @@ void SoftSolver<Real>::sweep_pairs(std::size_t group, const Sweep& sweep) const 
         for (std::size_t block = run[i].first; block < run[i].last; ++block) {
             const std::size_t first = block;
             while (block < run[i].last && is_restless[block]) ++block;
-            if (block > first) sweep.kernel(k, kContactBlock * first, kContactBlock * block);
+            if (block > first) sweep.kernel(sweep.arguments, kContactBlock * first, kContactBlock * block);
         }
 }
 
