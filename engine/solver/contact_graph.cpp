@@ -95,7 +95,8 @@ void ContactGraph<Real>::choose_groups(const Candidates<Real>& candidates, std::
     groups = {};
     double least = 1;
     for (std::size_t chunks = kFewestChunks; rows / chunks >= kFewestRowsOfChunk; chunks *= 2) {
-        const ContactGroups tried(padded((rows + chunks - 1) / chunks), chunks);
+        const std::size_t length = padded((rows + chunks - 1) / chunks);
+        const ContactGroups tried(length, (rows + length - 1) / length);  // none of them empty
         const double cost = far_share(candidates, tried) + 2 / static_cast<double>(chunks);
         if (cost < least) least = cost, groups = tried;
     }

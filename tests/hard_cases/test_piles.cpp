@@ -67,6 +67,19 @@ TEST_SUITE("hard cases/piles") {
         CHECK(world.quarantined().empty());
     }
 
+    // Chunks of rows are rounded up to whole blocks: of 128 chunks of 1,040 rows the last would be empty.
+    TEST_CASE_TEMPLATE("as many discs as make the last chunk of rows empty fall freely", Real, float,
+                       double) {
+        BasicWorld<Real> world(loose_pile(410, 320), {.solver = Solver::soft});
+        const int steps = 2;
+        for (int i = 0; i < steps; ++i) world.step(kStep);
+        double off = 0;
+        for (const Real speed : world.bodies().velocity_y)
+            off = std::fmax(off, std::fabs(speed + 10 * steps * kStep));
+        CHECK(world.body_count() == 131200);
+        CHECK(off < 1e-6);
+    }
+
     TEST_CASE_TEMPLATE("friction that is forced on with coefficients of zero changes no bit", Real, float,
                        double) {
         Scene scene = loose_pile(8, 8);
