@@ -1,6 +1,7 @@
 // B28 of the design notes: the same scene gives the same bits on rerun, for every instruction set and any
-// number of threads, in every build. The hashes below hold for gcc and clang, release and debug; to print new
-// ones after a change that is meant to change them:
+// number of threads, in every build. The hashes below hold for gcc and clang, release and debug; those in
+// tests/embed/main.cpp are also checked with gcc and no optimisation. To print new ones after a change that
+// is meant to change them:
 //   CAROM_TEST_FIGURES=1 build/release/bin/carom_tests --test-case="*golden*"
 #include <doctest/doctest.h>
 #include <carom/carom.hpp>
