@@ -65,8 +65,14 @@ void H5File::set_attribute(hid_t object, const char* name, double value) {
     H5Sclose(space);
 }
 
-hid_t H5File::filters(const std::vector<hsize_t>& chunk) {
+hid_t H5File::dataset_properties() {
     const hid_t properties = check(H5Pcreate(H5P_DATASET_CREATE));
+    check(H5Pset_obj_track_times(properties, false));
+    return properties;
+}
+
+hid_t H5File::filters(const std::vector<hsize_t>& chunk) {
+    const hid_t properties = dataset_properties();
     check(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()));
     check(H5Pset_shuffle(properties));
     check(H5Pset_deflate(properties, kDeflateLevel));
@@ -92,8 +98,7 @@ hid_t H5File::make_column(const char* name, const std::vector<double>& values) {
     constexpr hsize_t kLargestChunk = 65536;  // elements: 512 KiB
     const hsize_t size = values.size();
     const hid_t space = check(H5Screate_simple(1, &size, nullptr));
-    const hid_t properties =
-        size > 0 ? filters({std::min(size, kLargestChunk)}) : check(H5Pcreate(H5P_DATASET_CREATE));
+    const hid_t properties = size > 0 ? filters({std::min(size, kLargestChunk)}) : dataset_properties();
     const hid_t dataset =
         check(H5Dcreate2(file_, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, H5P_DEFAULT));
     if (size > 0) check(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));

@@ -41,6 +41,8 @@ class H5File {
 
   private:
     hid_t check(hid_t result);
+    /// Of a dataset that does not say when it was written: the same run gives the same file.
+    hid_t dataset_properties();
     hid_t filters(const std::vector<hsize_t>& chunk);
 
     std::string name_;
