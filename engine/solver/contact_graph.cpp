@@ -115,9 +115,8 @@ void ContactGraph<Real>::find_crowds(const Candidates<Real>& candidates, std::si
     if (*std::max_element(crowd_.begin(), crowd_.end()) <= kCrowded) crowd_.clear();
 }
 
-/// Where hundreds of bodies are in one place each needs only some of the others to be pushed out of it: of
-/// pairs that overlap deeply a share is looked at, another one whenever the pairs
-/// are found anew. What merely touches is always looked at.
+/// In a crowd each body needs only some of the others to be pushed out of it: of pairs that overlap deeply a
+/// share is looked at, another one whenever pairs are found anew. What merely touches is always looked at.
 template <class Real>
 bool ContactGraph<Real>::is_left_out(std::int32_t a, std::int32_t b, const Bodies<Real>& bodies) const {
     const auto i = static_cast<std::size_t>(a), k = static_cast<std::size_t>(b);
