@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene/random.hpp"
+#include "math/random.hpp"
 
 #include <carom/vec2.hpp>
 

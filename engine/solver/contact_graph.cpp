@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstdlib>
 
+#include "math/random.hpp"
 #include "solver/flights.hpp"
 
 namespace carom {
@@ -27,13 +28,6 @@ constexpr std::size_t kCrowded = 128;
 constexpr double kDeep = 0.2;
 /// Of that many candidates of such a body are kept, on average, among those that overlap deeply.
 constexpr std::uint64_t kKept = 48;
-
-/// Spreads the bits of a pair evenly (Steele, Lea & Flood 2014).
-std::uint64_t mix(std::uint64_t bits) {
-    bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9u;
-    bits = (bits ^ (bits >> 27)) * 0x94D049BB133111EBu;
-    return bits ^ (bits >> 31);
-}
 
 }  // namespace
 
@@ -128,7 +122,7 @@ bool ContactGraph<Real>::is_left_out(std::int32_t a, std::int32_t b, const Bodie
     const Real deep = of_a + of_b - static_cast<Real>(kDeep) * std::min(of_a, of_b);
     if (!(dx * dx + dy * dy < deep * deep)) return false;
     const auto name = static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b);
-    return mix(name + static_cast<std::uint64_t>(version) * 0x9E3779B97F4A7C15u) % crowd >= kKept;
+    return Random(Random(name).next() + static_cast<std::uint64_t>(version)).next() % crowd >= kKept;
 }
 
 /// Calls pair(piece, group, a, b) for all pairs, a < b; the group of pairs with an immovable body is the one
