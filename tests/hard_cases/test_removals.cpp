@@ -72,6 +72,19 @@ void run(BasicWorld<Real>& world, int steps) {
     for (int i = 0; i < steps; ++i) world.step(kStep);
 }
 
+/// Steps until nothing has been faster than 0.01 m/s for a second: a pile of discs that roll can stand for
+/// seconds and then give way, so a number of steps proves nothing.
+/// @return whether that came within a minute
+template <class Real>
+bool comes_to_rest(BasicWorld<Real>& world) {
+    int quiet_steps = 0;
+    for (int i = 0; i < 3600 && quiet_steps < 60; ++i) {
+        world.step(kStep);
+        quiet_steps = motion_of(world).fastest < 0.01 ? quiet_steps + 1 : 0;
+    }
+    return quiet_steps == 60;
+}
+
 }  // namespace
 
 TEST_SUITE("hard cases/removals") {
@@ -116,7 +129,7 @@ TEST_SUITE("hard cases/removals") {
             const BodyId weight =
                 scene.add(disc(radius, 100 * 3.14159265 * kRadius * kRadius, {10, top + radius + 0.1}));
             BasicWorld<Real> world(scene, {.threads = 1});
-            run(world, scaled(2400, 1200));
+            REQUIRE(comes_to_rest(world));
             world.remove(weight);
             double upwards = 0;
             for (int i = 0; i < 3; ++i) {
