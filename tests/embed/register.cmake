@@ -18,7 +18,9 @@ carom_add_embed_test(installed -DCMAKE_PREFIX_PATH=${embed_work}/prefix -DCMAKE_
 set_tests_properties(${embed}.installed PROPERTIES FIXTURES_REQUIRED installed)
 
 # Also shows that the library builds without OpenMP.
-carom_add_embed_test(subdirectory -DCAROM_FOLDER=${PROJECT_SOURCE_DIR} -DCAROM_OPENMP=OFF -DCMAKE_BUILD_TYPE=Debug)
+carom_add_embed_test(subdirectory -DCAROM_FOLDER=${PROJECT_SOURCE_DIR} -DCAROM_OPENMP=OFF -DCMAKE_BUILD_TYPE=Debug
+                     -DCAROM_ONLY_MACHINE_ISAS=ON -DCAROM_PRECOMPILE_ENGINE=ON)
+set_tests_properties(${embed}.subdirectory PROPERTIES COST 90)
 
 add_test(NAME ${embed}.extract_example
     COMMAND ${CAROM_PYTHON} ${embed_folder}/extract_example.py

@@ -74,11 +74,12 @@ TEST_SUITE("hard cases/crowds") {
     // A cell of the grid is as large as the bodies of its level: the large disc's cell holds all the others.
     TEST_CASE_TEMPLATE("B16: ten thousand discs in one cell of a large one's level, pulled together", Real,
                        float, double) {
-        constexpr int kSide = scaled(100, 40);
+        const int kSide = scaled(100, 40);
         constexpr double kRadius = 0.05, kLarge = 10;
         Scene scene = lattice_around_origin(kSide, 2.4 * kRadius, 0.1 * kRadius, kRadius);
         scene.add({.shape = Disc{kLarge}, .position = {kLarge + 10, 0}});
-        const Crowded found = crowd<Real>(scene, kSide * kSide, 0.25, scaled(600, 100));
+        const Crowded found =
+            crowd<Real>(scene, static_cast<std::size_t>(kSide * kSide), 0.25, scaled(600, 100));
         CHECK(found.while_driven < 0.2);
         CHECK(found.after < 0.01);
         CHECK(found.bytes_per_body < 2000);
@@ -86,7 +87,7 @@ TEST_SUITE("hard cases/crowds") {
 
     TEST_CASE_TEMPLATE("B16: a crowd in one point costs a bounded number of contacts a body", Real, float,
                        double) {
-        constexpr int kCount = scaled(2000, 600);
+        const int kCount = scaled(2000, 600);
         Scene scene;
         scene.accuracy.solver = Solver::soft;
         for (int i = 0; i < kCount; ++i)

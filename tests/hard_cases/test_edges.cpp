@@ -110,7 +110,7 @@ TEST_SUITE("hard cases/edges") {
                        .material = {.friction = 0.3, .restitution = 0.9}});
         }
         BasicWorld<Real> world(scene);
-        for (int i = 0; i < 300; ++i) world.step(kStep);
+        for (int i = 0; i < test::scaled(300, 60); ++i) world.step(kStep);
         CHECK(world.quarantined().empty());
         for (std::uint32_t i = 1; i <= 100; ++i) {
             const Vec2 p = turned_back(world.state({i, 0}).position, world.state({0, 0}));

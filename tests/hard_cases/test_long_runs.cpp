@@ -14,7 +14,7 @@ using namespace carom::test;
 
 TEST_SUITE("hard cases/long runs") {
     TEST_CASE_TEMPLATE("B22: a stack in a shaft is where it was after a million steps", Real, float, double) {
-        constexpr int kSteps = scaled(1'000'000, 50'000), kCount = 4, kSettling = 600;
+        const int kSteps = scaled(1'000'000, 50'000), kCount = 4, kSettling = 600;
         constexpr double kRadius = 0.5;
         Scene scene;
         scene.gravity = {0, -10};

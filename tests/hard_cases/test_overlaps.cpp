@@ -87,7 +87,7 @@ TEST_SUITE("hard cases/overlaps") {
 
     TEST_CASE_TEMPLATE("a thousand coincident discs come apart within two seconds, without speed", Real,
                        float, double) {
-        constexpr int kDiscs = scaled(1000, 200);
+        const int kDiscs = scaled(1000, 200);
         Trial<Real> first(coincident(kDiscs, {3, -2}));
         const double speed = push_apart(first);
         BasicWorld<Real> again(coincident(kDiscs, {3, -2}));

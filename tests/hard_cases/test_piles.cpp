@@ -48,7 +48,7 @@ double rms_speed(const BasicWorld<Real>& world) {
 
 TEST_SUITE("hard cases/piles") {
     TEST_CASE_TEMPLATE("a pile comes to rest with overlaps below one percent", Real, float, double) {
-        constexpr int kSteps = scaled(900, 600);
+        const int kSteps = scaled(900, 600);
         const Scene scene = loose_pile(20, 20);
         BasicWorld<Real> world(scene);
         CHECK(world.plan().solver == "soft");

@@ -83,7 +83,7 @@ Extremes watch(const Scene& scene, int steps) {
 TEST_SUITE("hard cases/resting") {
     TEST_CASE_TEMPLATE("elastic discs that rest on each other keep their energy to 1e-3 for 60 s", Real,
                        float, double) {
-        constexpr int kSteps = scaled(3600, 600);
+        const int kSteps = scaled(3600, 600);
         std::vector<Scene> scenes;
         for (const double restitution : {1.0, 0.5, 0.0})
             for (Scene scene : {column(10, restitution), triangle(5, restitution), block(6, restitution)})

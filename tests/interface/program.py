@@ -14,7 +14,13 @@ import numpy
 SOURCE = pathlib.Path(os.environ.get("CAROM_SOURCE_DIR", pathlib.Path(__file__).parents[2]))
 PROGRAM = os.environ.get("CAROM_PROGRAM", str(SOURCE / "build/release/bin/carom"))
 SEED = SOURCE / "docs/scenes/seed.json"
+IS_EFFORT_REDUCED = os.environ.get("CAROM_TEST_EFFORT") == "reduced"
 ALL_FILES = {"summary.json", "final.csv", "ledger.csv", "trajectory.h5", "report.html"}
+
+
+def scaled(full, reduced):
+    """How much of something a test does: all of it, or less where the program steps at a fraction of its speed."""
+    return reduced if IS_EFFORT_REDUCED else full
 
 
 def gas(side, *, name="gas", steps=50, every=1, precision="float", solver="auto", speed=3.0, **more):

@@ -11,7 +11,7 @@ import unittest
 
 import numpy
 
-from program import ALL_FILES, PROGRAM, SEED, ProgramTest, Results, gas
+from program import ALL_FILES, PROGRAM, SEED, ProgramTest, Results, gas, scaled
 
 ENDLESS = 1_000_000_000
 
@@ -82,8 +82,8 @@ class KilledTest(ProgramTest):
         return True
 
     def test_a_killed_run_leaves_no_half_file(self):
-        steps, chance, finished = 400, random.Random(4), []
-        scene = self.write_scene(gas(20, steps=steps))
+        steps, chance, finished = scaled(400, 200), random.Random(4), []
+        scene = self.write_scene(gas(scaled(20, 10), steps=steps))
         start = time.monotonic()
         self.carom("run", scene, "--out", "out", "--quiet")
         whole_run = time.monotonic() - start

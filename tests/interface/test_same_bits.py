@@ -11,11 +11,14 @@ class SameBitsTest(ProgramTest):
         return re.search(r"this machine runs: ([\w ]+)", self.carom("--version").stdout).group(1).split()
 
     def scene(self, precision):
-        return self.write_scene(gas(100, steps=8, precision=precision, every=4, gravity=[0, -1]))
+        scene = gas(100, steps=8, precision=precision, every=4, gravity=[0, -1])
+        scene["bodies"] = []  # generated: reading them would take most of the time
+        scene["generate"] = [{"gas": {"count": 10_000, "radius": 0.5, "velocity_rms": 3, "seed": 1}}]
+        return self.write_scene(scene)
 
     def hash_and_files(self, scene, *arguments):
         """The summary's hash and, byte by byte, what else must not differ."""
-        results = self.run_scene(scene, *arguments)
+        results = self.run_scene(scene, "--no-report", *arguments)
         return results.summary["state_hash"], (results.folder / "final.csv").read_text()
 
     def test_every_instruction_set_gives_the_same_hash_and_final_state(self):
@@ -25,7 +28,7 @@ class SameBitsTest(ProgramTest):
             for isa in self.instruction_sets():
                 with self.subTest(isa=isa, precision=precision):
                     self.assertEqual(self.hash_and_files(scene, "--isa", isa), expected)
-                    self.assertEqual(self.run_scene(scene, "--isa", isa).summary["isa"], isa)
+                    self.assertEqual(self.run_scene(scene, "--isa", isa, "--no-report").summary["isa"], isa)
 
     def test_every_number_of_threads_gives_the_same_hash_and_final_state(self):
         for precision in ("float", "double"):

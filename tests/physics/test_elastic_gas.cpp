@@ -85,7 +85,7 @@ TEST_SUITE("physics/elastic gas") {
         CHECK(flatness(world) == doctest::Approx(1).epsilon(1e-6));
         for (int i = 0; i < 300; ++i) world.step(kStep);  // some 45 collisions a disc
         double mean = 0;
-        constexpr int kSamples = scaled(60, 20);
+        const int kSamples = scaled(60, 20);
         for (int sample = 0; sample < kSamples; ++sample) {
             for (int i = 0; i < 20; ++i) world.step(kStep);  // some 3
             mean += flatness(world) / kSamples;

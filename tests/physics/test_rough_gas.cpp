@@ -69,7 +69,7 @@ MeanImpact mean_impact(double friction) {
 
 TEST_SUITE("physics/rough gas") {
     TEST_CASE("A19, rough discs: the first impacts turn and take what kinetic theory says") {
-        constexpr int kStarts = scaled(20, 4), kCount = 20'000;
+        const int kStarts = scaled(20, 4), kCount = 20'000;
         constexpr double kFrictions[] = {0.05, 0.3};
         double turned[2] = {}, lost[2] = {}, impacts[2] = {};
         for (int start = 1; start <= kStarts; ++start) {
@@ -102,7 +102,7 @@ TEST_SUITE("physics/rough gas") {
 
     TEST_CASE_TEMPLATE("A19, rough discs: solver soft cools and turns a gas as solver event does", Real,
                        float, double) {
-        constexpr int kCount = scaled(20'000, 4000);  // the share fluctuates by 5 % with 4,000 discs
+        const int kCount = scaled(20'000, 4000);  // the share fluctuates by 5 % with 4,000 discs
         constexpr double kStep = 1.0 / 60;
         for (const double friction : {0.05, 0.3}) {
             const Scene soft_scene = rough_gas(kCount, friction, 5, Solver::soft);

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdlib>
+#include <cstring>
+
 namespace carom::test {
 
 /// Whether this build steps at a fraction of the release build's speed: assertions or a sanitizer are on.
@@ -15,10 +18,17 @@ inline constexpr bool kIsSlowBuild = false;
 inline constexpr bool kIsSlowBuild = false;
 #endif
 
-/// How much of something a test does: all of it in release builds, less where that would take minutes.
+/// Whether long tests do a part of what they do at full length: in slow builds, and where CAROM_TEST_EFFORT
+/// says so, as ctest does for the instruction sets that worlds do not choose by themselves.
+inline bool is_effort_reduced() {
+    static const char* const wish = std::getenv("CAROM_TEST_EFFORT");
+    return kIsSlowBuild || (wish && std::strcmp(wish, "reduced") == 0);
+}
+
+/// How much of something a test does: all of it, or less where that would take minutes.
 template <class T>
-constexpr T scaled(T full, T reduced) {
-    return kIsSlowBuild ? reduced : full;
+T scaled(T full, T reduced) {
+    return is_effort_reduced() ? reduced : full;
 }
 
 }  // namespace carom::test
