@@ -143,22 +143,25 @@ TEST_SUITE("hard cases/removals") {
 
     TEST_CASE_TEMPLATE("B24: a body that goes in every step does not jolt the pile it was in", Real, float,
                        double) {
-        BasicWorld<Real> world(pile(scaled(50, 25), scaled(50, 25)), {.threads = 1});
-        run(world, scaled(1500, 600));
-        const double before = motion_of(world).rms;
-        std::mt19937 random(3);
+        // What falls into the holes is chance, .03 to .13 m/s: so several times.
         double sum = 0;
         const int steps = scaled(60, 20);
-        for (int i = 0; i < steps; ++i) {
-            const BodyView<Real> bodies = world.bodies();
-            world.remove(bodies.id[random() % bodies.count]);
-            world.step(kStep);
-            const double rms = motion_of(world).rms;
-            sum += rms * rms;
+        constexpr unsigned kPiles = 4;
+        for (unsigned seed = 0; seed < kPiles; ++seed) {
+            BasicWorld<Real> world(pile(scaled(50, 25), scaled(50, 25)), {.threads = 1});
+            run(world, scaled(1000, 600));
+            std::mt19937 random(seed);
+            for (int i = 0; i < steps; ++i) {
+                const BodyView<Real> bodies = world.bodies();
+                world.remove(bodies.id[random() % bodies.count]);
+                world.step(kStep);
+                const double rms = motion_of(world).rms;
+                sum += rms * rms;
+            }
+            CHECK(world.quarantined().empty());
         }
-        const double rms = std::sqrt(sum / steps);
-        report("rms speed before ", before, ", while bodies go ", rms, " m/s");
+        const double rms = std::sqrt(sum / (kPiles * steps));
+        report("rms speed while bodies go: ", rms, " m/s");
         CHECK(rms < 0.1);
-        CHECK(world.quarantined().empty());
     }
 }
