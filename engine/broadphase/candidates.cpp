@@ -18,14 +18,11 @@ constexpr double kOwnMargin = 1.25;
 
 // Strays are looked up one by one while they are fewer than one body in this many.
 constexpr std::size_t kBodiesPerStray = 64;
-// Rule own: all pairs are found anew when so many margins have been renewed.
-constexpr std::size_t kBodiesPerRenewal = 8;
-
 // Rows are sorted by place at the start and then this seldom: bodies drift slowly compared to steps. Columns
 // of fewer bodies fit into the first caches in any order; those of very many leave all caches, and disorder
 // is dearer.
-constexpr std::int64_t kRebuildsBetweenSorts = 32;
-constexpr std::int64_t kRebuildsBetweenSortsOfMany = 12;
+constexpr std::int64_t kRebuildsBetweenSorts = 12;
+constexpr std::int64_t kRebuildsBetweenSortsOfMany = 3;
 constexpr std::size_t kManyRows = 65536;
 constexpr std::size_t kFewestSortedRows = 1024;
 
@@ -86,7 +83,7 @@ double Candidates<Real>::overshoot_of(std::int32_t row, double radius, Vec2 end)
     const Vec2 way = end - Vec2{built_x()[i], built_y()[i]};
     const double margin = static_cast<double>(reach_[i]) - radius;
     const double squared = length_squared(way);
-    return squared > margin * margin ? std::sqrt(squared) - margin : 0;
+    return margin < 0 || squared > margin * margin ? std::sqrt(squared) - margin : 0;
 }
 
 template <class Real>
@@ -95,12 +92,12 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
                               const KernelTable<Real>& kernels, const Executor& executor) {
     strays_.clear(), overshoot_ = 0;
     new_pairs_.clear();
-    if (rule_ == MarginRule::own && is_valid_ &&
-        (renewed_count_ + displaced.size()) * kBodiesPerRenewal <= bodies.count) {
+    if (rule_ == MarginRule::own && is_valid_ && may_renew(displaced.size(), bodies.count)) {
         strays_.assign(displaced.begin(), displaced.end());
         renew_margins(bodies, end, gravity);
         return;
     }
+    if (rule_ == MarginRule::own && is_valid_ && follow_flow(bodies, end, gravity)) return;
     if (rule_ == MarginRule::common && is_valid_ && displaced.size() * kBodiesPerStray <= bodies.count) {
         strays_.assign(displaced.begin(), displaced.end());
         for (const std::int32_t row : strays_) {
@@ -122,6 +119,7 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
                 kernels, executor);
     grid_.find_candidates(executor);
     is_valid_ = true;
+    if (rule_ == MarginRule::own) move_places(end.s, executor);  // to the end of this step
     ++rebuild_count_;
     if (rebuilds_until_sorted_ > 0) --rebuilds_until_sorted_;
 }
@@ -129,6 +127,7 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
 template <class Real>
 std::size_t Candidates<Real>::bytes() const {
     return grid_.bytes() + reach_.bytes() + own_x_.bytes() + own_y_.bytes() + first_reach_.bytes() +
+           flow_x_.bytes() + flow_y_.bytes() + rate_.bytes() + flow_.bytes() +
            (new_pairs_.capacity() + added_pairs_.capacity() + spare_pairs_.capacity()) * sizeof(Pair);
 }
 

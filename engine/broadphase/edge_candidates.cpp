@@ -89,7 +89,8 @@ void EdgeCandidates<Real>::find(const WorldState<Real>& world, const Candidates<
         found_at_[i] = {pose.position, pose.turn, pose.angle, body.reach, margin};
         if (!pose.takes_part || largest_reach == 0) continue;
         for (std::int32_t n = 0; n < body.count; ++n)
-            find_near_edge(world, candidates, body.first + n, margin + allowance_, largest_reach);
+            find_near_edge(world, candidates, body.first + n,
+                           margin + allowance_ + candidates.largest_drift(), largest_reach);
     }
     std::sort(pairs_.begin(), pairs_.end());
 }
@@ -101,15 +102,13 @@ void EdgeCandidates<Real>::add_strays(const WorldState<Real>& world, const Candi
         const auto row = static_cast<std::size_t>(stray);
         if (world.bodies.is_immovable(row)) continue;
         const Vec2 p{candidates.built_x()[row], candidates.built_y()[row]};
-        const Vec2 first{candidates.grid().built_x()[row], candidates.grid().built_y()[row]};
         const double reach = candidates.reach()[row];
-        const double grown = reach - static_cast<double>(candidates.first_reach(row));
-        if (std::sqrt(length_squared(p - first)) + grown <= allowance_) continue;
+        if (candidates.farther_than_first(row) <= allowance_) continue;
         for (std::size_t i = 0; i < found_at_.size(); ++i) {
             if (!poses_[i].takes_part) continue;
             const FoundAt& at = found_at_[i];
             const Vec2 place = rotate_back(at.turn, p - at.position);
-            const double near = reach + at.margin;
+            const double near = reach + at.margin + candidates.largest_drift();
             const EdgeBody& body = world.edges.bodies[i];
             for (std::int32_t edge = body.first; edge < body.first + body.count; ++edge) {
                 const EdgePair pair{stray, edge};

@@ -11,26 +11,36 @@ namespace carom {
 namespace {
 
 // docs/decisions/0012-threads-of-soft.md has the measurements.
-constexpr double kOwnSteps = 3;           // of a body, at its speed
-constexpr double kSmallestMargin = 0.05;  // of the smallest radius
-constexpr double kLargestMargin = 1;      // of the largest radius
-constexpr double kFewestSteps = 1.25;     // whatever the largest margin is
+constexpr double kOwnSteps = 5;          // of a body, at its speed
+constexpr double kSmallestMargin = 0.1;  // of the smallest radius
+constexpr double kLargestMargin = 1;     // of the largest radius
+constexpr double kFewestSteps = 1.25;    // whatever the largest margin is
+constexpr double kFlowSteps = 0.7;       // of the flow around it, which changes
+
+/// Of bodies that are near now, how much farther from each other they can have been when they drifted.
+constexpr double kSteepnessThen = 1.5;
+// Drifts are sums, rounded to Real a few times.
+template <class Real>
+constexpr double kRoundingOfPlace = sizeof(Real) == sizeof(float) ? 1e-6 : 4e-15;
 
 }  // namespace
 
+/// A margin is for what a body does beside the flow around it, and for what that will change.
 template <class Real>
 Real Candidates<Real>::own_reach(const Bodies<Real>& bodies, std::size_t row, const FlightClock& end,
                                  double fall) const {
-    const Vec2 v{bodies.velocity_x[row], bodies.velocity_y[row]};
+    const Vec2 flow{flow_x_[row], flow_y_[row]};
+    const Vec2 v = Vec2{bodies.velocity_x[row], bodies.velocity_y[row]} - flow;
     const double travel = std::sqrt(length_squared(v)) * end.s + fall;
-    const double margin = std::fmin(kOwnSteps * travel, kLargestMargin * largest_radius_);
-    return static_cast<Real>(
-        static_cast<double>(bodies.radius[row]) +
-        std::fmax(std::fmax(margin, kFewestSteps * travel), kSmallestMargin * smallest_radius_));
+    const double most = std::max(kLargestMargin * largest_radius_, kFewestSteps * travel);
+    const double wanted = kOwnSteps * travel + kFlowSteps * end.s * std::sqrt(length_squared(flow));
+    const double margin = std::max(std::min(wanted, most), kSmallestMargin * smallest_radius_);
+    return static_cast<Real>(static_cast<double>(bodies.radius[row]) + margin);
 }
 
 template <class Real>
 void Candidates<Real>::choose_own_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity) {
+    begin_flow(bodies, end, gravity);
     const double fall = std::sqrt(length_squared(gravity)) * end.q;
     for (std::size_t row = 0; row < bodies.count; ++row) reach_[row] = own_reach(bodies, row, end, fall);
     own_x_ = bodies.position_x, own_y_ = bodies.position_y, first_reach_ = reach_;
@@ -57,11 +67,15 @@ void Candidates<Real>::renew_margins(const Bodies<Real>& bodies, const FlightClo
     const double fall = std::sqrt(length_squared(gravity)) * end.q;
     for (const std::int32_t stray : strays_) {
         const auto row = static_cast<std::size_t>(stray);
-        own_x_[row] = bodies.position_x[row], own_y_[row] = bodies.position_y[row];
+        Vec2 place{bodies.position_x[row], bodies.position_y[row]};
+        if (flows_) {
+            set_velocity(row, flow_here(row, place));
+            place += end.s * Vec2{flow_x_[row], flow_y_[row]};
+        }
+        own_x_[row] = static_cast<Real>(place.x), own_y_[row] = static_cast<Real>(place.y);
         reach_[row] = own_reach(bodies, row, end, fall);
-        const Vec2 way{own_x_[row] - grid_.built_x()[row], own_y_[row] - grid_.built_y()[row]};
-        farthest_ = std::fmax(farthest_, std::sqrt(length_squared(way)) + static_cast<double>(reach_[row]) -
-                                             static_cast<double>(first_reach_[row]));
+        largest_reach_ = std::fmax(largest_reach_, static_cast<double>(reach_[row]));
+        farthest_ = std::fmax(farthest_, farther_than_first(row));
     }
     renewed_count_ += strays_.size();
     for (const std::int32_t row : strays_) add_pairs_of(bodies, row);
@@ -77,8 +91,12 @@ void Candidates<Real>::renew_margins(const Bodies<Real>& bodies, const FlightClo
 template <class Real>
 void Candidates<Real>::add_pairs_of(const Bodies<Real>& bodies, std::int32_t row) {
     const auto i = static_cast<std::size_t>(row);
-    const std::size_t found =
-        find_near({own_x_[i], own_y_[i]}, static_cast<double>(reach_[i]) + farthest_, near_);
+    // The grid knows where bodies were; those that are near have drifted nearly as far.
+    const double reach = reach_[i];
+    const double difference = kSteepnessThen * steepness_ * (reach + largest_reach_);
+    const Vec2 place = Vec2{own_x_[i], own_y_[i]} - drift_of(i);
+    const double rounding = kRoundingOfPlace<Real> * (std::fabs(place.x) + std::fabs(place.y));
+    const std::size_t found = find_near(place, reach + farthest_ + difference + rounding, near_);
     for (std::size_t k = 0; k < found; ++k) {
         const std::int32_t other = near_[k];
         const auto j = static_cast<std::size_t>(other);

@@ -196,8 +196,9 @@ void for_each_side(const Walls& walls, Real x, Real y, Real reach, const Fn& fn)
 template <class Real>
 void ContactGraph<Real>::list_walls(const Candidates<Real>& candidates, const Bodies<Real>& bodies,
                                     const Walls& walls) {
+    const auto drift = static_cast<Real>(candidates.largest_drift());
     for (std::size_t row = 0; row < bodies.count; ++row)
-        for_each_side(walls, bodies.position_x[row], bodies.position_y[row], candidates.reach()[row],
+        for_each_side(walls, bodies.position_x[row], bodies.position_y[row], candidates.reach()[row] + drift,
                       [&](std::int32_t side) {
                           if (bodies.is_immovable(row)) return;
                           listed_a_.push_back(static_cast<std::int32_t>(row));
@@ -386,7 +387,7 @@ void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const EdgeCan
     sort_by_colour(found_supports_, supports, rows, executor);
     if (keeps_rolling) rolling_of_pairs_.recall(pairs), rolling_of_supports_.recall(supports);
     trail.start(rows);
-    ++version;
+    ++renewals, ++version;
 }
 
 /// Lays the last group of `sorted` out anew, with what is in late_ besides.
@@ -453,13 +454,15 @@ void ContactGraph<Real>::add(const Candidates<Real>& candidates, const EdgeCandi
                           [&](std::size_t i) { found |= supports.a[i] == row && supports.b[i] == side; });
         const auto row_index = static_cast<std::size_t>(row);
         for_each_side(*walls, candidates.grid().built_x()[row_index], candidates.grid().built_y()[row_index],
-                      candidates.first_reach(row_index), [&](std::int32_t first) { found |= first == side; });
+                      candidates.first_reach(row_index) + static_cast<Real>(candidates.largest_drift()),
+                      [&](std::int32_t first) { found |= first == side; });
         return found;
     };
     for (const std::int32_t stray : candidates.strays()) {
         const auto row = static_cast<std::size_t>(stray);
         if (!walls || bodies.is_immovable(row)) continue;
-        for_each_side(*walls, bodies.position_x[row], bodies.position_y[row], candidates.reach()[row],
+        for_each_side(*walls, bodies.position_x[row], bodies.position_y[row],
+                      candidates.reach()[row] + static_cast<Real>(candidates.largest_drift()),
                       [&](std::int32_t side) {
                           if (!is_known(stray, side)) new_supports_.push_back({stray, side, 0, 0, 0});
                       });

@@ -52,6 +52,7 @@ class ContactGraph {
     void follow_removed_edges(EdgeStore::Removed gone);
 
     bool keeps_rolling = false;             ///< rolling impulses, too
+    std::int64_t renewals = 0;              ///< so many times pairs were found anew
     std::int64_t version = 0;               ///< counts renewals and additions
     std::span<const SleeperPair> sleepers;  ///< supports besides those that `renew` finds
     RowTrail trail;                         ///< to be told of rows that change between renewals

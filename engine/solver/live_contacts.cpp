@@ -41,9 +41,9 @@ void LiveContacts<Real>::resize_in_place(const ContactCandidates<Real>& candidat
     const std::size_t contacts = candidates.a.size();
     begin = candidates.begin, count = candidates.count;
     has_overflow_ = candidates.has_overflow;
-    for (Column<Real>* column : {&normal_x, &normal_y, &separation, &mass, &reach, &floor})
-        fit(*column, contacts, true);
-    fit(friction, contacts, friction_varies);
+    for (Column<Real>* column : {&normal_x, &normal_y, &separation, &floor}) fit(*column, contacts, true);
+    mass.resize(contacts), reach.resize(contacts);
+    friction.resize(friction_varies ? contacts : 0);
     fit_bounces(contacts, bounces, true);
     is_live.resize_for_overwrite(contacts / kContactBlock),
         is_restless.resize_for_overwrite(contacts / kContactBlock),
@@ -66,8 +66,8 @@ template <class Real>
 void LiveContacts<Real>::resize_rolling(std::size_t contacts, bool is_support, bool is_rolling,
                                         bool coefficient_varies, bool radius_varies) {
     if (is_support) fit(rolling_impulse, contacts, is_rolling);  // pairs share theirs with their candidates
-    fit(rolling, contacts, is_rolling && coefficient_varies);
-    fit(rolling_share, contacts, is_rolling && radius_varies);
+    rolling.resize(is_rolling && coefficient_varies ? contacts : 0);
+    rolling_share.resize(is_rolling && radius_varies ? contacts : 0);
     fit(surface_rolling, contacts, is_rolling && is_support);
     fit(bounce_rolling, contacts, is_rolling && !bounce_impulse.empty());
 }

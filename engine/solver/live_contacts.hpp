@@ -36,9 +36,10 @@ struct LiveContacts {
 
     /// Room for supports, which are compressed: candidates that cannot touch in this step are left out.
     void resize(const ContactCandidates<Real>& candidates, bool is_rough, bool bounces);
-    /// Room for pairs, which stand where they stand among the candidates.
+    /// Room for pairs, which stand where they stand among the candidates. What is described once, masses,
+    /// reaches and coefficients, is kept.
     void resize_in_place(const ContactCandidates<Real>& candidates, bool friction_varies, bool bounces);
-    /// The columns of rolling resistance; none of them without it. After the others.
+    /// The columns of rolling resistance; none of them without it. After the others. Keeps the same.
     void resize_rolling(std::size_t contacts, bool is_support, bool is_rolling, bool coefficient_varies,
                         bool radius_varies);
     /// Takes the columns that pairs share with their candidates, or gives them back.

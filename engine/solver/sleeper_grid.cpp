@@ -84,7 +84,7 @@ void Sleepers<Real>::find_pairs(const WorldState<Real>& world, const Candidates<
     build_grid(world, kernels, executor);
     for (std::size_t row = 0; row < bodies.count; ++row) {
         if (!can_come(bodies, row)) continue;
-        const double reach = candidates.reach()[row];
+        const double reach = static_cast<double>(candidates.reach()[row]) + candidates.largest_drift();
         for (const std::int32_t sleeper : find_near(world, position_of(bodies, row), reach))
             pairs_.push_back({static_cast<std::int32_t>(row), sleeper});
     }
@@ -96,7 +96,9 @@ bool Sleepers<Real>::is_near_any(const WorldState<Real>& world, const Candidates
     for (const std::int32_t row : rows) {
         const auto i = static_cast<std::size_t>(row);
         if (can_come(world.bodies, i) &&
-            !find_near(world, position_of(world.bodies, i), candidates.reach()[i]).empty())
+            !find_near(world, position_of(world.bodies, i),
+                       static_cast<double>(candidates.reach()[i]) + candidates.largest_drift())
+                 .empty())
             return true;
     }
     return false;

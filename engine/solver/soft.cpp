@@ -39,7 +39,7 @@ constexpr std::size_t kSoftRowsPerChunk = 1024;                         // recor
 template <class Real>
 void SoftSolver<Real>::derive_masses(const Bodies<Real>& bodies) {
     if (masses_are_known_) return;
-    described_version_ = -1;
+    described_version_ = described_renewal_ = -1;
     masses_vary_ = !bodies.mass.is_uniform() || bodies.has_flags;
     some_are_fixed_ = false;
     if (masses_vary_) inverse_mass_.resize(bodies.count);
@@ -166,7 +166,9 @@ void SoftSolver<Real>::list_runs(std::size_t group) {
 
 template <class Real>
 void SoftSolver<Real>::find_pairs(const Bodies<Real>& bodies, const Column<Real>& motion) {
-    const bool is_new = described_version_ != graph.version;
+    // What is added between renewals changes the last group alone.
+    const bool is_new = described_version_ != graph.version,
+               are_all_new = described_renewal_ != graph.renewals;
     if (is_new) {
         pairs_.resize_in_place(graph.pairs, friction_varies_, bounces_);
         pairs_.resize_rolling(graph.pairs.a.size(), false, rolls_, rolling_varies_,
@@ -184,12 +186,12 @@ void SoftSolver<Real>::find_pairs(const Bodies<Real>& bodies, const Column<Real>
     k.is_live = pairs_.is_live.data();
     const double work = kNanosecondsToFind * static_cast<double>(pairs_.a.size());
     executor_->for_each_task(graph.groups.count(), work, [&](std::size_t group) {
-        if (is_new) describe_group(bodies, group);
+        if (are_all_new || (is_new && group == graph.groups.far())) describe_group(bodies, group);
         pairs_.live_count[group] =
             kernels_->find_contacts(k, pairs_.first_place(group), pairs_.first_place(group + 1));
         list_runs(group);
     });
-    described_version_ = graph.version;
+    described_version_ = graph.version, described_renewal_ = graph.renewals;
     if (is_new && are_masses_uneven_) uneven_.find(pairs_, inverse_mass_, count_);
 }
 

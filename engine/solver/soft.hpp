@@ -161,10 +161,11 @@ class SoftSolver {
 
     Column<Real> velocity_, start_velocity_, displacement_, turn_;
     LiveContacts<Real> pairs_, supports_;
-    std::int64_t described_version_ = -1;  // of the graph whose pairs' masses and reaches are known
-    std::vector<LeftEdge> left_edges_;     // of this step
-    std::vector<Passed> passed_;           // likewise
-    std::vector<std::int32_t> strayed_;    // rows that have left their margins in this step
+    // Of the graph whose pairs' masses and reaches are known.
+    std::int64_t described_version_ = -1, described_renewal_ = -1;
+    std::vector<LeftEdge> left_edges_;   // of this step
+    std::vector<Passed> passed_;         // likewise
+    std::vector<std::int32_t> strayed_;  // rows that have left their margins in this step
     ChunkedList lost_rows_;
     double impulses_of_h_ = 0;  // s, substep of the candidates' impulses; 0 = there are none
     bool are_impulses_known_ = false;

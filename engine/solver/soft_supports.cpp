@@ -14,6 +14,8 @@ namespace {
 
 /// Of an edge that is kept like a wall, however slowly a disc nears it.
 constexpr double kCrowdedRadii = 1;
+/// |x| + |y| of a vector, in lengths of it, at most.
+constexpr double kBothAxes = 1.415;
 
 }  // namespace
 
@@ -62,6 +64,15 @@ void SoftSolver<Real>::find_supports(const WorldState<Real>& world, const EdgeCa
         for (std::size_t i = candidates.begin[c]; i < candidates.begin[c] + candidates.count[c]; ++i) {
             const auto row = static_cast<std::size_t>(candidates.a[i]);
             const std::int32_t support = candidates.b[i];
+            if (is_edge_support(support) && !(candidates.normal_impulse[i] > 0)) {
+                const auto [clearance, way] =
+                    clearance_of_edge(world, edges, row, edge_of_support(support), dt_);
+                if (clearance > near_ + std::max(kCrowdedRadii * static_cast<double>(bodies.radius[row]),
+                                                 kBothAxes * way + dt_ * fall)) {
+                    candidates.normal_impulse[i] = 0;
+                    continue;
+                }
+            }
             const SupportSurface s = is_edge_support(support)
                                          ? surface_of_edge(world, edges, row, edge_of_support(support), dt_)
                                          : surface_of(world, row, support);

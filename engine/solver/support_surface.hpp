@@ -60,6 +60,42 @@ SupportSurface surface_of(const WorldState<Real>& world, std::size_t row, std::i
             false};
 }
 
+/// A disc and an edge in the frame of the edge's body: where the disc is and its way in a step.
+struct RelativeWay {
+    Vec2 from, way;  // m
+};
+template <class Real>
+RelativeWay relative_way(const Bodies<Real>& bodies, const EdgePose& pose, std::size_t row, double dt) {
+    const Vec2 x{bodies.position_x[row], bodies.position_y[row]};
+    const Vec2 v{bodies.velocity_x[row], bodies.velocity_y[row]};
+    const Vec2 from = rotate_back(pose.turn, x - pose.position);
+    return {from, rotate_back(pose.end_turn, x + dt * v - pose.end_position) - from};
+}
+
+/// How far from touching an edge a disc stays in this step at least [m], and how far it moves relative to
+/// the edge's points near it at most. Much cheaper than surface_of_edge, which says it exactly.
+struct EdgeClearance {
+    double least, way;  // m
+};
+template <class Real>
+EdgeClearance clearance_of_edge(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
+                                std::size_t row, std::int32_t number, double dt) {
+    const Edge& edge = world.edges[number];
+    const EdgePose& pose = edges.pose_of(edge);
+    const RelativeWay relative = relative_way(world.bodies, pose, row, dt);
+    const double distance = std::sqrt(distance_squared(relative.from, edge.a, edge.b));
+    double way = std::sqrt(length_squared(relative.way));
+    // Points of a body that turns differ in their ways by the turn times their distance, and a chord is
+    // shorter than its arc by less than the turn times the arc.
+    if (const double turn = std::fabs(pose.end_angle - pose.angle); turn > 0) {
+        const Vec2 v{world.bodies.velocity_x[row], world.bodies.velocity_y[row]};
+        way += turn * (distance + way + dt * std::sqrt(length_squared(v)) +
+                       std::sqrt(length_squared(pose.end_position - pose.position)) +
+                       turn * std::sqrt(length_squared(relative.from)));
+    }
+    return {distance - static_cast<double>(world.bodies.radius[row]) - 2 * way, way};
+}
+
 /// In the frame of the edge's body, where the edge is at rest and the disc's way is nearly straight, so that
 /// a disc is met wherever it comes from, however fast one of them turns. The normal is that of the moment
 /// they meet, and so is the velocity of the surface; the separation is such that they then touch.
@@ -70,10 +106,8 @@ SupportSurface surface_of_edge(const WorldState<Real>& world, const EdgeCandidat
     const Edge& edge = world.edges[number];
     const EdgePose& pose = edges.pose_of(edge);
     const double radius = bodies.radius[row];
-    const Vec2 x{bodies.position_x[row], bodies.position_y[row]};
     const Vec2 v{bodies.velocity_x[row], bodies.velocity_y[row]};
-    const Vec2 p = rotate_back(pose.turn, x - pose.position);
-    const Vec2 way = rotate_back(pose.end_turn, x + dt * v - pose.end_position) - p;
+    const auto [p, way] = relative_way(bodies, pose, row, dt);
 
     const double time = time_of_meeting(p, way, edge.a, edge.b, radius);
     const Vec2 there = p + time * way;

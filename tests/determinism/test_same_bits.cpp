@@ -164,10 +164,10 @@ constexpr Golden kGolden[] = {
     {"falling sizes", 0x4fe0c9b61ea50e9c, 0xc84f698047eb650e},
     {"moving obstacles", 0x9450532e75523df8, 0x81f8d27062c9d725},
     {"stack at rest", 0xa436021f760768ad, 0xfd75b447dc578a50},
-    {"rough sizes", 0x1894364c4e7e46cd, 0xbfd262af8ed9bc79},
-    {"rolling sizes", 0x171cc3898bad3ca1, 0x7a2f0b5fd87a6ad5},
-    {"turning chain", 0x9b4e8ca2358900dc, 0x74be3d4cc25a19c},
-    {"woken sleepers", 0x36ce7ffd95575bed, 0x4b36e2f11759f0fe},
+    {"rough sizes", 0x2f181b44b0eb310d, 0x105e1c5b14b5c9c3},
+    {"rolling sizes", 0xf5403c9de911c8b, 0x4e1a4b194e63b643},
+    {"turning chain", 0x31ff46ebf3371af1, 0x765209921b5ba84e},
+    {"woken sleepers", 0x1d483821b5c08fef, 0x1101ebd719df23ab},
 };
 
 }  // namespace

@@ -1,10 +1,12 @@
-// Margins of each body's own: whatever happens to the bodies, no two that meet in a step are missed.
+// Margins of each body's own, and places that move with the flow: whatever happens to the bodies, no two that
+// meet in a step are missed.
 #include "broadphase/candidates.hpp"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
 #include <set>
 #include <utility>
@@ -21,10 +23,13 @@ using PairOfRows = std::pair<std::int32_t, std::int32_t>;
 template <class Real>
 struct Swarm {
     Bodies<Real> bodies;
+    Column<Real> own_x, own_y;       // m/s, velocities without the flow
+    double fastest = 20, usual = 1;  // m/s, of few and of most
     std::mt19937 random{5};
 
     explicit Swarm(std::size_t count) {
         bodies.resize(count);
+        own_x.resize(count), own_y.resize(count);
         for (std::size_t row = 0; row < count; ++row) {
             bodies.position_x[row] = static_cast<Real>(uniform(0, 40));
             bodies.position_y[row] = static_cast<Real>(uniform(0, 40));
@@ -36,9 +41,9 @@ struct Swarm {
         return low + (high - low) * static_cast<double>(random()) / static_cast<double>(std::mt19937::max());
     }
     void kick(std::size_t row) {
-        const double speed = uniform(0, 1) < 0.05 ? 20 : 1;  // m/s
-        bodies.velocity_x[row] = static_cast<Real>(uniform(-speed, speed));
-        bodies.velocity_y[row] = static_cast<Real>(uniform(-speed, speed));
+        const double speed = uniform(0, 1) < 0.05 ? fastest : usual;
+        own_x[row] = static_cast<Real>(uniform(-speed, speed));
+        own_y[row] = static_cast<Real>(uniform(-speed, speed));
     }
     Vec2 place(std::size_t row, double t) const {
         return {
@@ -56,56 +61,119 @@ struct Swarm {
     }
 };
 
+constexpr std::size_t kCount = 700;
+
+struct Counts {
+    std::size_t meetings = 0, added = 0;
+    std::int64_t rebuilds = 0;
+};
+
+/// A hundred steps; in each all bodies have the flow's velocity besides their own. Checks that every two that
+/// meet are among the pairs, and that none is added that is known.
+template <class Real>
+Counts fly(Swarm<Real>& swarm, const std::function<Vec2(Vec2, int)>& flow) {
+    constexpr double kStep = 1.0 / 60;
+    Bodies<Real>& bodies = swarm.bodies;
+    Candidates<Real> candidates(MarginRule::own);
+    candidates.prepare(kCount);
+    const FlightClock end = flight_clock_at(kStep, 0);
+    const KernelTable<Real>& kernels = select_kernels("auto").template of<Real>();
+    std::set<PairOfRows> known;
+    Counts counts;
+    for (int step = 0; step < 100; ++step) {
+        for (std::size_t row = 0; row < kCount; ++row) {
+            const Vec2 v = flow({bodies.position_x[row], bodies.position_y[row]}, step);
+            bodies.velocity_x[row] = swarm.own_x[row] + static_cast<Real>(v.x);
+            bodies.velocity_y[row] = swarm.own_y[row] + static_cast<Real>(v.y);
+        }
+        candidates.move_places(kStep, Executor());
+        std::vector<std::int32_t> displaced;
+        for (std::size_t row = 0; row < kCount && candidates.is_valid(); ++row)
+            if (candidates.overshoot_of(static_cast<std::int32_t>(row), bodies.radius[row],
+                                        swarm.place(row, kStep)) > 0)
+                displaced.push_back(static_cast<std::int32_t>(row));
+        const std::int64_t rebuilds = candidates.rebuild_count();
+        candidates.update(bodies, end, {}, displaced, 30, kernels, Executor());
+        if (candidates.rebuild_count() > rebuilds) {
+            known.clear();
+            for (std::size_t p = 0; p < candidates.pair_count(); ++p)
+                known.insert(std::minmax(candidates.pair_a()[p], candidates.pair_b()[p]));
+        }
+        for (const auto& pair : candidates.new_pairs()) {
+            CHECK(known.insert({pair.a, pair.b}).second);
+            ++counts.added;
+        }
+        std::size_t missed = 0;
+        for (std::size_t a = 0; a < kCount; ++a)
+            for (std::size_t b = a + 1; b < kCount; ++b) {
+                if (!swarm.meet(a, b, kStep)) continue;
+                ++counts.meetings;
+                missed += known.count({static_cast<std::int32_t>(a), static_cast<std::int32_t>(b)}) == 0;
+            }
+        CHECK(missed == 0);
+        for (std::size_t row = 0; row < kCount; ++row) {
+            const Vec2 to = swarm.place(row, kStep);
+            bodies.position_x[row] = static_cast<Real>(to.x),
+            bodies.position_y[row] = static_cast<Real>(to.y);
+            if (swarm.uniform(0, 1) < 0.02) swarm.kick(row);
+        }
+    }
+    counts.rebuilds = candidates.rebuild_count();
+    return counts;
+}
+
 }  // namespace
 
 TEST_SUITE("broadphase/own margins") {
     TEST_CASE_TEMPLATE("over a hundred steps of kicked bodies no meeting is missed and no pair comes twice",
                        Real, float, double) {
-        constexpr std::size_t kCount = 700;
-        constexpr double kStep = 1.0 / 60;
         Swarm<Real> swarm(kCount);
-        Bodies<Real>& bodies = swarm.bodies;
-        Candidates<Real> candidates(MarginRule::own);
-        candidates.prepare(kCount);
-        const FlightClock end = flight_clock_at(kStep, 0);
-        const KernelTable<Real>& kernels = select_kernels("auto").template of<Real>();
-        std::set<PairOfRows> known;
-        std::size_t meetings = 0, added = 0;
-        for (int step = 0; step < 100; ++step) {
-            std::vector<std::int32_t> displaced;
-            for (std::size_t row = 0; row < kCount && candidates.is_valid(); ++row)
-                if (candidates.overshoot_of(static_cast<std::int32_t>(row), bodies.radius[row],
-                                            swarm.place(row, kStep)) > 0)
-                    displaced.push_back(static_cast<std::int32_t>(row));
-            const std::int64_t rebuilds = candidates.rebuild_count();
-            candidates.update(bodies, end, {}, displaced, 30, kernels, Executor());
-            if (candidates.rebuild_count() > rebuilds) {
-                known.clear();
-                for (std::size_t p = 0; p < candidates.pair_count(); ++p)
-                    known.insert(std::minmax(candidates.pair_a()[p], candidates.pair_b()[p]));
-            }
-            for (const auto& pair : candidates.new_pairs()) {
-                CHECK(known.insert({pair.a, pair.b}).second);
-                ++added;
-            }
-            std::size_t missed = 0;
-            for (std::size_t a = 0; a < kCount; ++a)
-                for (std::size_t b = a + 1; b < kCount; ++b) {
-                    if (!swarm.meet(a, b, kStep)) continue;
-                    ++meetings;
-                    missed += known.count({static_cast<std::int32_t>(a), static_cast<std::int32_t>(b)}) == 0;
-                }
-            CHECK(missed == 0);
-            for (std::size_t row = 0; row < kCount; ++row) {
-                const Vec2 to = swarm.place(row, kStep);
-                bodies.position_x[row] = static_cast<Real>(to.x),
-                bodies.position_y[row] = static_cast<Real>(to.y);
-                if (swarm.uniform(0, 1) < 0.02) swarm.kick(row);
-            }
+        const Counts counts = fly<Real>(swarm, [](Vec2, int) { return Vec2{}; });
+        CHECK(counts.meetings > 1000);
+        CHECK(counts.added > 100);    // margins were renewed,
+        CHECK(counts.rebuilds < 60);  // and that saves finding all pairs anew
+        CHECK(counts.rebuilds > 1);
+    }
+
+    TEST_CASE_TEMPLATE("in a flow that turns, shears, closes and turns back no meeting is missed", Real,
+                       float, double) {
+        // m/s at a place, in a step: 3 m/s at the rim, many times what a margin allows.
+        const auto turn = [](Vec2 p, int step) {
+            const double spin = step < 60 ? 0.15 : -0.15;
+            return Vec2{-spin * (p.y - 20), spin * (p.x - 20)};
+        };
+        const auto heave = [](Vec2 p, int step) {
+            return Vec2{0, 0.1 * p.y * std::sin(0.08 * static_cast<double>(step))};
+        };
+        const auto layers = [](Vec2 p, int) { return Vec2{p.y < 20 ? 3.0 : -3.0, 0}; };
+        const auto sideways = [](Vec2, int) { return Vec2{4, 0}; };
+        for (const auto& flow :
+             {std::function<Vec2(Vec2, int)>(turn), std::function<Vec2(Vec2, int)>(heave),
+              std::function<Vec2(Vec2, int)>(layers), std::function<Vec2(Vec2, int)>(sideways)}) {
+            Swarm<Real> swarm(kCount);
+            swarm.fastest = 1.5, swarm.usual = 0.2;
+            for (std::size_t row = 0; row < kCount; ++row) swarm.kick(row);
+            const Counts counts = fly<Real>(swarm, flow);
+            CHECK(counts.meetings > 500);
+            CHECK(counts.rebuilds < 45);
         }
-        CHECK(meetings > 1000);
-        CHECK(added > 100);                      // margins were renewed,
-        CHECK(candidates.rebuild_count() < 60);  // and that saves finding all pairs anew
-        CHECK(candidates.rebuild_count() > 1);
+    }
+
+    TEST_CASE_TEMPLATE("bodies that only follow a flow which brings them nearer are found in time", Real,
+                       float, double) {
+        Swarm<Real> swarm(kCount);
+        swarm.fastest = swarm.usual = 0;
+        for (std::size_t row = 0; row < kCount; ++row) swarm.kick(row);
+        const Counts counts = fly<Real>(swarm, [](Vec2 p, int) { return 0.3 * Vec2{20 - p.x, 20 - p.y}; });
+        CHECK(counts.meetings > 1000);
+    }
+
+    TEST_CASE("places go with the flow, so that pairs outlast many margins") {
+        Swarm<float> swarm(kCount);
+        swarm.fastest = swarm.usual = 0;
+        for (std::size_t row = 0; row < kCount; ++row) swarm.kick(row);
+        const Counts counts = fly<float>(swarm, [](Vec2, int) { return Vec2{1, 0}; });
+        CHECK(counts.added == 0);
+        CHECK(counts.rebuilds == 1);  // 1.7 m in 100 steps, a margin being 0.06 m
     }
 }

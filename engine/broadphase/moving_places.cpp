@@ -1,0 +1,187 @@
+// Places that move with the mean flow (MarginRule::own): a pile that heaves or turns carries its bodies out
+// of their margins together, without changing who is near whom. So a body's place moves at the velocity of
+// the bodies around it, its margin is for what it does beside that, and pairs last longer.
+//
+// Let two bodies be at places p and reach R each, and be no candidates: |p_j - p_i| >= R_i + R_j. If both
+// places follow a field that brings points nearer by less than a share c of their distance, the same holds
+// for the new places with (1 - c) R: the pairs stay complete while bodies stay within the margins that are
+// left of these. docs/decisions/0016-moving-places.md has the measurements.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "broadphase/candidates.hpp"
+
+namespace carom {
+namespace {
+
+/// A cell in reaches: two bodies that are nearer to each other than twice the sum of their reaches are in
+/// cells that touch.
+constexpr double kCellInReaches = 4;
+/// A field that takes more of a distance is not followed: bodies farther from each other than those must not
+/// meet.
+constexpr double kLargestStretch = 0.25;
+/// A flow is none if it carries nobody farther than this share of the smallest radius in a step.
+constexpr double kStill = 0.005;
+/// Of so many times that following the flow could save finding the pairs anew, one is used at least.
+constexpr int kMostLeftOut = 8;
+
+// What rounding of a place and a reach to Real can take, as a share of both, in a step.
+template <class Real>
+constexpr double kRounding = sizeof(Real) == sizeof(float) ? 2.4e-7 : 5e-16;
+
+constexpr double kNanosecondsToMove = 1;  // a body, on one thread: for the executor
+
+bool takes_part(std::uint8_t flags) {
+    return (flags & kNotInGrid) == 0;
+}
+
+}  // namespace
+
+/// Mean velocities, and the mean of how far bodies will be from their places at the end of the step.
+template <class Real>
+void Candidates<Real>::measure_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
+                                    bool is_new) {
+    largest_reach_ = 0;
+    for (std::size_t row = 0; row < bodies.count; ++row)
+        if (takes_part(bodies.flags_of(row)))
+            largest_reach_ =
+                std::max(largest_reach_, static_cast<double>(is_new ? bodies.radius[row] : reach_[row]));
+    if (is_new)
+        flow_.lay_out(bodies.count, bodies.position_x.data(), bodies.position_y.data(),
+                      kCellInReaches * (largest_reach_ + smallest_radius_));
+    flow_.begin();
+    const Vec2 fall = end.q * gravity;
+    for (std::size_t row = 0; row < bodies.count; ++row) {
+        if (!takes_part(bodies.flags_of(row))) continue;
+        const Vec2 x{bodies.position_x[row], bodies.position_y[row]};
+        const Vec2 v{bodies.velocity_x[row], bodies.velocity_y[row]};
+        if (is_new) {
+            flow_.add(x, {}, v);
+            continue;
+        }
+        const Vec2 place{own_x_[row], own_y_[row]};
+        flow_.add(place, x + end.s * v + fall - place, v);
+    }
+    flow_.finish();
+}
+
+/// The velocity of a row's place, and what its reach loses by that. Of how far it has drifted the part since
+/// the flow was measured is left to drift_of.
+template <class Real>
+void Candidates<Real>::set_velocity(std::size_t row, const MeanFlow::At& flow) {
+    drift_x_[row] += static_cast<Real>(since_flow_) * (flow_x_[row] - static_cast<Real>(flow.velocity.x));
+    drift_y_[row] += static_cast<Real>(since_flow_) * (flow_y_[row] - static_cast<Real>(flow.velocity.y));
+    flow_x_[row] = static_cast<Real>(flow.velocity.x), flow_y_[row] = static_cast<Real>(flow.velocity.y);
+    rate_[row] = static_cast<Real>(flow_is_local_ ? flow.rate : flow_.most().rate);
+}
+
+/// The flow at a place that bodies around it have reached by following it.
+template <class Real>
+MeanFlow::At Candidates<Real>::flow_here(std::size_t row, Vec2 place) const {
+    // The fields are over where places were when they were measured. What the second guess is off by is the
+    // square of a stretch times a margin: less than rounding.
+    const auto before = [&](const MeanFlow::At& flow) {
+        return place - flow.jump - since_flow_ * flow.velocity;
+    };
+    const Vec2 drifted{flow_x_[row], flow_y_[row]};
+    return flow_.at(before(flow_.at(place - since_flow_ * drifted)));
+}
+
+/// To be called at the start of a step, before anything is asked about it.
+template <class Real>
+void Candidates<Real>::move_places(double dt, const Executor& executor) {
+    if (rule_ != MarginRule::own || !is_valid_ || !flows_) return;
+    const MeanFlow::Most& most = flow_.most();
+    drift_left_ -= dt * most.speed, steepness_ += dt * most.gradient_of_velocity;
+    since_flow_ += dt;
+    if (drift_left_ < 0 || since_flow_ * most.rate > kLargestStretch) {
+        is_valid_ = false;
+        return;
+    }
+    const auto h = static_cast<Real>(dt), rounding = static_cast<Real>(kRounding<Real>);
+    Real *const x = own_x_.data(), *const y = own_y_.data(), *const reach = reach_.data();
+    const Real *const flow_x = flow_x_.data(), *const flow_y = flow_y_.data(), *const rate = rate_.data();
+    executor.for_each_chunk(own_x_.size(), kRowsPerChunk, kNanosecondsToMove,
+                            [&](std::size_t, std::size_t first, std::size_t last) {
+                                // One column at a time: compilers then use their widest registers.
+                                for (std::size_t row = first; row < last; ++row) x[row] += h * flow_x[row];
+                                for (std::size_t row = first; row < last; ++row) y[row] += h * flow_y[row];
+                                for (std::size_t row = first; row < last; ++row)
+                                    reach[row] -= (h * rate[row] + rounding) * reach[row] +
+                                                  rounding * (std::fabs(x[row]) + std::fabs(y[row]));
+                            });
+}
+
+/// All places jump to where their bodies are on the whole, and go on with the flow of now.
+template <class Real>
+bool Candidates<Real>::follow_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity) {
+    // Where bodies whirl, each on its own, it is no use to try.
+    if (++follows_left_out_ < std::min(failed_follows_, kMostLeftOut)) return false;
+    follows_left_out_ = 0, ++failed_follows_;
+    measure_flow(bodies, end, gravity, false);
+    const MeanFlow::Most& most = flow_.most();
+    drift_left_ -= most.jump, steepness_ += most.gradient;
+    if (drift_left_ < 0 || most.stretch > kLargestStretch) return false;
+    flows_ = true;
+    const double since_flow = std::exchange(since_flow_, 0);
+    // A margin may have become larger since the cells were laid out.
+    flow_is_local_ = flow_.side() >= kCellInReaches * largest_reach_;
+    const Vec2 fall = end.q * gravity;
+    strays_.clear();
+    for (std::size_t row = 0; row < bodies.count; ++row) {
+        if (!takes_part(bodies.flags_of(row))) continue;
+        const MeanFlow::At flow = flow_.at({own_x_[row], own_y_[row]});
+        const auto since = static_cast<Real>(since_flow);
+        drift_x_[row] += since * flow_x_[row] + static_cast<Real>(flow.jump.x);
+        drift_y_[row] += since * flow_y_[row] + static_cast<Real>(flow.jump.y);
+        set_velocity(row, flow);
+        const double x = own_x_[row] + flow.jump.x, y = own_y_[row] + flow.jump.y;
+        const double stretch = flow_is_local_ ? flow.stretch : most.stretch;
+        const double reach = (1 - stretch - kRounding<Real>)*static_cast<double>(reach_[row]) -
+                             kRounding<Real> * (std::fabs(x) + std::fabs(y));
+        const double off_x = bodies.position_x[row] + end.s * bodies.velocity_x[row] + fall.x - x,
+                     off_y = bodies.position_y[row] + end.s * bodies.velocity_y[row] + fall.y - y;
+        own_x_[row] = static_cast<Real>(x), own_y_[row] = static_cast<Real>(y);
+        reach_[row] = static_cast<Real>(reach);
+        const double margin = reach - static_cast<double>(bodies.radius[row]);
+        if (!(margin > 0) || off_x * off_x + off_y * off_y > margin * margin)
+            strays_.push_back(static_cast<std::int32_t>(row));
+    }
+    if (!may_renew(strays_.size(), bodies.count)) return false;
+    failed_follows_ = 0;
+    renew_margins(bodies, end, gravity);
+    return true;
+}
+
+/// Of pairs that are to be found anew.
+template <class Real>
+void Candidates<Real>::begin_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity) {
+    for (Column<Real>* column : {&drift_x_, &drift_y_, &flow_x_, &flow_y_, &rate_}) {
+        column->resize_for_overwrite(bodies.count);
+        std::fill(column->begin(), column->end(), Real(0));
+    }
+    steepness_ = since_flow_ = 0, drift_left_ = largest_drift();
+    measure_flow(bodies, end, gravity, true);
+    const MeanFlow::Most& most = flow_.most();
+    flows_ = end.s * most.speed > kStill * smallest_radius_ && end.s * most.rate < kLargestStretch &&
+             end.s * most.speed < drift_left_;
+    flow_is_local_ = true;
+    for (std::size_t row = 0; row < bodies.count && flows_; ++row)
+        set_velocity(row, flow_.at({bodies.position_x[row], bodies.position_y[row]}));
+}
+
+template void Candidates<float>::measure_flow(const Bodies<float>&, const FlightClock&, Vec2, bool);
+template void Candidates<double>::measure_flow(const Bodies<double>&, const FlightClock&, Vec2, bool);
+template MeanFlow::At Candidates<float>::flow_here(std::size_t, Vec2) const;
+template MeanFlow::At Candidates<double>::flow_here(std::size_t, Vec2) const;
+template void Candidates<float>::set_velocity(std::size_t, const MeanFlow::At&);
+template void Candidates<double>::set_velocity(std::size_t, const MeanFlow::At&);
+template void Candidates<float>::move_places(double, const Executor&);
+template void Candidates<double>::move_places(double, const Executor&);
+template bool Candidates<float>::follow_flow(const Bodies<float>&, const FlightClock&, Vec2);
+template bool Candidates<double>::follow_flow(const Bodies<double>&, const FlightClock&, Vec2);
+template void Candidates<float>::begin_flow(const Bodies<float>&, const FlightClock&, Vec2);
+template void Candidates<double>::begin_flow(const Bodies<double>&, const FlightClock&, Vec2);
+
+}  // namespace carom
