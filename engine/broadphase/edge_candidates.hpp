@@ -56,6 +56,9 @@ class EdgeCandidates {
     /// What the last call of add_strays added.
     std::span<const EdgePair> new_pairs() const { return new_pairs_; }
 
+    /// How much farther than its first reach a disc was looked for [m].
+    double allowance() const { return allowance_; }
+
     const EdgePose& pose_of(const Edge& edge) const { return poses_[static_cast<std::size_t>(edge.body)]; }
 
     std::size_t bytes() const {

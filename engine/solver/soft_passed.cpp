@@ -81,7 +81,10 @@ void SoftSolver<Real>::hold_at_edges(WorldState<Real>& world, const EdgeCandidat
                              Vec2{candidates.built_x()[row], candidates.built_y()[row]};
             const double margin =
                 static_cast<double>(candidates.reach()[row]) - static_cast<double>(bodies.radius[row]);
-            if (length_squared(way) > margin * margin && !bodies.is_immovable(row))
+            const double squared = length_squared(way);
+            if (squared <= margin * margin || bodies.is_immovable(row)) continue;
+            // Edges somewhat beyond its margin are among the supports, too.
+            if (std::sqrt(squared) - margin + candidates.farther_than_first(row) > edges.allowance())
                 strayed_.push_back(static_cast<std::int32_t>(row));
         }
     for (int round = 0; round < kRounds; ++round) {
