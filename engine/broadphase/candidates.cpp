@@ -97,7 +97,7 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
         renew_margins(bodies, end, gravity);
         return;
     }
-    if (rule_ == MarginRule::own && is_valid_ && follow_flow(bodies, end, gravity)) return;
+    if (rule_ == MarginRule::own && is_valid_ && follow_flow(bodies, end, gravity, executor)) return;
     if (rule_ == MarginRule::common && is_valid_ && displaced.size() * kBodiesPerStray <= bodies.count) {
         strays_.assign(displaced.begin(), displaced.end());
         for (const std::int32_t row : strays_) {
@@ -111,7 +111,7 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
     }
     measure_radii(bodies);
     if (rule_ == MarginRule::own)
-        choose_own_margins(bodies, end, gravity);
+        choose_own_margins(bodies, end, gravity, executor);
     else
         choose_margins(bodies, end, gravity, fastest);
     grid_.build({bodies.count, bodies.position_x.data(), bodies.position_y.data(), reach_.data(),
@@ -126,8 +126,8 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
 
 template <class Real>
 std::size_t Candidates<Real>::bytes() const {
-    return grid_.bytes() + reach_.bytes() + own_x_.bytes() + own_y_.bytes() + first_reach_.bytes() +
-           flow_x_.bytes() + flow_y_.bytes() + rate_.bytes() + flow_.bytes() +
+    return grid_.bytes() + stray_rows_.bytes() + reach_.bytes() + own_x_.bytes() + own_y_.bytes() +
+           first_reach_.bytes() + flow_x_.bytes() + flow_y_.bytes() + rate_.bytes() + flow_.bytes() +
            (new_pairs_.capacity() + added_pairs_.capacity() + spare_pairs_.capacity()) * sizeof(Pair);
 }
 

@@ -11,6 +11,7 @@
 #include "isa/kernel_table.hpp"
 #include "parallel/executor.hpp"
 #include "state/bodies.hpp"
+#include "state/chunked_list.hpp"
 
 namespace carom {
 
@@ -127,12 +128,15 @@ class Candidates {
     void choose_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity, double fastest);
     void measure_radii(const Bodies<Real>& bodies);
     Real own_reach(const Bodies<Real>& bodies, std::size_t row, const FlightClock& end, double fall) const;
-    void choose_own_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity);
+    void choose_own_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
+                            const Executor& executor);
     void measure_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity, bool is_new);
     void set_velocity(std::size_t row, const MeanFlow::At& flow);
     MeanFlow::At flow_here(std::size_t row, Vec2 place) const;
-    void begin_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity);
-    bool follow_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity);
+    void begin_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
+                    const Executor& executor);
+    bool follow_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
+                     const Executor& executor);
     void renew_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity);
     void add_pairs_of(const Bodies<Real>& bodies, std::int32_t row);
     bool was_pair(std::size_t a, std::size_t b) const;
@@ -146,6 +150,7 @@ class Candidates {
     MarginRule rule_;
     UniformGrid<Real> grid_;
     std::vector<std::int32_t> strays_;
+    ChunkedList stray_rows_;
     double overshoot_ = 0;
     Column<Real> reach_;
     // Rule `own`, since the pairs were found anew.

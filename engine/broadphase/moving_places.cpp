@@ -30,7 +30,8 @@ constexpr int kMostLeftOut = 8;
 template <class Real>
 constexpr double kRounding = sizeof(Real) == sizeof(float) ? 2.4e-7 : 5e-16;
 
-constexpr double kNanosecondsToMove = 1;  // a body, on one thread: for the executor
+// A body, on one thread: for the executor.
+constexpr double kNanosecondsToMove = 1, kNanosecondsToFollow = 15, kNanosecondsToBegin = 10;
 
 bool takes_part(std::uint8_t flags) {
     return (flags & kNotInGrid) == 0;
@@ -115,7 +116,8 @@ void Candidates<Real>::move_places(double dt, const Executor& executor) {
 
 /// All places jump to where their bodies are on the whole, and go on with the flow of now.
 template <class Real>
-bool Candidates<Real>::follow_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity) {
+bool Candidates<Real>::follow_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
+                                   const Executor& executor) {
     // Where bodies whirl, each on its own, it is no use to try.
     if (++follows_left_out_ < std::min(failed_follows_, kMostLeftOut)) return false;
     follows_left_out_ = 0, ++failed_follows_;
@@ -128,9 +130,9 @@ bool Candidates<Real>::follow_flow(const Bodies<Real>& bodies, const FlightClock
     // A margin may have become larger since the cells were laid out.
     flow_is_local_ = flow_.side() >= kCellInReaches * largest_reach_;
     const Vec2 fall = end.q * gravity;
-    strays_.clear();
-    for (std::size_t row = 0; row < bodies.count; ++row) {
-        if (!takes_part(bodies.flags_of(row))) continue;
+    // Whether the body is left outside of its margin.
+    const auto follow = [&](std::size_t row) {
+        if (!takes_part(bodies.flags_of(row))) return false;
         const MeanFlow::At flow = flow_.at({own_x_[row], own_y_[row]});
         const auto since = static_cast<Real>(since_flow);
         drift_x_[row] += since * flow_x_[row] + static_cast<Real>(flow.jump.x);
@@ -145,9 +147,19 @@ bool Candidates<Real>::follow_flow(const Bodies<Real>& bodies, const FlightClock
         own_x_[row] = static_cast<Real>(x), own_y_[row] = static_cast<Real>(y);
         reach_[row] = static_cast<Real>(reach);
         const double margin = reach - static_cast<double>(bodies.radius[row]);
-        if (!(margin > 0) || off_x * off_x + off_y * off_y > margin * margin)
-            strays_.push_back(static_cast<std::int32_t>(row));
-    }
+        return !(margin > 0) || off_x * off_x + off_y * off_y > margin * margin;
+    };
+    stray_rows_.prepare(bodies.count, kRowsPerChunk);
+    executor.for_each_chunk(bodies.count, kRowsPerChunk, kNanosecondsToFollow,
+                            [&](std::size_t chunk, std::size_t first, std::size_t last) {
+                                std::int32_t* strays = stray_rows_.part(chunk);
+                                std::size_t count = 0;
+                                for (std::size_t row = first; row < last; ++row)
+                                    if (follow(row)) strays[count++] = static_cast<std::int32_t>(row);
+                                stray_rows_.set_count(chunk, count);
+                            });
+    strays_.clear();
+    stray_rows_.for_each_below(bodies.count, [&](std::int32_t row) { strays_.push_back(row); });
     if (!may_renew(strays_.size(), bodies.count)) return false;
     failed_follows_ = 0;
     renew_margins(bodies, end, gravity);
@@ -156,7 +168,8 @@ bool Candidates<Real>::follow_flow(const Bodies<Real>& bodies, const FlightClock
 
 /// Of pairs that are to be found anew.
 template <class Real>
-void Candidates<Real>::begin_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity) {
+void Candidates<Real>::begin_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
+                                  const Executor& executor) {
     for (Column<Real>* column : {&drift_x_, &drift_y_, &flow_x_, &flow_y_, &rate_}) {
         column->resize_for_overwrite(bodies.count);
         std::fill(column->begin(), column->end(), Real(0));
@@ -167,8 +180,13 @@ void Candidates<Real>::begin_flow(const Bodies<Real>& bodies, const FlightClock&
     flows_ = end.s * most.speed > kStill * smallest_radius_ && end.s * most.rate < kLargestStretch &&
              end.s * most.speed < drift_left_;
     flow_is_local_ = true;
-    for (std::size_t row = 0; row < bodies.count && flows_; ++row)
-        set_velocity(row, flow_.at({bodies.position_x[row], bodies.position_y[row]}));
+    if (!flows_) return;
+    executor.for_each_chunk(
+        bodies.count, kRowsPerChunk, kNanosecondsToBegin,
+        [&](std::size_t, std::size_t first, std::size_t last) {
+            for (std::size_t row = first; row < last; ++row)
+                set_velocity(row, flow_.at({bodies.position_x[row], bodies.position_y[row]}));
+        });
 }
 
 template void Candidates<float>::measure_flow(const Bodies<float>&, const FlightClock&, Vec2, bool);
@@ -179,9 +197,11 @@ template void Candidates<float>::set_velocity(std::size_t, const MeanFlow::At&);
 template void Candidates<double>::set_velocity(std::size_t, const MeanFlow::At&);
 template void Candidates<float>::move_places(double, const Executor&);
 template void Candidates<double>::move_places(double, const Executor&);
-template bool Candidates<float>::follow_flow(const Bodies<float>&, const FlightClock&, Vec2);
-template bool Candidates<double>::follow_flow(const Bodies<double>&, const FlightClock&, Vec2);
-template void Candidates<float>::begin_flow(const Bodies<float>&, const FlightClock&, Vec2);
-template void Candidates<double>::begin_flow(const Bodies<double>&, const FlightClock&, Vec2);
+template bool Candidates<float>::follow_flow(const Bodies<float>&, const FlightClock&, Vec2, const Executor&);
+template bool Candidates<double>::follow_flow(const Bodies<double>&, const FlightClock&, Vec2,
+                                              const Executor&);
+template void Candidates<float>::begin_flow(const Bodies<float>&, const FlightClock&, Vec2, const Executor&);
+template void Candidates<double>::begin_flow(const Bodies<double>&, const FlightClock&, Vec2,
+                                             const Executor&);
 
 }  // namespace carom

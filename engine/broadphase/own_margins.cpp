@@ -17,6 +17,8 @@ constexpr double kLargestMargin = 1;     // of the largest radius
 constexpr double kFewestSteps = 1.25;    // whatever the largest margin is
 constexpr double kFlowSteps = 0.7;       // of the flow around it, which changes
 
+constexpr double kNanosecondsToChoose = 4;  // a body, on one thread: for the executor
+
 /// Of bodies that are near now, how much farther from each other they can have been when they drifted.
 constexpr double kSteepnessThen = 1.5;
 // Drifts are sums, rounded to Real a few times.
@@ -39,10 +41,15 @@ Real Candidates<Real>::own_reach(const Bodies<Real>& bodies, std::size_t row, co
 }
 
 template <class Real>
-void Candidates<Real>::choose_own_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity) {
-    begin_flow(bodies, end, gravity);
+void Candidates<Real>::choose_own_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
+                                          const Executor& executor) {
+    begin_flow(bodies, end, gravity, executor);
     const double fall = std::sqrt(length_squared(gravity)) * end.q;
-    for (std::size_t row = 0; row < bodies.count; ++row) reach_[row] = own_reach(bodies, row, end, fall);
+    executor.for_each_chunk(bodies.count, kRowsPerChunk, kNanosecondsToChoose,
+                            [&](std::size_t, std::size_t first, std::size_t last) {
+                                for (std::size_t row = first; row < last; ++row)
+                                    reach_[row] = own_reach(bodies, row, end, fall);
+                            });
     own_x_ = bodies.position_x, own_y_ = bodies.position_y, first_reach_ = reach_;
     added_pairs_.clear();
     renewed_count_ = 0, farthest_ = 0;
@@ -111,8 +118,10 @@ template float Candidates<float>::own_reach(const Bodies<float>&, std::size_t, c
                                             double) const;
 template double Candidates<double>::own_reach(const Bodies<double>&, std::size_t, const FlightClock&,
                                               double) const;
-template void Candidates<float>::choose_own_margins(const Bodies<float>&, const FlightClock&, Vec2);
-template void Candidates<double>::choose_own_margins(const Bodies<double>&, const FlightClock&, Vec2);
+template void Candidates<float>::choose_own_margins(const Bodies<float>&, const FlightClock&, Vec2,
+                                                    const Executor&);
+template void Candidates<double>::choose_own_margins(const Bodies<double>&, const FlightClock&, Vec2,
+                                                     const Executor&);
 template void Candidates<float>::renew_margins(const Bodies<float>&, const FlightClock&, Vec2);
 template void Candidates<double>::renew_margins(const Bodies<double>&, const FlightClock&, Vec2);
 template void Candidates<float>::add_pairs_of(const Bodies<float>&, std::int32_t);
