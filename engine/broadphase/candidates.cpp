@@ -21,8 +21,8 @@ constexpr std::size_t kBodiesPerStray = 64;
 // Rows are sorted by place at the start and then this seldom: bodies drift slowly compared to steps. Columns
 // of fewer bodies fit into the first caches in any order; those of very many leave all caches, and disorder
 // is dearer.
-constexpr std::int64_t kRebuildsBetweenSorts = 12;
-constexpr std::int64_t kRebuildsBetweenSortsOfMany = 3;
+constexpr std::int64_t kRebuildsBetweenSorts = 32;
+constexpr std::int64_t kRebuildsBetweenSortsOfMany = 12;
 constexpr std::size_t kManyRows = 65536;
 constexpr std::size_t kFewestSortedRows = 1024;
 
@@ -83,7 +83,7 @@ double Candidates<Real>::overshoot_of(std::int32_t row, double radius, Vec2 end)
     const Vec2 way = end - Vec2{built_x()[i], built_y()[i]};
     const double margin = static_cast<double>(reach_[i]) - radius;
     const double squared = length_squared(way);
-    return margin < 0 || squared > margin * margin ? std::sqrt(squared) - margin : 0;
+    return squared > margin * margin ? std::sqrt(squared) - margin : 0;
 }
 
 template <class Real>
@@ -119,7 +119,7 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
                 kernels, executor);
     grid_.find_candidates(executor);
     is_valid_ = true;
-    if (rule_ == MarginRule::own) move_places(end.s, executor);  // to the end of this step
+    if (rule_ == MarginRule::own) move_places(bodies, end.s, executor);  // to the end of this step
     ++rebuild_count_;
     if (rebuilds_until_sorted_ > 0) --rebuilds_until_sorted_;
 }

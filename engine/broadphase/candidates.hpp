@@ -88,8 +88,9 @@ class Candidates {
     double largest_drift() const { return rule_ == MarginRule::own ? kLargestDrift * smallest_radius_ : 0; }
 
     /// Rule `own`: moves the places with the mean flow. To be called first in every step of length dt [s].
+    /// A body that has used up its margin by that has a reach of its radius; it is to be taken for a stray.
     /// Cost: O(bodies), about 1 ns each; nothing where bodies are at rest.
-    void move_places(double dt, const Executor& executor);
+    void move_places(const Bodies<Real>& bodies, double dt, const Executor& executor);
 
     std::size_t pair_count() const { return grid_.candidates().count; }
     const std::int32_t* pair_a() const { return grid_.candidates().a.data(); }  ///< [padded(pair_count)]

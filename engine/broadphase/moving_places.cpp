@@ -91,7 +91,7 @@ MeanFlow::At Candidates<Real>::flow_here(std::size_t row, Vec2 place) const {
 
 /// To be called at the start of a step, before anything is asked about it.
 template <class Real>
-void Candidates<Real>::move_places(double dt, const Executor& executor) {
+void Candidates<Real>::move_places(const Bodies<Real>& bodies, double dt, const Executor& executor) {
     if (rule_ != MarginRule::own || !is_valid_ || !flows_) return;
     const MeanFlow::Most& most = flow_.most();
     drift_left_ -= dt * most.speed, steepness_ += dt * most.gradient_of_velocity;
@@ -103,14 +103,17 @@ void Candidates<Real>::move_places(double dt, const Executor& executor) {
     const auto h = static_cast<Real>(dt), rounding = static_cast<Real>(kRounding<Real>);
     Real *const x = own_x_.data(), *const y = own_y_.data(), *const reach = reach_.data();
     const Real *const flow_x = flow_x_.data(), *const flow_y = flow_y_.data(), *const rate = rate_.data();
+    const Real *const radius = bodies.radius.data(), uniform_radius = bodies.radius.uniform_value();
     executor.for_each_chunk(own_x_.size(), kRowsPerChunk, kNanosecondsToMove,
                             [&](std::size_t, std::size_t first, std::size_t last) {
                                 // One column at a time: compilers then use their widest registers.
                                 for (std::size_t row = first; row < last; ++row) x[row] += h * flow_x[row];
                                 for (std::size_t row = first; row < last; ++row) y[row] += h * flow_y[row];
-                                for (std::size_t row = first; row < last; ++row)
-                                    reach[row] -= (h * rate[row] + rounding) * reach[row] +
-                                                  rounding * (std::fabs(x[row]) + std::fabs(y[row]));
+                                for (std::size_t row = first; row < last; ++row) {
+                                    const Real left = reach[row] - (h * rate[row] + rounding) * reach[row] -
+                                                      rounding * (std::fabs(x[row]) + std::fabs(y[row]));
+                                    reach[row] = std::max(left, radius ? radius[row] : uniform_radius);
+                                }
                             });
 }
 
@@ -195,8 +198,8 @@ template MeanFlow::At Candidates<float>::flow_here(std::size_t, Vec2) const;
 template MeanFlow::At Candidates<double>::flow_here(std::size_t, Vec2) const;
 template void Candidates<float>::set_velocity(std::size_t, const MeanFlow::At&);
 template void Candidates<double>::set_velocity(std::size_t, const MeanFlow::At&);
-template void Candidates<float>::move_places(double, const Executor&);
-template void Candidates<double>::move_places(double, const Executor&);
+template void Candidates<float>::move_places(const Bodies<float>&, double, const Executor&);
+template void Candidates<double>::move_places(const Bodies<double>&, double, const Executor&);
 template bool Candidates<float>::follow_flow(const Bodies<float>&, const FlightClock&, Vec2, const Executor&);
 template bool Candidates<double>::follow_flow(const Bodies<double>&, const FlightClock&, Vec2,
                                               const Executor&);

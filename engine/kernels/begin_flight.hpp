@@ -39,8 +39,7 @@ FlightCounts<Real> begin_flight(const BeginFlight<Real>& k, std::size_t first, s
 
         const F moved_x = end_x - Lanes::load(k.built_x + i), moved_y = end_y - Lanes::load(k.built_y + i);
         const F margin = Lanes::load(k.reach + i) - radius;
-        // A place that moves with the flow may have used up a margin altogether: then it is negative.
-        const auto displaced = moved_x * moved_x + moved_y * moved_y > margin * simd::abs(margin);
+        const auto displaced = moved_x * moved_x + moved_y * moved_y >= margin * margin;
 
         // Written so that NaN fails too.
         const auto kept = (simd::abs(end_x) <= largest_position) & (simd::abs(end_y) <= largest_position) &

@@ -31,7 +31,7 @@ struct BeginFlight {
     Real largest_speed;            // m/s
     Real* motion;                  // out, [rows][4]: x, y, vx, vy
     std::int32_t* wall_rows;       // out: rows that may reach a wall; room for last - first + a batch
-    std::int32_t* displaced_rows;  // out: rows whose path leaves their margin
+    std::int32_t* displaced_rows;  // out: rows whose path leaves their margin, or that have none
     std::int32_t* lost_rows;       // out: rows whose state leaves the limits, or is not a number
 };
 

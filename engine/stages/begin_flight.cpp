@@ -98,7 +98,7 @@ void begin_flight(Simulation<Real>& sim) {
     flights.motion.resize(4 * padded(count));
     set_accelerations(sim);
     sim.candidates.prepare(count);
-    sim.candidates.move_places(sim.h, sim.executor);
+    sim.candidates.move_places(world.bodies, sim.h, sim.executor);
 
     BeginFlight<Real> all = arguments_of(sim);
     const auto kernel = all.radius ? sim.kernels->begin_flight : sim.kernels->begin_flight_uniform_radius;

@@ -86,12 +86,14 @@ Counts fly(Swarm<Real>& swarm, const std::function<Vec2(Vec2, int)>& flow) {
             bodies.velocity_x[row] = swarm.own_x[row] + static_cast<Real>(v.x);
             bodies.velocity_y[row] = swarm.own_y[row] + static_cast<Real>(v.y);
         }
-        candidates.move_places(kStep, Executor());
+        candidates.move_places(bodies, kStep, Executor());
         std::vector<std::int32_t> displaced;
-        for (std::size_t row = 0; row < kCount && candidates.is_valid(); ++row)
-            if (candidates.overshoot_of(static_cast<std::int32_t>(row), bodies.radius[row],
-                                        swarm.place(row, kStep)) > 0)
-                displaced.push_back(static_cast<std::int32_t>(row));
+        for (std::size_t row = 0; row < kCount && candidates.is_valid(); ++row) {
+            const Vec2 way =
+                swarm.place(row, kStep) - Vec2{candidates.built_x()[row], candidates.built_y()[row]};
+            const double margin = static_cast<double>(candidates.reach()[row] - bodies.radius[row]);
+            if (dot(way, way) >= margin * margin) displaced.push_back(static_cast<std::int32_t>(row));
+        }
         const std::int64_t rebuilds = candidates.rebuild_count();
         candidates.update(bodies, end, {}, displaced, 30, kernels, Executor());
         if (candidates.rebuild_count() > rebuilds) {
