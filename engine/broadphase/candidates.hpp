@@ -75,7 +75,9 @@ class Candidates {
     };
     std::span<const Pair> new_pairs() const { return new_pairs_; }
     /// The reach a row had when the pairs were found anew [m]; its place then is the grid's.
-    Real first_reach(std::size_t row) const { return first_reach_[row]; }
+    Real first_reach(std::size_t row) const {
+        return rule_ == MarginRule::own ? first_reach_[row] : reach_[row];
+    }
     /// How far a body's place and reach go beyond those it had first, but for what it drifted [m].
     double farther_than_first(std::size_t row) const {
         const Vec2 drift = drift_of(row);
@@ -120,6 +122,7 @@ class Candidates {
     static constexpr double kRoundingUp = 1 + 1e-6;  // reach and place are rounded to Real
     static constexpr double kLargestDrift = 6;       // of the smallest radius
     static constexpr std::size_t kBodiesPerRenewal = 8;
+    static constexpr double kLargestOwnMargin = 1;  // of the largest radius, unless 1.25 steps are more
 
     /// Rule own: pairs are found anew when one body in kBodiesPerRenewal has got a new margin.
     bool may_renew(std::size_t strays, std::size_t count) const {
@@ -133,6 +136,7 @@ class Candidates {
                             const Executor& executor);
     void measure_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity, bool is_new);
     void set_velocity(std::size_t row, const MeanFlow::At& flow);
+    void note_reach(double reach);
     MeanFlow::At flow_here(std::size_t row, Vec2 place) const;
     void begin_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
                     const Executor& executor);
@@ -166,7 +170,7 @@ class Candidates {
     double largest_reach_ = 0;  // m, of those that are renewed, and of all when the flow was followed last
     MeanFlow flow_;
     double since_flow_ = 0;  // s, that places have followed it
-    bool flows_ = false, flow_is_local_ = true;
+    bool may_flow_ = false, flows_ = false, flow_is_local_ = true;
     int failed_follows_ = 0, follows_left_out_ = 0;  // one after the other
     Column<std::int32_t> near_;
     double largest_radius_ = 0, smallest_radius_ = 0;

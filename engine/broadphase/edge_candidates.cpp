@@ -77,7 +77,7 @@ void EdgeCandidates<Real>::find(const WorldState<Real>& world, const Candidates<
     const Bodies<Real>& bodies = world.bodies;
     for (std::size_t row = 0; row < bodies.count; ++row)
         if ((bodies.flags_of(row) & kNotInGrid) == 0)
-            largest_reach = std::fmax(largest_reach, static_cast<double>(candidates.reach()[row]));
+            largest_reach = std::fmax(largest_reach, static_cast<double>(candidates.first_reach(row)));
     for (std::size_t i = 0; i < poses_.size(); ++i) {
         const EdgePose& pose = poses_[i];
         const EdgeBody& body = world.edges.bodies[i];
@@ -144,11 +144,11 @@ void EdgeCandidates<Real>::find_near_edge(const WorldState<Real>& world, const C
         for (std::size_t n = 0; n < found; ++n) {
             const auto row = static_cast<std::size_t>(near_[n]);
             if (bodies.is_immovable(row)) continue;
-            const Vec2 p{candidates.built_x()[row], candidates.built_y()[row]};
+            const Vec2 p{candidates.grid().built_x()[row], candidates.grid().built_y()[row]};
             const double share = nearest_share(p, a, b);
             // Each disc belongs to the piece it is nearest to.
             if (std::fmin(std::floor(share * pieces), pieces - 1) != piece) continue;
-            const double near = static_cast<double>(candidates.reach()[row]) + margin + rounding;
+            const double near = static_cast<double>(candidates.first_reach(row)) + margin + rounding;
             if (length_squared(p - point_at(a, b, share)) < near * near) pairs_.push_back({near_[n], number});
         }
     }

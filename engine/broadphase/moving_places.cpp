@@ -23,6 +23,10 @@ constexpr double kCellInReaches = 4;
 constexpr double kLargestStretch = 0.25;
 /// A flow is none if it carries nobody farther than this share of the smallest radius in a step.
 constexpr double kStill = 0.005;
+/// Where more bodies than one in so many stand still, there is no flow.
+constexpr std::size_t kBodiesPerImmovable = 32;
+/// Of where a place was before: with a stretch of 0.02 the last is off by 1e-10 of a margin.
+constexpr int kGuesses = 5;
 /// Of so many times that following the flow could save finding the pairs anew, one is used at least.
 constexpr int kMostLeftOut = 8;
 
@@ -43,14 +47,9 @@ bool takes_part(std::uint8_t flags) {
 template <class Real>
 void Candidates<Real>::measure_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
                                     bool is_new) {
-    largest_reach_ = 0;
-    for (std::size_t row = 0; row < bodies.count; ++row)
-        if (takes_part(bodies.flags_of(row)))
-            largest_reach_ =
-                std::max(largest_reach_, static_cast<double>(is_new ? bodies.radius[row] : reach_[row]));
-    if (is_new)
+    if (is_new)  // so large that the usual margins are within it
         flow_.lay_out(bodies.count, bodies.position_x.data(), bodies.position_y.data(),
-                      kCellInReaches * (largest_reach_ + smallest_radius_));
+                      kCellInReaches * (1 + kLargestOwnMargin) * largest_radius_);
     flow_.begin();
     const Vec2 fall = end.q * gravity;
     for (std::size_t row = 0; row < bodies.count; ++row) {
@@ -77,16 +76,27 @@ void Candidates<Real>::set_velocity(std::size_t row, const MeanFlow::At& flow) {
     rate_[row] = static_cast<Real>(flow_is_local_ ? flow.rate : flow_.most().rate);
 }
 
+/// What is known of the flow around a body says nothing of who is farther away than a cell: then all reaches
+/// shrink as where the flow closes most.
+template <class Real>
+void Candidates<Real>::note_reach(double reach) {
+    largest_reach_ = std::max(largest_reach_, reach);
+    if (!flows_ || !flow_is_local_ || flow_.side() >= kCellInReaches * reach) return;
+    flow_is_local_ = false;
+    std::fill(rate_.begin(), rate_.end(), static_cast<Real>(flow_.most().rate));
+}
+
 /// The flow at a place that bodies around it have reached by following it.
 template <class Real>
 MeanFlow::At Candidates<Real>::flow_here(std::size_t row, Vec2 place) const {
-    // The fields are over where places were when they were measured. What the second guess is off by is the
-    // square of a stretch times a margin: less than rounding.
-    const auto before = [&](const MeanFlow::At& flow) {
-        return place - flow.jump - since_flow_ * flow.velocity;
-    };
-    const Vec2 drifted{flow_x_[row], flow_y_[row]};
-    return flow_.at(before(flow_.at(place - since_flow_ * drifted)));
+    // The fields are over where places were when they were measured: each guess is better than the one before
+    // by the stretch.
+    Vec2 before = place - since_flow_ * Vec2{flow_x_[row], flow_y_[row]};
+    for (int guess = 0; guess < kGuesses; ++guess) {
+        const MeanFlow::At flow = flow_.at(before);
+        before = place - flow.jump - since_flow_ * flow.velocity;
+    }
+    return flow_.at(before);
 }
 
 /// To be called at the start of a step, before anything is asked about it.
@@ -122,7 +132,7 @@ template <class Real>
 bool Candidates<Real>::follow_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
                                    const Executor& executor) {
     // Where bodies whirl, each on its own, it is no use to try.
-    if (++follows_left_out_ < std::min(failed_follows_, kMostLeftOut)) return false;
+    if (!may_flow_ || ++follows_left_out_ < std::min(failed_follows_, kMostLeftOut)) return false;
     follows_left_out_ = 0, ++failed_follows_;
     measure_flow(bodies, end, gravity, false);
     const MeanFlow::Most& most = flow_.most();
@@ -130,7 +140,6 @@ bool Candidates<Real>::follow_flow(const Bodies<Real>& bodies, const FlightClock
     if (drift_left_ < 0 || most.stretch > kLargestStretch) return false;
     flows_ = true;
     const double since_flow = std::exchange(since_flow_, 0);
-    // A margin may have become larger since the cells were laid out.
     flow_is_local_ = flow_.side() >= kCellInReaches * largest_reach_;
     const Vec2 fall = end.q * gravity;
     // Whether the body is left outside of its margin.
@@ -178,11 +187,18 @@ void Candidates<Real>::begin_flow(const Bodies<Real>& bodies, const FlightClock&
         std::fill(column->begin(), column->end(), Real(0));
     }
     steepness_ = since_flow_ = 0, drift_left_ = largest_drift();
+    may_flow_ = flows_ = false;
+    if (bodies.count == 0) return;
     measure_flow(bodies, end, gravity, true);
     const MeanFlow::Most& most = flow_.most();
-    flows_ = end.s * most.speed > kStill * smallest_radius_ && end.s * most.rate < kLargestStretch &&
-             end.s * most.speed < drift_left_;
-    flow_is_local_ = true;
+    // What stands still is a stray in any flow.
+    std::size_t immovable = 0;
+    for (std::size_t row = 0; row < bodies.count && bodies.has_flags; ++row)
+        immovable += takes_part(bodies.flags_of(row)) && bodies.is_immovable(row);
+    may_flow_ = immovable * kBodiesPerImmovable <= bodies.count;
+    flows_ = may_flow_ && end.s * most.speed > kStill * smallest_radius_ &&
+             end.s * most.rate < kLargestStretch && end.s * most.speed < drift_left_;
+    flow_is_local_ = true, largest_reach_ = 0;
     if (!flows_) return;
     executor.for_each_chunk(
         bodies.count, kRowsPerChunk, kNanosecondsToBegin,
@@ -194,7 +210,9 @@ void Candidates<Real>::begin_flow(const Bodies<Real>& bodies, const FlightClock&
 
 template void Candidates<float>::measure_flow(const Bodies<float>&, const FlightClock&, Vec2, bool);
 template void Candidates<double>::measure_flow(const Bodies<double>&, const FlightClock&, Vec2, bool);
+template void Candidates<float>::note_reach(double);
 template MeanFlow::At Candidates<float>::flow_here(std::size_t, Vec2) const;
+template void Candidates<double>::note_reach(double);
 template MeanFlow::At Candidates<double>::flow_here(std::size_t, Vec2) const;
 template void Candidates<float>::set_velocity(std::size_t, const MeanFlow::At&);
 template void Candidates<double>::set_velocity(std::size_t, const MeanFlow::At&);

@@ -13,7 +13,6 @@ namespace {
 // docs/decisions/0012-threads-of-soft.md has the measurements.
 constexpr double kOwnSteps = 5;          // of a body, at its speed
 constexpr double kSmallestMargin = 0.1;  // of the smallest radius
-constexpr double kLargestMargin = 1;     // of the largest radius
 constexpr double kFewestSteps = 1.25;    // whatever the largest margin is
 constexpr double kFlowSteps = 0.7;       // of the flow around it, which changes
 
@@ -34,7 +33,7 @@ Real Candidates<Real>::own_reach(const Bodies<Real>& bodies, std::size_t row, co
     const Vec2 flow{flow_x_[row], flow_y_[row]};
     const Vec2 v = Vec2{bodies.velocity_x[row], bodies.velocity_y[row]} - flow;
     const double travel = std::sqrt(length_squared(v)) * end.s + fall;
-    const double most = std::max(kLargestMargin * largest_radius_, kFewestSteps * travel);
+    const double most = std::max(kLargestOwnMargin * largest_radius_, kFewestSteps * travel);
     const double wanted = kOwnSteps * travel + kFlowSteps * end.s * std::sqrt(length_squared(flow));
     const double margin = std::max(std::min(wanted, most), kSmallestMargin * smallest_radius_);
     return static_cast<Real>(static_cast<double>(bodies.radius[row]) + margin);
@@ -50,6 +49,7 @@ void Candidates<Real>::choose_own_margins(const Bodies<Real>& bodies, const Flig
                                 for (std::size_t row = first; row < last; ++row)
                                     reach_[row] = own_reach(bodies, row, end, fall);
                             });
+    for (std::size_t row = 0; row < bodies.count; ++row) note_reach(reach_[row]);
     own_x_ = bodies.position_x, own_y_ = bodies.position_y, first_reach_ = reach_;
     added_pairs_.clear();
     renewed_count_ = 0, farthest_ = 0;
@@ -76,7 +76,7 @@ void Candidates<Real>::renew_margins(const Bodies<Real>& bodies, const FlightClo
         const auto row = static_cast<std::size_t>(stray);
         Vec2 place{bodies.position_x[row], bodies.position_y[row]};
         if (flows_) {
-            set_velocity(row, flow_here(row, place));
+            set_velocity(row, flow_here(row, place + end.s * Vec2{flow_x_[row], flow_y_[row]}));
             place += end.s * Vec2{flow_x_[row], flow_y_[row]};
         }
         own_x_[row] = static_cast<Real>(place.x), own_y_[row] = static_cast<Real>(place.y);

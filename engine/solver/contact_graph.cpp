@@ -198,8 +198,8 @@ void ContactGraph<Real>::list_walls(const Candidates<Real>& candidates, const Bo
                                     const Walls& walls) {
     const auto drift = static_cast<Real>(candidates.largest_drift());
     for (std::size_t row = 0; row < bodies.count; ++row)
-        for_each_side(walls, bodies.position_x[row], bodies.position_y[row], candidates.reach()[row] + drift,
-                      [&](std::int32_t side) {
+        for_each_side(walls, bodies.position_x[row], bodies.position_y[row],
+                      candidates.first_reach(row) + drift, [&](std::int32_t side) {
                           if (bodies.is_immovable(row)) return;
                           listed_a_.push_back(static_cast<std::int32_t>(row));
                           listed_b_.push_back(side);

@@ -164,10 +164,10 @@ constexpr Golden kGolden[] = {
     {"falling sizes", 0x4fe0c9b61ea50e9c, 0xc84f698047eb650e},
     {"moving obstacles", 0x9450532e75523df8, 0x81f8d27062c9d725},
     {"stack at rest", 0xa436021f760768ad, 0xfd75b447dc578a50},
-    {"rough sizes", 0x2f181b44b0eb310d, 0x105e1c5b14b5c9c3},
-    {"rolling sizes", 0xf5403c9de911c8b, 0x4e1a4b194e63b643},
-    {"turning chain", 0x31ff46ebf3371af1, 0x765209921b5ba84e},
-    {"woken sleepers", 0x1d483821b5c08fef, 0x1101ebd719df23ab},
+    {"rough sizes", 0x5ea9ad82f08334b0, 0xcc47cb83d76a4ac7},
+    {"rolling sizes", 0x6a2119a0b42fb470, 0xaf53b9dd18101d0d},
+    {"turning chain", 0x366b32ab317fbfdd, 0xf1af324ac03210c},
+    {"woken sleepers", 0xe6351d54635fe2d6, 0xf4c6924621e2009},
 };
 
 }  // namespace
