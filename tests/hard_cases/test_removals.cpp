@@ -147,13 +147,13 @@ TEST_SUITE("hard cases/removals") {
         // that goes moves those around it, however many there are: a smaller pile moves more on the whole.
         double sum = 0;
         const int steps = scaled(60, 20);
-        constexpr unsigned kPiles = 4;
+        constexpr int kPiles = 4;
         std::size_t count = 0;
-        for (unsigned seed = 0; seed < kPiles; ++seed) {
+        for (int seed = 0; seed < kPiles; ++seed) {
             BasicWorld<Real> world(pile(scaled(50, 25), scaled(50, 25)), {.threads = 1});
             run(world, scaled(1000, 600));
             count = world.body_count();
-            std::mt19937 random(seed);
+            std::mt19937 random(static_cast<unsigned>(seed));
             for (int i = 0; i < steps; ++i) {
                 const BodyView<Real> bodies = world.bodies();
                 world.remove(bodies.id[random() % bodies.count]);
