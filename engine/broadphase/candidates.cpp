@@ -18,6 +18,7 @@ constexpr double kOwnMargin = 1.25;
 
 // Strays are looked up one by one while they are fewer than one body in this many.
 constexpr std::size_t kBodiesPerStray = 64;
+
 // Rows are sorted by place at the start and then this seldom: bodies drift slowly compared to steps. Columns
 // of fewer bodies fit into the first caches in any order; those of very many leave all caches, and disorder
 // is dearer.
@@ -127,7 +128,8 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
 template <class Real>
 std::size_t Candidates<Real>::bytes() const {
     return grid_.bytes() + stray_rows_.bytes() + reach_.bytes() + own_x_.bytes() + own_y_.bytes() +
-           first_reach_.bytes() + flow_x_.bytes() + flow_y_.bytes() + rate_.bytes() + flow_.bytes() +
+           first_reach_.bytes() + drift_x_.bytes() + drift_y_.bytes() + flow_x_.bytes() + flow_y_.bytes() +
+           rate_.bytes() + flow_.bytes() +
            (new_pairs_.capacity() + added_pairs_.capacity() + spare_pairs_.capacity()) * sizeof(Pair);
 }
 

@@ -68,10 +68,8 @@ void SoftSolver<Real>::find_supports(const WorldState<Real>& world, const EdgeCa
                 const auto [clearance, way] =
                     clearance_of_edge(world, edges, row, edge_of_support(support), dt_);
                 if (clearance > near_ + std::max(kCrowdedRadii * static_cast<double>(bodies.radius[row]),
-                                                 kBothAxes * way + dt_ * fall)) {
-                    candidates.normal_impulse[i] = 0;
+                                                 kBothAxes * way + dt_ * fall))
                     continue;
-                }
             }
             const SupportSurface s = is_edge_support(support)
                                          ? surface_of_edge(world, edges, row, edge_of_support(support), dt_)
