@@ -38,8 +38,8 @@ Scene with_container(const BenchScene& bench) {
 
 class CaromPeer : public Peer {
   public:
-    explicit CaromPeer(const BenchScene& bench)
-        : world_(with_container(bench), {.threads = 1}), bodies_(bench.scene.bodies.size()) {}
+    CaromPeer(const BenchScene& bench, int threads)
+        : world_(with_container(bench), {.threads = threads}), bodies_(bench.scene.bodies.size()) {}
 
     void step(double dt) override { world_.step(dt); }
 
@@ -53,24 +53,27 @@ class CaromPeer : public Peer {
     std::size_t bodies_;
 };
 
+template <int kThreads>
 std::unique_ptr<Peer> make(const BenchScene& scene, const PeerSettings&) {
-    return std::make_unique<CaromPeer>(scene);
+    return std::make_unique<CaromPeer>(scene, kThreads);
 }
 
 }  // namespace
 
-PeerEngine carom_engine() {
+PeerEngine carom_engine(bool on_two_threads) {
     const BuildInfo build = build_info();
     return {.family = "Carom",
-            .name = "Carom",
+            .name = on_two_threads ? "Carom, two threads" : "Carom",
             .version = std::string(build.version),
-            .settings = measure::joined(build.version, ", one thread, single precision, ", build.chosen,
+            .settings = measure::joined(build.version, on_two_threads ? ", two threads" : ", one thread",
+                                        ", single precision, ", build.chosen,
                                         ", the solver and the settings that the scene calls for"),
             .most_bodies = 100'000'000,
             .precision = Precision::single_,
             .substeps = {1},
             .iterations = {1},
-            .make = &make};
+            .threads = on_two_threads ? 2 : 1,
+            .make = on_two_threads ? &make<2> : &make<1>};
 }
 
 }  // namespace carom::bench

@@ -50,6 +50,7 @@ struct PeerEngine {
     Precision precision;
     std::vector<int> substeps;    ///< that a sweep takes; the default first
     std::vector<int> iterations;  ///< likewise
+    int threads = 1;
     /// @throws carom::Error, with the reason, if the engine cannot do the scene
     std::unique_ptr<Peer> (*make)(const BenchScene& scene, const PeerSettings& settings);
     /// Why its answer to a scene is another than ours by its own rules; empty if it is not.
@@ -65,7 +66,7 @@ struct MissingEngine {
 };
 std::vector<MissingEngine> missing_engines();
 
-PeerEngine carom_engine();
+PeerEngine carom_engine(bool on_two_threads = false);
 std::vector<PeerEngine> chipmunk_engines();
 PeerEngine box2d_2_engine();
 PeerEngine box2d_3_engine();

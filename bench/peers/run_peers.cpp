@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
 #include "measure/clocks.hpp"
 #include "measure/gas.hpp"
@@ -39,6 +40,7 @@ struct Entrant {
 std::vector<Entrant> enter(const BenchScene& scene, const std::function<void(const std::string&)>& progress) {
     std::vector<Entrant> entrants;
     std::vector<PeerEngine> engines{carom_engine()};  // ours first
+    if (std::thread::hardware_concurrency() > 1) engines.push_back(carom_engine(true));
     for (PeerEngine& engine : other_engines()) engines.push_back(std::move(engine));
     for (PeerEngine& engine : engines) {
         Entrant entrant{.engine = std::move(engine),
@@ -77,7 +79,8 @@ void take_turns(std::vector<Entrant>& entrants, measure::ContestOptions options)
     std::vector<Entrant*> running;
     for (Entrant& entrant : entrants)
         if (entrant.peer) {
-            contestants.push_back({entrant.engine.name, [&entrant] { entrant.step(); }});
+            contestants.push_back(
+                {entrant.engine.name, [&entrant] { entrant.step(); }, entrant.engine.threads > 1});
             running.push_back(&entrant);
         }
     if (running.empty()) return;
