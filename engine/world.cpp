@@ -221,7 +221,14 @@ template <class Real>
 void BasicWorld<Real>::step(double dt) {
     validate_dt(dt, "World::step");
     if (dt == 0) return;
-    carom::step(implementation_->sim, dt, implementation_->times);
+    Simulation<Real>& sim = implementation_->sim;
+    const auto step = [&] { carom::step(sim, dt, implementation_->times); };
+    const bool has_loops = sim.method == Solver::soft ? sim.soft.graph.groups.chunks > 1
+                                                      : sim.executor.is_parallel(sim.world.bodies.count);
+    if (has_loops)
+        sim.executor.with_team(step);
+    else
+        step();
 }
 
 template <class Real>

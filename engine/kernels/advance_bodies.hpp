@@ -35,12 +35,12 @@ void advance_bodies(const AdvanceBodies<Real>& k, std::size_t first, std::size_t
     const F h(k.h), half(Real(0.5));
     for (std::size_t row = first; row < last; row += Lanes::size) {
         auto v = Lanes::load_rows4(k.velocity + 4 * row, kConsecutive);
-        auto start = Lanes::load_rows4(k.start_velocity + 4 * row, kConsecutive);
+        const F start_x = Lanes::load(k.start.x + row), start_y = Lanes::load(k.start.y + row);
         auto moved = Lanes::load_rows2(k.displacement + 2 * row, kConsecutive);
         const F inverse_mass = v[3];
-        const F free_x = free.x(start[0], inverse_mass), free_y = free.y(start[1], inverse_mass);
-        const F change_x = v[0] - start[0], change_y = v[1] - start[1];
-        const F fall_x = free_x - start[0], fall_y = free_y - start[1];
+        const F free_x = free.x(start_x, inverse_mass), free_y = free.y(start_y, inverse_mass);
+        const F change_x = v[0] - start_x, change_y = v[1] - start_y;
+        const F fall_x = free_x - start_x, fall_y = free_y - start_y;
         const auto is_smooth = change_x * change_x + change_y * change_y <=
                                (fall_x * fall_x + fall_y * fall_y) * F(Real(1.0001));
         moved[0] += h * (v[0] - simd::select(is_smooth, half * change_x, F(0)));
@@ -48,11 +48,14 @@ void advance_bodies(const AdvanceBodies<Real>& k, std::size_t first, std::size_t
         Lanes::store_rows2(k.displacement + 2 * row, kConsecutive, moved);
         if constexpr (kTurns) Lanes::store(k.turn + row, Lanes::load(k.turn + row) + h * v[2]);
         if (k.is_last) continue;
-        Lanes::store_rows4(k.start_velocity + 4 * row, kConsecutive, v);
+        Lanes::store(k.start.x + row, v[0]), Lanes::store(k.start.y + row, v[1]);
         const F next_x = free.x(v[0], inverse_mass) + (v[0] - free_x);
         const F next_y = free.y(v[1], inverse_mass) + (v[1] - free_y);
-        if constexpr (kTurns)
-            v[2] = free.spin(v[2], inverse_mass) + (v[2] - free.spin(start[2], inverse_mass));
+        if constexpr (kTurns) {
+            const F start_rim = Lanes::load(k.start.rim + row);
+            Lanes::store(k.start.rim + row, v[2]);
+            v[2] = free.spin(v[2], inverse_mass) + (v[2] - free.spin(start_rim, inverse_mass));
+        }
         v[0] = simd::select(simd::abs(inverse_mass) > F(0), next_x, v[0]);
         v[1] = simd::select(simd::abs(inverse_mass) > F(0), next_y, v[1]);
         Lanes::store_rows4(k.velocity + 4 * row, kConsecutive, v);
@@ -75,7 +78,8 @@ void begin_substeps(const BeginSubsteps<Real>& k, std::size_t first, std::size_t
             Lanes::store(k.turn + row, F(0));
         }
         record[3] = k.inverse_mass ? Lanes::load(k.inverse_mass + row) : F(k.uniform_inverse_mass);
-        Lanes::store_rows4(k.start_velocity + 4 * row, kConsecutive, record);
+        Lanes::store(k.start.x + row, record[0]), Lanes::store(k.start.y + row, record[1]);
+        if constexpr (kTurns) Lanes::store(k.start.rim + row, record[2]);
         record[0] = free.x(record[0], record[3]);
         record[1] = free.y(record[1], record[3]);
         record[2] = free.spin(record[2], record[3]);

@@ -89,18 +89,25 @@ struct FindContacts {
     std::uint8_t* is_live;   // out, [last / kContactBlock]: whether a contact of the block can touch
 };
 
+/// Velocities at the start of a substep. Nobody asks for those of single bodies, so they are columns.
+template <class Real>
+struct StartColumns {
+    Real *x, *y;  // m/s
+    Real* rim;    // m/s, of the rim; null without rotation
+};
+
 /// The passage from the end of one substep to the start of the next, or to the end of the step.
 template <class Real>
 struct AdvanceBodies {
     Real* velocity;  // [rows][4], in: at the end of the substep; out: at the start of the next, foreseen
-    Real* start_velocity;  // [rows][4], in: at the start of the substep; out: of the next
-    Real* displacement;    // [rows][2]
-    Real* turn;            // m, rim displacement u t since the start of the step; null without rotation
-    Real h;                // s
-    Real gain_x, gain_y;   // m/s, what gravity adds in a substep
-    Real decay;            // velocity kept under drag in a substep
-    Real spin_decay;       // rim speed kept under angular drag
-    bool is_last;          // no next substep
+    StartColumns<Real> start;  // in: at the start of the substep; out: of the next
+    Real* displacement;        // [rows][2]
+    Real* turn;                // m, rim displacement u t since the start of the step; null without rotation
+    Real h;                    // s
+    Real gain_x, gain_y;       // m/s, what gravity adds in a substep
+    Real decay;                // velocity kept under drag in a substep
+    Real spin_decay;           // rim speed kept under angular drag
+    bool is_last;              // no next substep
 };
 
 /// Velocity and displacement records at the start of a step.
@@ -115,11 +122,11 @@ struct BeginSubsteps {
     Real gain_x, gain_y;  // m/s
     Real decay;
     Real spin_decay;
-    std::size_t count;     // rows at and beyond it are padding: all zero
-    Real* velocity;        // out
-    Real* start_velocity;  // out
-    Real* displacement;    // out
-    Real* turn;            // out, or null
+    std::size_t count;         // rows at and beyond it are padding: all zero
+    Real* velocity;            // out
+    StartColumns<Real> start;  // out
+    Real* displacement;        // out
+    Real* turn;                // out, or null
 };
 
 /// Positions and velocities back into the columns.

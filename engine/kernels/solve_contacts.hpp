@@ -145,7 +145,8 @@ void note_restless(const SolveContacts<Real>& k, std::size_t c, typename Lanes::
 
 /// Pairs of bodies that both move. kFirst: the first sweep of a substep.
 template <unsigned kVariant, bool kFirst, class Real, class Isa>
-void solve_pairs(const SolveContacts<Real>& k, std::size_t first, std::size_t last) {
+void solve_pairs(const SolveContacts<Real>& arguments, std::size_t first, std::size_t last) {
+    const SolveContacts<Real> k = arguments;  // a copy: no store can change it
     using Lanes = simd::Lanes<Real, Isa>;
     using F = typename Lanes::Batch;
     for (std::size_t c = first; c < last; c += Lanes::size) {
@@ -212,7 +213,8 @@ void solve_pairs(const SolveContacts<Real>& k, std::size_t first, std::size_t la
 /// Bodies against what nothing moves: walls, static and kinematic bodies. Their surface moves at a steady
 /// velocity through the step.
 template <unsigned kVariant, bool kFirst, class Real, class Isa>
-void solve_supports(const SolveContacts<Real>& k, std::size_t first, std::size_t last) {
+void solve_supports(const SolveContacts<Real>& arguments, std::size_t first, std::size_t last) {
+    const SolveContacts<Real> k = arguments;  // a copy: no store can change it
     using Lanes = simd::Lanes<Real, Isa>;
     using F = typename Lanes::Batch;
     for (std::size_t c = first; c < last; c += Lanes::size) {
@@ -270,7 +272,8 @@ void solve_supports(const SolveContacts<Real>& k, std::size_t first, std::size_t
 
 /// Gives the bodies the impulses that their contacts had at the end of the step before.
 template <unsigned kVariant, class Real, class Isa>
-void warm_start_pairs(const SolveContacts<Real>& k, std::size_t first, std::size_t last) {
+void warm_start_pairs(const SolveContacts<Real>& arguments, std::size_t first, std::size_t last) {
+    const SolveContacts<Real> k = arguments;  // a copy: no store can change it
     using Lanes = simd::Lanes<Real, Isa>;
     using F = typename Lanes::Batch;
     for (std::size_t c = first; c < last; c += Lanes::size) {
@@ -293,7 +296,8 @@ void warm_start_pairs(const SolveContacts<Real>& k, std::size_t first, std::size
 }
 
 template <unsigned kVariant, class Real, class Isa>
-void warm_start_supports(const SolveContacts<Real>& k, std::size_t first, std::size_t last) {
+void warm_start_supports(const SolveContacts<Real>& arguments, std::size_t first, std::size_t last) {
+    const SolveContacts<Real> k = arguments;  // a copy: no store can change it
     using Lanes = simd::Lanes<Real, Isa>;
     using F = typename Lanes::Batch;
     for (std::size_t c = first; c < last; c += Lanes::size) {

@@ -5,8 +5,10 @@
 #endif
 
 #include <algorithm>
-#include <chrono>
+#include <exception>
 #include <utility>
+
+#include "parallel/waiting.hpp"
 
 namespace carom {
 namespace {
@@ -18,10 +20,6 @@ constexpr double kLongestWait = 100e-6;  // s, waking threads and small differen
 constexpr double kLongestWaitOfWork = 4;
 constexpr int kFewestLoopsAlone = 64;
 constexpr int kMostLoopsAlone = 4096;
-
-double seconds_now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 int usable_threads(int wanted, bool embedding_program_has_threads) {
     if (embedding_program_has_threads) return wanted;
@@ -38,38 +36,93 @@ Executor::Executor(int threads, ParallelFor parallel_for)
     : threads_(usable_threads(threads, static_cast<bool>(parallel_for))),
       parallel_for_(std::move(parallel_for)) {}
 
+/// Whether the machine has been too busy of late for more than one thread.
+bool Executor::is_left_alone() const {
+    if (loops_alone_ == 0) return false;
+    --loops_alone_;
+    return true;
+}
+
+/// @param waited, worked  s, of the caller's thread in one loop
+void Executor::note_wait(double waited, double worked) const {
+    const bool too_long = waited > kLongestWait + kLongestWaitOfWork * worked;
+    loops_next_time_ = too_long ? std::min(2 * loops_next_time_, kMostLoopsAlone)
+                                : std::max(loops_next_time_ / 2, kFewestLoopsAlone);
+    if (too_long) loops_alone_ = loops_next_time_;
+}
+
+void Executor::gather_team(TeamCall work) const {
+#if defined(_OPENMP)
+    team_.gather(static_cast<std::size_t>(threads_));
+    std::exception_ptr error;
+#pragma omp parallel num_threads(threads_)
+    {
+        const auto thread = static_cast<std::size_t>(omp_get_thread_num());
+        if (thread > 0) {
+            team_.stand_by(thread);
+        } else {
+            team_.begin(static_cast<std::size_t>(omp_get_num_threads()));
+            try {
+                work.invoke(work.function);
+            } catch (...) {
+                error = std::current_exception();
+            }
+            team_.dismiss();
+        }
+    }
+    if (error) std::rethrow_exception(error);
+#else
+    work.invoke(work.function);
+#endif
+}
+
+/// On all threads, those of the team if there is one.
+/// @return s, that the caller's thread has waited for the others
+double Executor::run_on_threads(int threads, const Team::Call& call) const {
+    if (team_.threads() > 0) return team_.run(call);
+    double end = 0;
+#if defined(_OPENMP)
+#pragma omp parallel num_threads(threads)
+    {
+        call.invoke(call.function, static_cast<std::size_t>(omp_get_thread_num()),
+                    static_cast<std::size_t>(omp_get_num_threads()));
+#pragma omp master
+        end = seconds_now();
+    }
+#endif
+    return seconds_now() - end;
+}
+
 void Executor::run(std::size_t chunks, Call call) const {
     if (parallel_for_) {
         parallel_for_(chunks, [call](std::size_t c) { call.invoke(call.function, c); });
         return;
     }
-    const auto run_alone = [&] {
+    if (threads_ < 2 || is_left_alone()) {
         for (std::size_t c = 0; c < chunks; ++c) call.invoke(call.function, c);
-    };
-#if defined(_OPENMP)
-    if (loops_alone_ > 0) {
-        --loops_alone_;
-        run_alone();
         return;
     }
-    const auto count = static_cast<std::ptrdiff_t>(chunks);
+    const auto share = [call, chunks](std::size_t thread, std::size_t threads) {
+        for (std::size_t c = thread * chunks / threads; c < (thread + 1) * chunks / threads; ++c)
+            call.invoke(call.function, c);
+    };
     const double start = seconds_now();
-    double own_end = start;
-#pragma omp parallel num_threads(threads_)
-    {
-#pragma omp for schedule(static) nowait
-        for (std::ptrdiff_t c = 0; c < count; ++c) call.invoke(call.function, static_cast<std::size_t>(c));
-#pragma omp master
-        own_end = seconds_now();
-    }
-    const double waited = seconds_now() - own_end;
-    const bool too_long = waited > kLongestWait + kLongestWaitOfWork * (own_end - start);
-    loops_next_time_ = too_long ? std::min(2 * loops_next_time_, kMostLoopsAlone)
-                                : std::max(loops_next_time_ / 2, kFewestLoopsAlone);
-    if (too_long) loops_alone_ = loops_next_time_;
-#else
-    run_alone();
-#endif
+    const double waited = run_on_threads(threads_, team_call(share));
+    note_wait(waited, seconds_now() - start - waited);
+}
+
+bool Executor::run_phases(std::span<const PhaseKind> phases, std::size_t tasks, PhaseCall call) const {
+    if (threads_ < 2 || is_left_alone()) return false;
+    const std::size_t most = std::min(static_cast<std::size_t>(threads_), tasks);
+    phases_.begin(most, phases);
+    const auto task = [call](std::size_t phase, std::size_t t) { call.invoke(call.function, phase, t); };
+    const auto share = [&](std::size_t thread, std::size_t threads) {
+        if (thread < most) phases_.work(thread, std::min(threads, most), tasks, task);
+    };
+    const double start = seconds_now();
+    const double waited = run_on_threads(static_cast<int>(most), team_call(share)) + phases_.waited();
+    note_wait(waited, seconds_now() - start - waited);
+    return true;
 }
 
 }  // namespace carom

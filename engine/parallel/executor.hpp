@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <span>
+
+#include "parallel/phases.hpp"
+#include "parallel/team.hpp"
 
 namespace carom {
 
@@ -62,6 +66,33 @@ class Executor {
         });
     }
 
+    /// Calls fn(phase, task) for every task of every phase. Tasks that depend on each other by the kinds of
+    /// their phases run in the order of the phases; others must not write what one of them reads or writes.
+    /// @param tasks  of each phase that is side by side
+    /// @param nanoseconds  about what all of it takes on one thread: short work stays on it
+    template <class Fn>
+    void for_each_phase(std::span<const PhaseKind> phases, std::size_t tasks, double nanoseconds,
+                        const Fn& fn) const {
+        // (An embedding program's threads cannot wait for each other.)
+        if (tasks > 1 && nanoseconds >= kShortestParallelLoop && has_threads() && !parallel_for_ &&
+            run_phases(phases, tasks, {&fn, [](const void* call, std::size_t phase, std::size_t task) {
+                                           (*static_cast<const Fn*>(call))(phase, task);
+                                       }}))
+            return;
+        const double share = nanoseconds / static_cast<double>(phases.size());
+        for (std::size_t phase = 0; phase < phases.size(); ++phase) {
+            const std::size_t count = phases[phase] == PhaseKind::alone ? 1 : tasks;
+            for_each_task(count, share, [&](std::size_t task) { fn(phase, task); });
+        }
+    }
+
+    /// Calls work(), whose loops then cost less: the other threads stand by for them all the while.
+    template <class Work>
+    void with_team(const Work& work) const {
+        if (threads_ < 2 || parallel_for_ || loops_alone_ > 0 || team_.threads() > 0) return work();
+        gather_team({&work, [](const void* call) { (*static_cast<const Work*>(call))(); }});
+    }
+
     /// Whether for_each_chunk would use more than the caller's thread.
     bool is_parallel(std::size_t rows) const noexcept {
         return rows >= kSmallestParallelRows && has_threads();
@@ -74,11 +105,33 @@ class Executor {
         void (*invoke)(const void*, std::size_t);
     };
     void run(std::size_t chunks, Call call) const;
+    struct PhaseCall {
+        const void* function;
+        void (*invoke)(const void*, std::size_t, std::size_t);
+    };
+    /// @return false if the machine is too busy for more than one thread: then nothing is done
+    bool run_phases(std::span<const PhaseKind> phases, std::size_t tasks, PhaseCall call) const;
+    struct TeamCall {
+        const void* function;
+        void (*invoke)(const void*);
+    };
+    void gather_team(TeamCall work) const;
+    template <class Fn>
+    static Team::Call team_call(const Fn& fn) {
+        return {&fn, [](const void* call, std::size_t thread, std::size_t threads) {
+                    (*static_cast<const Fn*>(call))(thread, threads);
+                }};
+    }
+    double run_on_threads(int threads, const Team::Call& call) const;
+    bool is_left_alone() const;
+    void note_wait(double waited, double worked) const;
 
     int threads_;  // 0: the embedding program knows
     ParallelFor parallel_for_;
     mutable int loops_alone_ = 0;       // that still run on one thread, because the machine is busy
     mutable int loops_next_time_ = 32;  // half of what the first wait that is too long costs
+    mutable Phases phases_;
+    mutable Team team_;
 };
 
 }  // namespace carom

@@ -15,6 +15,7 @@ namespace carom {
 ///   part 1, task t:  inside chunk 2t, across 2t | 2t+1, inside 2t+1
 ///   part 2, task t:  across 2t-1 | 2t, supports of 2t-1 and of 2t
 ///
+/// and a task shares bodies with tasks t-1, t and t+1 of the part before at most.
 /// What is left, contacts of chunks that are no neighbours, is far: solved alone between the two. The groups
 /// depend on rows and pairs, never on threads.
 struct ContactGroups {
@@ -47,8 +48,8 @@ struct ContactGroups {
     // Groups of supports: one a chunk, and one for those that found no colour.
     std::size_t support_count() const { return chunks + 1; }
 
-    std::size_t tasks_of_part_1() const { return (chunks + 1) / 2; }
-    std::size_t tasks_of_part_2() const { return chunks / 2 + 1; }
+    /// Of each part; the first or the last of them can be empty in one.
+    std::size_t tasks() const { return chunks / 2 + 1; }
 
   private:
     // With l bits for rows_per_chunk the reciprocal, rounded up, is too large by less than 2^l / 2^shift;

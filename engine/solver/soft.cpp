@@ -1,6 +1,7 @@
 #include "solver/soft.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -32,7 +33,7 @@ static_assert(kContactBlock == kRowPadding);
 // ns a contact on one thread, for the executor: docs/decisions/0012-threads-of-soft.md.
 constexpr double kNanosecondsToFind = 3, kNanosecondsToSweep = 2;
 constexpr double kNanosecondsToBegin = 0.7, kNanosecondsToAdvance = 1;  // a body
-constexpr std::size_t kSoftRowsPerChunk = 1024;                         // records of 24 KiB
+constexpr std::size_t kRowsPerTask = 1024;                              // where there is but one group
 
 }  // namespace
 
@@ -56,6 +57,16 @@ void SoftSolver<Real>::derive_masses(const Bodies<Real>& bodies) {
     are_masses_uneven_ = lightest > UnevenContacts<Real>::kUneven * heaviest;
     uneven_.clear();
     masses_are_known_ = true;
+}
+
+template <class Real>
+StartColumns<Real> SoftSolver<Real>::start_columns() {
+    return {start_x_.data(), start_y_.data(), turns_ ? start_rim_.data() : nullptr};
+}
+
+template <class Real>
+std::size_t SoftSolver<Real>::rows_per_task() const {
+    return graph.groups.chunks > 1 ? graph.groups.rows_per_chunk : kRowsPerTask;
 }
 
 template <class Real>
@@ -86,8 +97,9 @@ void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Colum
 
     // Beyond the bodies a record for the padding of each group, so that no two tasks write to the same.
     const std::size_t rows = padded(count_ + ContactGraph<Real>::padding_rows(graph.groups));
-    velocity_.resize(4 * rows), start_velocity_.resize(4 * rows), displacement_.resize(2 * rows);
+    velocity_.resize(4 * rows), displacement_.resize(2 * rows);
     turn_.resize(turns_ ? rows : 0);
+    start_x_.resize(rows), start_y_.resize(rows), start_rim_.resize(turns_ ? rows : 0);
     const auto real = [](double value) { return static_cast<Real>(value); };
     BeginSubsteps<Real> k{};
     k.motion = motion.data();
@@ -97,14 +109,16 @@ void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Colum
     k.uniform_inverse_mass = count_ > 0 ? real(bodies.inverse_mass(0)) : Real(0);
     k.gain_x = real(gain_.x), k.gain_y = real(gain_.y), k.decay = real(decay_),
     k.spin_decay = real(spin_decay_);
-    k.velocity = velocity_.data(), k.start_velocity = start_velocity_.data();
+    k.velocity = velocity_.data(), k.start = start_columns();
     k.displacement = displacement_.data(), k.turn = turns_ ? turn_.data() : nullptr;
     const auto kernel = kernels.begin_substeps[turns_ ? 1 : 0];
     executor.for_each_chunk(
-        count_, kSoftRowsPerChunk, kNanosecondsToBegin,
+        count_, rows_per_task(), kNanosecondsToBegin,
         [&](std::size_t, std::size_t first, std::size_t last) { kernel(k, first, padded(last)); });
-    for (Column<Real>* records : {&velocity_, &start_velocity_})  // padding must not fall
-        std::fill(records->data() + 4 * count_, records->data() + 4 * rows, Real(0));
+    // Padding must not fall.
+    std::fill(velocity_.data() + 4 * count_, velocity_.data() + 4 * rows, Real(0));
+    for (Column<Real>* column : {&start_x_, &start_y_, &start_rim_})
+        if (!column->empty()) std::fill(column->data() + count_, column->data() + rows, Real(0));
     elapsed_ = 0;
 }
 
@@ -235,60 +249,85 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const Candid
         std::accumulate(pairs_.live_count.begin(), pairs_.live_count.end(), supports_.contacts()));
     counters.colours = static_cast<std::int64_t>(pairs_.count.size());
     counters.overflow = static_cast<std::int64_t>(pairs_.overflow());
-    sweep({contact_kernels().warm_start_pairs, arguments(pairs_)},
-          {contact_kernels().warm_start_supports, arguments(supports_)});
+    const Sweep warm_start{contact_kernels().warm_start_pairs, contact_kernels().warm_start_supports};
+    sweep({&warm_start, 1}, arguments(pairs_), arguments(supports_));
 }
 
 /// One colour after the other. Within a batch no two contacts share a body that moves, so a whole run of
 /// colours is one call, and may be cut anywhere: to leave out the blocks that the first sweep found calm.
 template <class Real>
-void SoftSolver<Real>::sweep_pairs(std::size_t group, const Sweep& sweep) const {
-    const typename LiveContacts<Real>::Run* run =
-        pairs_.run.data() + pairs_.first_place(group) / kContactBlock;
-    if (!sweep.only_restless) {
+void SoftSolver<Real>::sweep_pairs(std::size_t group, const Sweep& sweep,
+                                   const SolveContacts<Real>& on_pairs) {
+    const std::size_t first = pairs_.first_place(group) / kContactBlock,
+                      last = pairs_.first_place(group + 1) / kContactBlock;
+    const typename LiveContacts<Real>::Run* run = pairs_.run.data() + first;
+    std::uint8_t* is_restless = pairs_.is_restless.data();
+    if (sweep.blocks == Sweep::Blocks::all_and_mark)
+        std::fill(is_restless + first, is_restless + last, std::uint8_t{0});
+    if (sweep.blocks != Sweep::Blocks::restless) {
         for (std::size_t i = 0; i < pairs_.run_count[group]; ++i)
-            sweep.kernel(sweep.arguments, kContactBlock * run[i].first, kContactBlock * run[i].last);
+            sweep.pair_kernel(on_pairs, kContactBlock * run[i].first, kContactBlock * run[i].last);
         return;
     }
-    const std::uint8_t* is_restless = pairs_.is_restless.data();
     for (std::size_t i = 0; i < pairs_.run_count[group]; ++i)
         for (std::size_t block = run[i].first; block < run[i].last; ++block) {
-            const std::size_t first = block;
+            const std::size_t begin = block;
             while (block < run[i].last && is_restless[block]) ++block;
-            if (block > first) sweep.kernel(sweep.arguments, kContactBlock * first, kContactBlock * block);
+            if (block > begin) sweep.pair_kernel(on_pairs, kContactBlock * begin, kContactBlock * block);
         }
 }
 
 template <class Real>
-void SoftSolver<Real>::sweep_supports(std::size_t group, const Sweep& sweep) const {
+void SoftSolver<Real>::sweep_supports(std::size_t group, const Sweep& sweep,
+                                      const SolveContacts<Real>& on_supports) const {
     for (std::size_t c = graph.supports.first_colour[group]; c < graph.supports.first_colour[group + 1]; ++c)
-        sweep.kernel(sweep.arguments, supports_.begin[c], supports_.begin[c] + supports_.length(c));
+        sweep.support_kernel(on_supports, supports_.begin[c], supports_.begin[c] + supports_.length(c));
 }
 
-/// All contacts once, in the order that contact_groups.hpp explains.
+/// All contacts once a sweep, in the order that contact_groups.hpp explains.
 template <class Real>
-void SoftSolver<Real>::sweep(const Sweep& over_pairs, const Sweep& over_supports) {
+void SoftSolver<Real>::sweep(std::span<const Sweep> sweeps, const SolveContacts<Real>& on_pairs,
+                             const SolveContacts<Real>& on_supports) {
+    using Kind = typename SweepPart::Kind;
     const ContactGroups& groups = graph.groups;
+    const bool any_far = pairs_.run_count[groups.far()] > 0,
+               any_crowded = graph.supports.first_colour[groups.chunks] <
+                             graph.supports.first_colour[groups.chunks + 1];
+    sweep_parts_.clear(), sweep_phases_.clear();
+    const auto add_part = [&](Kind kind, const Sweep& sweep, PhaseKind phase) {
+        sweep_parts_.push_back({kind, &sweep}), sweep_phases_.push_back(phase);
+    };
+    for (const Sweep& sweep : sweeps)
+        for (int i = 0; i < sweep.times; ++i) {
+            add_part(Kind::chunks, sweep, PhaseKind::side_by_side);
+            if (any_far) add_part(Kind::far, sweep, PhaseKind::alone);
+            add_part(Kind::borders, sweep, PhaseKind::side_by_side);
+            if (any_crowded) add_part(Kind::crowded_supports, sweep, PhaseKind::alone);
+        }
     const double work = kNanosecondsToSweep * static_cast<double>(counters.contacts);
-    const auto pair_group = [&](std::size_t group) { sweep_pairs(group, over_pairs); };
-    const auto support_group = [&](std::size_t group) { sweep_supports(group, over_supports); };
-    executor_->for_each_task(groups.tasks_of_part_1(), work, [&](std::size_t task) {
+    const auto run = [&](std::size_t phase, std::size_t task) {
+        const Sweep& sweep = *sweep_parts_[phase].sweep;
+        const Kind kind = sweep_parts_[phase].kind;
+        const auto pair_group = [&](std::size_t group) { sweep_pairs(group, sweep, on_pairs); };
+        const auto support_group = [&](std::size_t group) { sweep_supports(group, sweep, on_supports); };
         const std::size_t chunk = 2 * task;
-        pair_group(ContactGroups::inside(chunk));
-        if (!groups.has_border(chunk)) return;
-        pair_group(ContactGroups::across(chunk));
-        pair_group(ContactGroups::inside(chunk + 1));
-    });
-    pair_group(groups.far());
-    executor_->for_each_task(groups.tasks_of_part_2(), work / 4, [&](std::size_t task) {
-        const std::size_t chunk = 2 * task;
+        if (kind == Kind::far) return pair_group(groups.far());
+        if (kind == Kind::crowded_supports) return support_group(groups.chunks);
+        if (kind == Kind::chunks) {
+            if (chunk >= groups.chunks) return;
+            pair_group(ContactGroups::inside(chunk));
+            if (!groups.has_border(chunk)) return;
+            pair_group(ContactGroups::across(chunk));
+            pair_group(ContactGroups::inside(chunk + 1));
+            return;
+        }
         if (chunk > 0) {
             if (groups.has_border(chunk - 1)) pair_group(ContactGroups::across(chunk - 1));
             support_group(chunk - 1);
         }
         if (chunk < groups.chunks) support_group(chunk);
-    });
-    support_group(groups.chunks);
+    };
+    executor_->for_each_phase(sweep_phases_, groups.tasks(), work * static_cast<double>(sweeps.size()), run);
 }
 
 template <class Real>
@@ -298,12 +337,13 @@ void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
     SolveContacts<Real> on_supports = arguments(supports_), on_pairs = arguments(pairs_);
     if (number == 0)  // what contacts hold is of the step before
         on_supports.contacts.largest_impulse = on_pairs.contacts.largest_impulse = nullptr;
-    std::fill(pairs_.is_restless.begin(), pairs_.is_restless.end(), std::uint8_t{0});
-    sweep({kernels.first_pairs, on_pairs}, {kernels.first_supports, on_supports});
     const bool starts_anew = number == 0 && !are_impulses_known_;
     const bool only_restless = !starts_anew && !is_last && !is_unloaded_;
-    for (int i = 0; i < (starts_anew ? kFirstSweeps : 1); ++i)
-        sweep({kernels.next_pairs, on_pairs, only_restless}, {kernels.next_supports, on_supports});
+    const std::array sweeps{
+        Sweep{kernels.first_pairs, kernels.first_supports, Sweep::Blocks::all_and_mark},
+        Sweep{kernels.next_pairs, kernels.next_supports,
+              only_restless ? Sweep::Blocks::restless : Sweep::Blocks::all, starts_anew ? kFirstSweeps : 1}};
+    sweep(sweeps, on_pairs, on_supports);
     uneven_.solve(on_pairs, on_supports, std::sqrt(length_squared(gain_)));
 }
 
@@ -311,13 +351,13 @@ template <class Real>
 void SoftSolver<Real>::advance_bodies(bool is_last) {
     const auto real = [](double value) { return static_cast<Real>(value); };
     AdvanceBodies<Real> k{};
-    k.velocity = velocity_.data(), k.start_velocity = start_velocity_.data();
+    k.velocity = velocity_.data(), k.start = start_columns();
     k.displacement = displacement_.data(), k.turn = turns_ ? turn_.data() : nullptr;
     k.h = real(h_), k.gain_x = real(gain_.x), k.gain_y = real(gain_.y);
     k.decay = real(decay_), k.spin_decay = real(spin_decay_), k.is_last = is_last;
     const auto kernel = kernels_->advance_bodies[turns_ ? 1 : 0];
     executor_->for_each_chunk(
-        count_, kSoftRowsPerChunk, kNanosecondsToAdvance,
+        count_, rows_per_task(), kNanosecondsToAdvance,
         [&](std::size_t, std::size_t first, std::size_t last) { kernel(k, first, padded(last)); });
 }
 
@@ -353,9 +393,9 @@ void SoftSolver<Real>::end_substeps(Bodies<Real>& bodies, std::vector<std::int32
     k.angular_velocity = turns_ ? bodies.angular_velocity.data() : nullptr;
     k.largest_position = static_cast<Real>(kLargestPosition);
     k.largest_speed = static_cast<Real>(kLargestSpeed);
-    lost_rows_.prepare(count_, kSoftRowsPerChunk);
+    lost_rows_.prepare(count_, rows_per_task());
     const auto kernel = kernels_->end_substeps[turns_ ? 1 : 0];
-    executor_->for_each_chunk(count_, kSoftRowsPerChunk, kNanosecondsToBegin,
+    executor_->for_each_chunk(count_, rows_per_task(), kNanosecondsToBegin,
                               [&](std::size_t chunk, std::size_t first, std::size_t last) {
                                   EndSubsteps<Real> part = k;
                                   part.lost = lost_rows_.part(chunk);
@@ -368,8 +408,8 @@ void SoftSolver<Real>::end_substeps(Bodies<Real>& bodies, std::vector<std::int32
 template <class Real>
 std::size_t SoftSolver<Real>::bytes() const {
     return graph.bytes() + pairs_.bytes() + supports_.bytes() + inverse_mass_.bytes() + velocity_.bytes() +
-           start_velocity_.bytes() + displacement_.bytes() + turn_.bytes() + unloading_.bytes() +
-           uneven_.bytes();
+           start_x_.bytes() + start_y_.bytes() + start_rim_.bytes() + displacement_.bytes() + turn_.bytes() +
+           unloading_.bytes() + uneven_.bytes();
 }
 
 template class SoftSolver<float>;

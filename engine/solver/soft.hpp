@@ -2,6 +2,7 @@
 
 #include <carom/ledger.hpp>
 
+#include <span>
 #include <vector>
 
 #include "isa/kernel_table.hpp"
@@ -86,14 +87,24 @@ class SoftSolver {
     /// Length of the substep that the impulses of contacts belong to [s].
     double substep_of_impulses() const { return impulses_of_h_; }
 
+    /// How loops over bodies are cut: a thread then gets the bodies that it has in its cache from the sweeps.
+    std::size_t rows_per_task() const;
+
     std::size_t bytes() const;
 
   private:
-    /// What a sweep does to each contact of a kind.
+    using ContactKernel = void (*)(const SolveContacts<Real>&, std::size_t, std::size_t);
+    /// What a sweep does to each contact.
     struct Sweep {
-        void (*kernel)(const SolveContacts<Real>&, std::size_t, std::size_t);
-        SolveContacts<Real> arguments;
-        bool only_restless = false;  // pairs whose block the first sweep marked
+        ContactKernel pair_kernel, support_kernel;
+        /// Of pairs: those alone whose block is marked, or all, to mark them anew.
+        enum class Blocks { all, all_and_mark, restless } blocks = Blocks::all;
+        int times = 1;
+    };
+    /// What sweeps are cut into for threads: `kind` of sweep `sweep`.
+    struct SweepPart {
+        enum class Kind { chunks, far, borders, crowded_supports } kind;
+        const Sweep* sweep;
     };
     /// What a body felt from an edge that it has left.
     struct LeftEdge {
@@ -119,14 +130,18 @@ class SoftSolver {
     void describe_group(const Bodies<Real>& bodies, std::size_t group);
     void list_runs(std::size_t group);
     void find_supports(const WorldState<Real>& world, const EdgeCandidates<Real>& edges);
+    void find_supports_of(std::size_t group, const WorldState<Real>& world,
+                          const EdgeCandidates<Real>& edges);
     void add_support(const SupportSurface& surface, std::size_t candidate, std::size_t at,
                      const WorldState<Real>& world);
-    void note_left_edge(std::size_t candidate, const WorldState<Real>& world);
+    void note_left_edge(std::size_t candidate, std::size_t group, const WorldState<Real>& world);
     void hand_on_impulses(const WorldState<Real>& world);
     SolveContacts<Real> arguments(LiveContacts<Real>& live);
-    void sweep(const Sweep& over_pairs, const Sweep& over_supports);
-    void sweep_pairs(std::size_t group, const Sweep& sweep) const;
-    void sweep_supports(std::size_t group, const Sweep& sweep) const;
+    StartColumns<Real> start_columns();
+    void sweep(std::span<const Sweep> sweeps, const SolveContacts<Real>& on_pairs,
+               const SolveContacts<Real>& on_supports);
+    void sweep_pairs(std::size_t group, const Sweep& sweep, const SolveContacts<Real>& on_pairs);
+    void sweep_supports(std::size_t group, const Sweep& sweep, const SolveContacts<Real>& on_supports) const;
     /// Row that the padding of a group of supports names.
     std::int32_t padding_row_of_supports(std::size_t group) const {
         return static_cast<std::int32_t>(count_ + graph.groups.count() + group);
@@ -139,8 +154,10 @@ class SoftSolver {
     void bounce();
     void book_bounces(Books& books) const;
     struct Impulses;
-    void book_pairs(const Impulses& impulses, const Column<Real>& from, Books& books) const;
-    void book_supports(const Impulses& impulses, const Column<Real>& from, Books& books) const;
+    template <class From>
+    void book_pairs(const Impulses& impulses, const From& from, Books& books) const;
+    template <class From>
+    void book_supports(const Impulses& impulses, const From& from, Books& books) const;
     void book_free_flight(const WorldState<Real>& world, Books& books);
     double change_of_bounces(LiveContacts<Real>& live) const;
 
@@ -159,13 +176,17 @@ class SoftSolver {
     bool masses_vary_ = false, are_masses_uneven_ = false;
     Column<Real> inverse_mass_;  // signed as in the records
 
-    Column<Real> velocity_, start_velocity_, displacement_, turn_;
+    Column<Real> velocity_, displacement_, turn_;
+    Column<Real> start_x_, start_y_, start_rim_;  // velocities at the start of the substep
     LiveContacts<Real> pairs_, supports_;
+    std::vector<SweepPart> sweep_parts_;  // of the sweeps of now
+    std::vector<PhaseKind> sweep_phases_;
     // Of the graph whose pairs' masses and reaches are known.
     std::int64_t described_version_ = -1, described_renewal_ = -1;
-    std::vector<LeftEdge> left_edges_;   // of this step
-    std::vector<Passed> passed_;         // likewise
-    std::vector<std::int32_t> strayed_;  // rows that have left their margins in this step
+    std::vector<LeftEdge> left_edges_;                  // of this step
+    std::vector<std::vector<LeftEdge>> left_edges_of_;  // a group of supports
+    std::vector<Passed> passed_;                        // likewise
+    std::vector<std::int32_t> strayed_;                 // rows that have left their margins in this step
     ChunkedList lost_rows_;
     double impulses_of_h_ = 0;  // s, substep of the candidates' impulses; 0 = there are none
     bool are_impulses_known_ = false;

@@ -18,13 +18,32 @@ struct MeanTwice {
     double rim;
 };
 
+/// Velocity and rim speed of a row.
+struct Moves {
+    Vec2 v;
+    double rim;
+};
+
 template <class Real>
-MeanTwice mean_twice(const Column<Real>& from, const Column<Real>& to, std::int32_t row) {
-    const auto i = 4 * static_cast<std::size_t>(row);
-    const auto sum = [&](std::size_t k) {
-        return static_cast<double>(from[i + k]) + static_cast<double>(to[i + k]);
+Moves of_record(const Column<Real>& records, std::size_t row) {
+    const auto value = [&](std::size_t k) { return static_cast<double>(records[4 * row + k]); };
+    return {{value(0), value(1)}, value(2)};
+}
+
+template <class From, class Real>
+MeanTwice mean_twice(const From& from, const Column<Real>& to, std::int32_t row) {
+    const auto i = static_cast<std::size_t>(row);
+    const Moves before = from(i), after = of_record(to, i);
+    return {before.v + after.v, before.rim + after.rim};
+}
+
+/// As book_pairs and its like want it: at the start of the substep.
+template <class Real>
+auto from_columns(const Column<Real>& x, const Column<Real>& y, const Column<Real>& rim) {
+    return [&](std::size_t row) {
+        const auto real = [](Real value) { return static_cast<double>(value); };
+        return Moves{{real(x[row]), real(y[row])}, rim.empty() ? 0 : real(rim[row])};
     };
-    return {{sum(0), sum(1)}, sum(2)};
 }
 
 }  // namespace
@@ -36,7 +55,8 @@ struct SoftSolver<Real>::Impulses {
 };
 
 template <class Real>
-void SoftSolver<Real>::book_pairs(const Impulses& impulses, const Column<Real>& from, Books& books) const {
+template <class From>
+void SoftSolver<Real>::book_pairs(const Impulses& impulses, const From& from, Books& books) const {
     const Column<Real>&normal = impulses.normal, &friction = impulses.friction, &rolling = impulses.rolling;
     pairs_.for_each([&](std::size_t i) {
         const Vec2 n{pairs_.normal_x[i], pairs_.normal_y[i]};
@@ -54,17 +74,22 @@ void SoftSolver<Real>::book_pairs(const Impulses& impulses, const Column<Real>& 
 }
 
 template <class Real>
-void SoftSolver<Real>::book_supports(const Impulses& impulses, const Column<Real>& from, Books& books) const {
+template <class From>
+void SoftSolver<Real>::book_supports(const Impulses& impulses, const From& from, Books& books) const {
     const Column<Real>&normal = impulses.normal, &friction = impulses.friction, &rolling = impulses.rolling;
+    const auto is_wall = [&](std::size_t i) {
+        return is_wall_support(graph.supports.b[static_cast<std::size_t>(supports_.candidate[i])]);
+    };
+    double wall_impulse = books.wall_impulse;
+    supports_.for_each(
+        [&](std::size_t i) { wall_impulse += is_wall(i) ? static_cast<double>(normal[i]) : 0; });
+    books.wall_impulse = wall_impulse;
+    if (!books.is_open) return;
     supports_.for_each([&](std::size_t i) {
         const Vec2 n{supports_.normal_x[i], supports_.normal_y[i]}, t{-n.y, n.x};
         const double jn = normal[i], jt = friction.empty() ? 0 : static_cast<double>(friction[i]);
-        const bool is_wall =
-            is_wall_support(graph.supports.b[static_cast<std::size_t>(supports_.candidate[i])]);
         const Vec2 impulse = -1 * (jn * n + jt * t);  // on the body
-        if (is_wall) books.wall_impulse += jn;
-        if (!books.is_open) return;
-        (is_wall ? books.wall_momentum : books.immovable_momentum) += impulse;
+        (is_wall(i) ? books.wall_momentum : books.immovable_momentum) += impulse;
         const MeanTwice body = mean_twice(from, velocity_, supports_.a[i]);
         const double surface_n = supports_.surface_normal[i], surface_t = supports_.surface_tangent[i];
         books.restitution += jn * (surface_n - 0.5 * dot(body.v, n));
@@ -82,12 +107,12 @@ void SoftSolver<Real>::book_supports(const Impulses& impulses, const Column<Real
 template <class Real>
 void SoftSolver<Real>::book_free_flight(const WorldState<Real>& world, Books& books) {
     const double spin_loss = spin_decay_ - 1;
+    const auto from = from_columns(start_x_, start_y_, start_rim_);
     for (std::size_t row = 0; row < count_; ++row) {
         if (world.bodies.is_immovable(row)) continue;
         const double mass = world.bodies.mass[row];
-        const MeanTwice mean = mean_twice(start_velocity_, velocity_, static_cast<std::int32_t>(row));
-        const Vec2 v0{start_velocity_[4 * row], start_velocity_[4 * row + 1]};
-        const double rim0 = start_velocity_[4 * row + 2];
+        const MeanTwice mean = mean_twice(from, velocity_, static_cast<std::int32_t>(row));
+        const auto [v0, rim0] = from(row);
         const Vec2 by_drag = mass * ((decay_ - 1) * v0 + gain_ - h_ * world.gravity);
         gravity_work_ += 0.5 * mass * h_ * dot(world.gravity, mean.v);
         books.drag += 0.5 * dot(by_drag, mean.v) + 0.25 * mass * spin_loss * rim0 * mean.rim;
@@ -98,21 +123,21 @@ void SoftSolver<Real>::book_free_flight(const WorldState<Real>& world, Books& bo
 
 template <class Real>
 void SoftSolver<Real>::book_substep(const WorldState<Real>& world, Books& books) {
-    book_supports({supports_.normal_impulse, supports_.friction_impulse, supports_.rolling_impulse},
-                  start_velocity_, books);
+    const auto from = from_columns(start_x_, start_y_, start_rim_);
+    book_supports({supports_.normal_impulse, supports_.friction_impulse, supports_.rolling_impulse}, from,
+                  books);
     if (!books.is_open) return;
-    book_pairs({pairs_.normal_impulse, pairs_.friction_impulse, pairs_.rolling_impulse}, start_velocity_,
-               books);
+    book_pairs({pairs_.normal_impulse, pairs_.friction_impulse, pairs_.rolling_impulse}, from, books);
     book_free_flight(world, books);
 }
 
 template <class Real>
 void SoftSolver<Real>::book_bounces(Books& books) const {
-    book_supports({supports_.bounce_impulse, supports_.bounce_friction, supports_.bounce_rolling},
-                  before_bounce_, books);
+    const auto from = [&](std::size_t row) { return of_record(before_bounce_, row); };
+    book_supports({supports_.bounce_impulse, supports_.bounce_friction, supports_.bounce_rolling}, from,
+                  books);
     if (books.is_open)
-        book_pairs({pairs_.bounce_impulse, pairs_.bounce_friction, pairs_.bounce_rolling}, before_bounce_,
-                   books);
+        book_pairs({pairs_.bounce_impulse, pairs_.bounce_friction, pairs_.bounce_rolling}, from, books);
 }
 
 template <class Real>
@@ -130,11 +155,7 @@ void SoftSolver<Real>::book_displacements(const WorldState<Real>& world, const C
     gravity_work_ = 0;
 }
 
-template void SoftSolver<float>::book_pairs(const Impulses&, const Column<float>&, Books&) const;
-template void SoftSolver<float>::book_supports(const Impulses&, const Column<float>&, Books&) const;
 template void SoftSolver<float>::book_free_flight(const WorldState<float>&, Books&);
-template void SoftSolver<double>::book_pairs(const Impulses&, const Column<double>&, Books&) const;
-template void SoftSolver<double>::book_supports(const Impulses&, const Column<double>&, Books&) const;
 template void SoftSolver<double>::book_free_flight(const WorldState<double>&, Books&);
 template void SoftSolver<float>::book_substep(const WorldState<float>&, Books&);
 template void SoftSolver<double>::book_substep(const WorldState<double>&, Books&);

@@ -100,8 +100,9 @@ void SoftSolver<Real>::bounce() {
         return k;
     };
     const SolveContacts<Real> on_pairs = arguments_for(pairs_), on_supports = arguments_for(supports_);
+    const Sweep once{contact_kernels().next_pairs, contact_kernels().next_supports};
     for (int sweeps = 0; sweeps < kMostBounceSweeps; ++sweeps) {
-        sweep({contact_kernels().next_pairs, on_pairs}, {contact_kernels().next_supports, on_supports});
+        sweep({&once, 1}, on_pairs, on_supports);
         const double change = std::fmax(change_of_bounces(pairs_), change_of_bounces(supports_));
         if (change <= kBounceTolerance<Real> * fastest_bounce_) break;
     }

@@ -16,6 +16,7 @@ namespace {
 constexpr double kCrowdedRadii = 1;
 /// |x| + |y| of a vector, in lengths of it, at most.
 constexpr double kBothAxes = 1.415;
+constexpr double kNanosecondsToFind = 10;  // a support on one thread, for the executor
 
 }  // namespace
 
@@ -53,13 +54,28 @@ void SoftSolver<Real>::add_support(const SupportSurface& surface, std::size_t ca
 template <class Real>
 void SoftSolver<Real>::find_supports(const WorldState<Real>& world, const EdgeCandidates<Real>& edges) {
     ContactCandidates<Real>& candidates = graph.supports;
-    const Bodies<Real>& bodies = world.bodies;
     supports_.resize(candidates, is_rough_, bounces_);
     supports_.resize_rolling(supports_.a.size(), true, rolls_, true, true);
+    const std::size_t groups = candidates.groups();
+    left_edges_of_.resize(std::max(left_edges_of_.size(), groups));
+    const double work = kNanosecondsToFind * static_cast<double>(candidates.a.size());
+    executor_->for_each_task(groups, work, [&](std::size_t group) { find_supports_of(group, world, edges); });
     left_edges_.clear();
+    for (std::size_t group = 0; group < groups; ++group)
+        left_edges_.insert(left_edges_.end(), left_edges_of_[group].begin(), left_edges_of_[group].end());
+    hand_on_impulses(world);
+}
+
+/// The supports of a group stand where its candidates stand, closer together.
+template <class Real>
+void SoftSolver<Real>::find_supports_of(std::size_t group, const WorldState<Real>& world,
+                                        const EdgeCandidates<Real>& edges) {
+    ContactCandidates<Real>& candidates = graph.supports;
+    const Bodies<Real>& bodies = world.bodies;
+    left_edges_of_[group].clear();
     const double fall = length_squared(gain_) > 0 ? std::sqrt(length_squared(gain_)) * dt_ / h_ : 0;
-    for (std::size_t group = 0, place = 0, c = 0; c < candidates.colours(); ++c) {
-        while (c >= candidates.first_colour[group + 1]) ++group;
+    std::size_t place = candidates.first_place(group);
+    for (std::size_t c = candidates.first_colour[group]; c < candidates.first_colour[group + 1]; ++c) {
         std::size_t at = place;
         for (std::size_t i = candidates.begin[c]; i < candidates.begin[c] + candidates.count[c]; ++i) {
             const auto row = static_cast<std::size_t>(candidates.a[i]);
@@ -81,7 +97,7 @@ void SoftSolver<Real>::find_supports(const WorldState<Real>& world, const EdgeCa
             const double near = near_ + std::fmax(crowd, dt_ * (std::fabs(dv.x) + std::fabs(dv.y) + fall));
             const bool is_far = !is_wall_support(support) && s.separation > near;
             if (!s.is_contact || is_far) {
-                if (!s.is_contact) note_left_edge(i, world);
+                if (!s.is_contact) note_left_edge(i, group, world);
                 candidates.normal_impulse[i] = 0;
                 continue;
             }
@@ -90,18 +106,18 @@ void SoftSolver<Real>::find_supports(const WorldState<Real>& world, const EdgeCa
         }
         place = supports_.close_colour(c, place, at - place, padding_row_of_supports(group));
     }
-    hand_on_impulses(world);
 }
 
 template <class Real>
-void SoftSolver<Real>::note_left_edge(std::size_t candidate, const WorldState<Real>& world) {
+void SoftSolver<Real>::note_left_edge(std::size_t candidate, std::size_t group,
+                                      const WorldState<Real>& world) {
     const ContactCandidates<Real>& candidates = graph.supports;
     if (!(candidates.normal_impulse[candidate] > 0)) return;
-    left_edges_.push_back({candidates.a[candidate],
-                           world.edges[edge_of_support(candidates.b[candidate])].body,
-                           static_cast<std::int32_t>(candidate), candidates.normal_impulse[candidate],
-                           is_rough_ ? candidates.friction_impulse[candidate] : Real(0),
-                           rolls_ ? candidates.rolling_impulse[candidate] : Real(0)});
+    left_edges_of_[group].push_back(
+        {candidates.a[candidate], world.edges[edge_of_support(candidates.b[candidate])].body,
+         static_cast<std::int32_t>(candidate), candidates.normal_impulse[candidate],
+         is_rough_ ? candidates.friction_impulse[candidate] : Real(0),
+         rolls_ ? candidates.rolling_impulse[candidate] : Real(0)});
 }
 
 /// A disc that rolls from one edge of a chain to the next rests on the second with what it rested on the
@@ -131,10 +147,14 @@ template void SoftSolver<float>::add_support(const SupportSurface&, std::size_t,
                                              const WorldState<float>&);
 template void SoftSolver<double>::add_support(const SupportSurface&, std::size_t, std::size_t,
                                               const WorldState<double>&);
-template void SoftSolver<float>::note_left_edge(std::size_t, const WorldState<float>&);
-template void SoftSolver<double>::note_left_edge(std::size_t, const WorldState<double>&);
+template void SoftSolver<float>::note_left_edge(std::size_t, std::size_t, const WorldState<float>&);
+template void SoftSolver<double>::note_left_edge(std::size_t, std::size_t, const WorldState<double>&);
 template void SoftSolver<float>::hand_on_impulses(const WorldState<float>&);
 template void SoftSolver<double>::hand_on_impulses(const WorldState<double>&);
+template void SoftSolver<float>::find_supports_of(std::size_t, const WorldState<float>&,
+                                                  const EdgeCandidates<float>&);
+template void SoftSolver<double>::find_supports_of(std::size_t, const WorldState<double>&,
+                                                   const EdgeCandidates<double>&);
 template void SoftSolver<float>::find_supports(const WorldState<float>&, const EdgeCandidates<float>&);
 template void SoftSolver<double>::find_supports(const WorldState<double>&, const EdgeCandidates<double>&);
 

@@ -9,6 +9,8 @@ namespace {
 // With drag * h below kLargestDragTimesStep, a path bulges beyond its ends by at most max|x''| s²/8 <= .7 |a|
 // q.
 constexpr double kBendOfFall = 0.7;
+/// A body, on one thread: for the executor.
+constexpr double kNanosecondsToFly = 1;
 
 /// Accelerations a row, where they can differ: gravity and static bodies, or kinematic bodies and drag.
 template <class Real>
@@ -102,9 +104,10 @@ void begin_flight(Simulation<Real>& sim) {
 
     BeginFlight<Real> all = arguments_of(sim);
     const auto kernel = all.radius ? sim.kernels->begin_flight : sim.kernels->begin_flight_uniform_radius;
+    const std::size_t rows_per_chunk = drags ? kRowsPerChunk : sim.soft.rows_per_task();
     for (ChunkedList* list : {&sim.wall_rows, &sim.displaced_rows, &sim.lost_rows})
-        list->prepare(count, kRowsPerChunk);
-    sim.chunk_fastest.assign((count + kRowsPerChunk - 1) / kRowsPerChunk, 0);
+        list->prepare(count, rows_per_chunk);
+    sim.chunk_fastest.assign((count + rows_per_chunk - 1) / rows_per_chunk, 0);
     const auto fly = [&](std::size_t chunk, std::size_t first, std::size_t last) {
         BeginFlight<Real> k = all;
         k.wall_rows = sim.wall_rows.part(chunk);
@@ -116,7 +119,10 @@ void begin_flight(Simulation<Real>& sim) {
         sim.lost_rows.set_count(chunk, counts.lost);
         sim.chunk_fastest[chunk] = static_cast<double>(counts.fastest_squared);
     };
-    sim.executor.for_each_chunk(count, kRowsPerChunk, fly);
+    if (drags)
+        sim.executor.for_each_chunk(count, rows_per_chunk, fly);
+    else
+        sim.executor.for_each_chunk(count, rows_per_chunk, kNanosecondsToFly, fly);
     double fastest_squared = 0;
     for (const double fastest : sim.chunk_fastest) fastest_squared = std::fmax(fastest_squared, fastest);
     sim.fastest = std::sqrt(fastest_squared);
