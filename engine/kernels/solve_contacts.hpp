@@ -1,6 +1,7 @@
 #pragma once
 
 #include "kernels/contact_arguments.hpp"
+#include "simd/forget_loads.hpp"
 #include "simd/lanes.hpp"
 
 namespace carom {
@@ -159,6 +160,7 @@ void solve_pairs(const SolveContacts<Real>& arguments, std::size_t first, std::s
         F floor(0);
         if constexpr (kFirst) {
             note_largest_impulse<Lanes>(k, c);
+            simd::forget_loads();
             auto moved_a = Lanes::load_rows2(k.displacement, row_a);
             auto moved_b = Lanes::load_rows2(k.displacement, row_b);
             const F now = Lanes::load(k.contacts.separation + c) + (moved_b[0] - moved_a[0]) * nx +
