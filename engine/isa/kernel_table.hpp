@@ -16,6 +16,9 @@ struct ContactKernels {
     Solve warm_start_pairs, warm_start_supports;
     Solve first_pairs, first_supports;
     Solve next_pairs, next_supports;
+    Solve sum_loads_pairs, sum_loads_supports;
+    Solve scale_loads_pairs, scale_loads_supports;
+    Solve keep_loads_pairs, keep_loads_supports;
 };
 
 /// The kernels of one instruction set in one precision. A new kernel: an argument struct in kernels/, a line

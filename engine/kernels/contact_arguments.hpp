@@ -67,6 +67,12 @@ struct SolveContacts {
     Real over_relaxation;       // of normal impulses, 1 ... 2
     Real calm_over_relaxation;  // of those of calm contacts
     std::uint8_t* is_restless;  // out, [last / kContactBlock]: set where a contact of the block is not calm
+    // Of kernels/coarse_loads.hpp alone.
+    const Real* reach = nullptr;  // m, sum of the radii; null where b is
+    Real* load = nullptr;         // [rows][4]
+    Real* stress = nullptr;       // [rows][4]
+    const Real* scale = nullptr;  // [rows]
+    Real kept = 0;          // share
 };
 
 /// What changes from step to step in the contacts of a group. They stay where they are; blocks of them

@@ -227,6 +227,7 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const Candid
                                      double dt) {
     dt_ = dt;
     const double smallest = candidates.smallest_radius();
+    largest_radius_ = candidates.largest_radius();
     near_ = kNearFraction * smallest + std::sqrt(length_squared(gain_)) * dt;
     push_ = kPushRadiiPerSecond * smallest * h_;
     are_impulses_known_ = h_ < kOtherLength * impulses_of_h_ && impulses_of_h_ < kOtherLength * h_;
@@ -331,7 +332,7 @@ void SoftSolver<Real>::sweep(std::span<const Sweep> sweeps, const SolveContacts<
 }
 
 template <class Real>
-void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
+void SoftSolver<Real>::solve_contacts(int number, bool is_last, const Column<Real>& motion) {
     elapsed_ = number * h_;
     const ContactKernels<Real>& kernels = contact_kernels();
     SolveContacts<Real> on_supports = arguments(supports_), on_pairs = arguments(pairs_);
@@ -343,8 +344,47 @@ void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
         Sweep{kernels.first_pairs, kernels.first_supports, Sweep::Blocks::all_and_mark},
         Sweep{kernels.next_pairs, kernels.next_supports,
               only_restless ? Sweep::Blocks::restless : Sweep::Blocks::all, starts_anew ? kFirstSweeps : 1}};
-    sweep(sweeps, on_pairs, on_supports);
+    if (is_last && length_squared(gain_) > 0 && coarse_.is_due(count_, number + 1)) {
+        sweep({&sweeps[0], 1}, on_pairs, on_supports);
+        correct_loads(motion);
+        sweep({&sweeps[1], 1}, on_pairs, on_supports);
+    } else {
+        sweep(sweeps, on_pairs, on_supports);
+    }
     uneven_.solve(on_pairs, on_supports, std::sqrt(length_squared(gain_)));
+}
+
+template <class Real>
+SolveContacts<Real> SoftSolver<Real>::coarse_arguments(LiveContacts<Real>& live) {
+    SolveContacts<Real> k = arguments(live);
+    k.reach = live.reach.data();
+    k.load = coarse_.load(), k.stress = coarse_.stress(), k.scale = coarse_.scale();
+    k.kept = static_cast<Real>(coarse_.kept());
+    return k;
+}
+
+template <class Real>
+void SoftSolver<Real>::correct_loads(const Column<Real>& motion) {
+    const ContactKernels<Real>& kernels = contact_kernels();
+    coarse_.begin(velocity_.size() / 4);
+    const SolveContacts<Real> on_pairs = coarse_arguments(pairs_), on_supports = coarse_arguments(supports_);
+    const Sweep sum{kernels.sum_loads_pairs, kernels.sum_loads_supports},
+        scale{kernels.scale_loads_pairs, kernels.scale_loads_supports};
+    sweep({&sum, 1}, on_pairs, on_supports);
+    are_loads_scaled_ =
+        coarse_.find_scale(count_, motion.data(), velocity_.data(), largest_radius_, gain_, *executor_);
+    if (!are_loads_scaled_) return;
+    sweep({&scale, 1}, on_pairs, on_supports);
+}
+
+/// After the books of the step, which have the impulses as they were.
+template <class Real>
+void SoftSolver<Real>::keep_loads() {
+    if (!are_loads_scaled_) return;
+    are_loads_scaled_ = false;
+    const ContactKernels<Real>& kernels = contact_kernels();
+    const Sweep keep{kernels.keep_loads_pairs, kernels.keep_loads_supports};
+    sweep({&keep, 1}, coarse_arguments(pairs_), coarse_arguments(supports_));
 }
 
 template <class Real>
@@ -372,6 +412,7 @@ void SoftSolver<Real>::end_contacts(const WorldState<Real>& world, Books& books)
             book_bounces(books);
         }
     }
+    keep_loads();
     pairs_.swap_with(graph.pairs);
     supports_.for_each([&](std::size_t i) {
         const auto candidate = static_cast<std::size_t>(supports_.candidate[i]);
@@ -409,7 +450,7 @@ template <class Real>
 std::size_t SoftSolver<Real>::bytes() const {
     return graph.bytes() + pairs_.bytes() + supports_.bytes() + inverse_mass_.bytes() + velocity_.bytes() +
            start_x_.bytes() + start_y_.bytes() + start_rim_.bytes() + displacement_.bytes() + turn_.bytes() +
-           unloading_.bytes() + uneven_.bytes();
+           unloading_.bytes() + uneven_.bytes() + coarse_.bytes();
 }
 
 template class SoftSolver<float>;

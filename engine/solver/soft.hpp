@@ -7,6 +7,7 @@
 
 #include "isa/kernel_table.hpp"
 #include "parallel/executor.hpp"
+#include "solver/coarse_loads.hpp"
 #include "solver/contact_graph.hpp"
 #include "solver/live_contacts.hpp"
 #include "solver/uneven_contacts.hpp"
@@ -59,8 +60,10 @@ class SoftSolver {
     void find_contacts(const WorldState<Real>& world, const Candidates<Real>& candidates,
                        const EdgeCandidates<Real>& edges, const Column<Real>& motion, double dt);
 
-    /// Both sweeps of substep `number`. The second leaves out what is calm, but not in the last substep.
-    void solve_contacts(int number, bool is_last);
+    /// Both sweeps of substep `number`. The second leaves out what is calm, but not in the last substep, in
+    /// which the loads of large piles are corrected between the two.
+    /// @param motion  of the bodies at the start of the step
+    void solve_contacts(int number, bool is_last, const Column<Real>& motion);
     /// Moves the bodies through the substep that was solved.
     void advance_bodies(bool is_last);
     /// Restitution, and the impulses back to the candidates.
@@ -142,6 +145,9 @@ class SoftSolver {
                const SolveContacts<Real>& on_supports);
     void sweep_pairs(std::size_t group, const Sweep& sweep, const SolveContacts<Real>& on_pairs);
     void sweep_supports(std::size_t group, const Sweep& sweep, const SolveContacts<Real>& on_supports) const;
+    SolveContacts<Real> coarse_arguments(LiveContacts<Real>& live);
+    void correct_loads(const Column<Real>& motion);
+    void keep_loads();
     /// Row that the padding of a group of supports names.
     std::int32_t padding_row_of_supports(std::size_t group) const {
         return static_cast<std::int32_t>(count_ + graph.groups.count() + group);
@@ -165,7 +171,7 @@ class SoftSolver {
     const KernelTable<Real>* kernels_ = nullptr;
     const Executor* executor_ = nullptr;
     std::size_t count_ = 0;
-    double h_ = 0, dt_ = 0, elapsed_ = 0, near_ = 0, push_ = 0;
+    double h_ = 0, dt_ = 0, elapsed_ = 0, near_ = 0, push_ = 0, largest_radius_ = 0;
     Vec2 gain_;
     double decay_ = 1, spin_decay_ = 1;
     bool is_rough_ = false, turns_ = false, some_are_fixed_ = false, bounces_ = false;
@@ -193,9 +199,11 @@ class SoftSolver {
     bool is_unloaded_ = false;  // bodies are gone on which others rested
     Unloading<Real> unloading_;
     UnevenContacts<Real> uneven_;
-    double fastest_bounce_ = 0;   // m/s, of this step
-    Column<Real> before_bounce_;  // velocity records; only with the ledger
-    double gravity_work_ = 0;     // J, of this step, on velocities; only with the ledger
+    CoarseLoads<Real> coarse_;
+    bool are_loads_scaled_ = false;  // in this step
+    double fastest_bounce_ = 0;      // m/s, of this step
+    Column<Real> before_bounce_;     // velocity records; only with the ledger
+    double gravity_work_ = 0;        // J, of this step, on velocities; only with the ledger
 };
 
 extern template class SoftSolver<float>;

@@ -36,7 +36,7 @@ void find_contacts(Simulation<Real>& sim) {
 
 template <class Real>
 void solve_contacts(Simulation<Real>& sim) {
-    sim.soft.solve_contacts(sim.substep, sim.substep + 1 == sim.substep_count);
+    sim.soft.solve_contacts(sim.substep, sim.substep + 1 == sim.substep_count, sim.solver.flights.motion);
 }
 
 template <class Real>
