@@ -132,6 +132,7 @@ void find_contacts(benchmark::State& state, const KernelTable<Real>& table) {
                                        .approach = nullptr,
                                        .dt = static_cast<Real>(kStep),
                                        .near = Real(0.005),
+                                       .deep = Real(-1),
                                        .is_live = is_live.data()};
     const auto kernel = table.find_contacts;
     const double hits = static_cast<double>(kernel(arguments, 0, items)) / static_cast<double>(items);

@@ -68,6 +68,16 @@ class Candidates {
                                static_cast<Real>(reach * kRoundingUp), out);
     }
 
+    /// Rule `own`: how far a body at `place` is out of its margin at the end of the step [m]; 0 if it is not.
+    double outside_of_margin(std::size_t row, double radius, Vec2 at) const {
+        const Vec2 way = at - Vec2{own_x_[row], own_y_[row]};
+        return std::fmax(0, std::sqrt(length_squared(way)) - (static_cast<double>(reach_[row]) - radius));
+    }
+    /// Rule `own`: rows of all bodies within their margins that can touch, at the end of the step, one of
+    /// `radius` that was in the place of body `row` and is `at` by then.
+    /// @return how many rows are in `out`.
+    std::size_t find_around(std::size_t row, double radius, Vec2 at, Column<std::int32_t>& out) const;
+
     /// Pairs that have been added in this step since `update`, rule `own`: not among pair_a and pair_b.
     struct Pair {
         std::int32_t a, b;

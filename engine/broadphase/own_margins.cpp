@@ -13,6 +13,7 @@ namespace {
 // docs/decisions/0012-threads-of-soft.md has the measurements.
 constexpr double kOwnSteps = 5;          // of a body, at its speed
 constexpr double kSmallestMargin = 0.1;  // of the smallest radius
+constexpr double kLargestSize = 4;       // of its own radius
 constexpr double kFewestSteps = 1.25;    // whatever the largest margin is
 constexpr double kFlowSteps = 0.7;       // of the flow around it, which changes
 
@@ -33,7 +34,9 @@ Real Candidates<Real>::own_reach(const Bodies<Real>& bodies, std::size_t row, co
     const Vec2 flow{flow_x_[row], flow_y_[row]};
     const Vec2 v = Vec2{bodies.velocity_x[row], bodies.velocity_y[row]} - flow;
     const double travel = std::sqrt(length_squared(v)) * end.s + fall;
-    const double most = std::max(kLargestOwnMargin * largest_radius_, kFewestSteps * travel);
+    // A small body beside a large one has no use for a margin of the large one's size.
+    const double size = std::min(largest_radius_, kLargestSize * static_cast<double>(bodies.radius[row]));
+    const double most = std::max(kLargestOwnMargin * size, kFewestSteps * travel);
     const double wanted = kOwnSteps * travel + kFlowSteps * end.s * std::sqrt(length_squared(flow));
     const double margin = std::max(std::min(wanted, most), kSmallestMargin * smallest_radius_);
     return static_cast<Real>(static_cast<double>(bodies.radius[row]) + margin);
@@ -95,6 +98,18 @@ void Candidates<Real>::renew_margins(const Bodies<Real>& bodies, const FlightClo
     added_pairs_.swap(spare_pairs_);
 }
 
+/// The grid knows where bodies were. One within its margin has gone from there by its drift and by what its
+/// place and reach go beyond the first; drifts differ by their distance.
+template <class Real>
+std::size_t Candidates<Real>::find_around(std::size_t row, double radius, Vec2 at,
+                                          Column<std::int32_t>& out) const {
+    const Vec2 way = at - Vec2{own_x_[row], own_y_[row]};
+    const double apart = std::sqrt(length_squared(way)) + radius + largest_reach_;
+    const Vec2 place = at - drift_of(row);
+    const double rounding = kRoundingOfPlace<Real> * (std::fabs(place.x) + std::fabs(place.y));
+    return find_near(place, radius + farthest_ + kSteepnessThen * steepness_ * apart + rounding, out);
+}
+
 template <class Real>
 void Candidates<Real>::add_pairs_of(const Bodies<Real>& bodies, std::int32_t row) {
     const auto i = static_cast<std::size_t>(row);
@@ -124,6 +139,8 @@ template void Candidates<double>::choose_own_margins(const Bodies<double>&, cons
                                                      const Executor&);
 template void Candidates<float>::renew_margins(const Bodies<float>&, const FlightClock&, Vec2);
 template void Candidates<double>::renew_margins(const Bodies<double>&, const FlightClock&, Vec2);
+template std::size_t Candidates<float>::find_around(std::size_t, double, Vec2, Column<std::int32_t>&) const;
+template std::size_t Candidates<double>::find_around(std::size_t, double, Vec2, Column<std::int32_t>&) const;
 template void Candidates<float>::add_pairs_of(const Bodies<float>&, std::int32_t);
 template void Candidates<double>::add_pairs_of(const Bodies<double>&, std::int32_t);
 template bool Candidates<float>::was_pair(std::size_t, std::size_t) const;

@@ -72,8 +72,11 @@ struct SolveContacts {
     Real* load = nullptr;         // [rows][4]
     Real* stress = nullptr;       // [rows][4]
     const Real* scale = nullptr;  // [rows]
-    Real kept = 0;          // share
+    Real kept = 0;                // share
 };
+
+/// Of a block that has a contact of bodies which are deep in each other.
+inline constexpr std::uint8_t kDeepBlock = 2;
 
 /// What changes from step to step in the contacts of a group. They stay where they are; blocks of them
 /// without any that can touch in this step are told apart, so that nothing need look at them again.
@@ -92,7 +95,9 @@ struct FindContacts {
     Real* approach;          // out: m/s, relative normal velocity at the start; null without restitution
     Real dt;                 // s, of the step
     Real near;               // m, separation up to which slow bodies are in contact
-    std::uint8_t* is_live;   // out, [last / kContactBlock]: whether a contact of the block can touch
+    Real deep;               // m, below zero: separation of bodies that are deep in each other
+    std::uint8_t* is_live;   // out, [last / kContactBlock]: whether a contact of the block can touch: 0, 1,
+                             // or kDeepBlock
 };
 
 /// Velocities at the start of a substep. Nobody asks for those of single bodies, so they are columns.

@@ -46,6 +46,7 @@ std::size_t find_contacts(const FindContacts<Real>& k, std::size_t first, std::s
     std::size_t count = 0;
     for (std::size_t block = first; block < last; block += kContactBlock) {
         unsigned live_in_block = 0;
+        bool is_deep = false;
         for (std::size_t p = block; p < block + kContactBlock; p += Lanes::size) {
             const auto a = Lanes::load_rows4(k.motion, k.a + p);
             const auto b = Lanes::load_rows4(k.motion, k.b + p);
@@ -53,7 +54,10 @@ std::size_t find_contacts(const FindContacts<Real>& k, std::size_t first, std::s
             const F dvx = b[2] - a[2], dvy = b[3] - a[3];
             const F reach = Lanes::load(k.reach + p);
             const F squared = dx * dx + dy * dy;
-            const F near = reach + F(k.near) + F(k.dt) * (simd::abs(dvx) + simd::abs(dvy));
+            // Each by its own speed, not by the relative one: two that fly side by side meet in this step if
+            // a third body stops one of them.
+            const F ways = simd::abs(a[2]) + simd::abs(a[3]) + simd::abs(b[2]) + simd::abs(b[3]);
+            const F near = reach + F(k.near) + F(k.dt) * ways;
             const auto is_contact = reach > F(0);
             const auto live = is_contact & (squared < near * near);
             Lanes::store(k.normal_impulse + p, simd::select(live, Lanes::load(k.normal_impulse + p), F(0)));
@@ -74,11 +78,13 @@ std::size_t find_contacts(const FindContacts<Real>& k, std::size_t first, std::s
                                                  ny);
             Lanes::store(k.normal_x + p, nx);
             Lanes::store(k.normal_y + p, ny);
-            Lanes::store(k.separation + p, dx * nx + dy * ny - reach);
+            const F separation = dx * nx + dy * ny - reach;
+            Lanes::store(k.separation + p, separation);
+            is_deep |= simd::any(is_contact & (separation < F(k.deep)));
             if (k.approach) Lanes::store(k.approach + p, dvx * nx + dvy * ny);
             live_in_block += static_cast<unsigned>(__builtin_popcount(simd::bitmask(live)));
         }
-        k.is_live[block / kContactBlock] = live_in_block > 0;
+        k.is_live[block / kContactBlock] = is_deep ? kDeepBlock : live_in_block > 0;
         count += live_in_block;
     }
     return count;

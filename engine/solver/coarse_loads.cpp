@@ -15,7 +15,7 @@ constexpr double kMost = 4;
 constexpr int kSweeps = 20;
 // A correction is small if it takes less than either of these; then the pause after it is twice as long.
 constexpr double kSmallDrop = 0.1;     // of the energy that gravity gives to the pile in a substep from rest
-constexpr double kSmallShare = 0.001;  // of the kinetic energy around the centre of mass: a drum that turns
+constexpr double kSmallShare = 0.006;  // of the kinetic energy around the centre of mass: a drum that turns
 constexpr int kLongestPause = 64;      // substeps
 /// Of what deadbeat would leave. In a longer pause the shortest waves swing back, and would be driven.
 constexpr double kKeptAfterLong = 0.25;

@@ -23,6 +23,8 @@ constexpr double kCalm = 0.5;
 /// Bodies as near as this, in radii of the smallest, are solved together even if they hardly move: what
 /// pushes one of them in the middle of a step is felt by the other.
 constexpr double kNearFraction = 0.04;
+/// Of the smallest radius: bodies that start a step as deep in each other are parted at its end.
+constexpr double kDeep = 0.1;
 /// Second sweeps of the first substep if there are no impulses to start from.
 constexpr int kFirstSweeps = 32;
 /// Impulses of substeps that were longer or shorter by this factor are of no use.
@@ -197,6 +199,7 @@ void SoftSolver<Real>::find_pairs(const Bodies<Real>& bodies, const Column<Real>
     k.normal_x = pairs_.normal_x.data(), k.normal_y = pairs_.normal_y.data();
     k.separation = pairs_.separation.data(), k.approach = bounces_ ? pairs_.approach.data() : nullptr;
     k.dt = static_cast<Real>(dt_), k.near = static_cast<Real>(near_);
+    k.deep = static_cast<Real>(-deep_);
     k.is_live = pairs_.is_live.data();
     const double work = kNanosecondsToFind * static_cast<double>(pairs_.a.size());
     executor_->for_each_task(graph.groups.count(), work, [&](std::size_t group) {
@@ -205,6 +208,7 @@ void SoftSolver<Real>::find_pairs(const Bodies<Real>& bodies, const Column<Real>
             kernels_->find_contacts(k, pairs_.first_place(group), pairs_.first_place(group + 1));
         list_runs(group);
     });
+    is_crowded_ = std::find(pairs_.is_live.begin(), pairs_.is_live.end(), kDeepBlock) != pairs_.is_live.end();
     described_version_ = graph.version, described_renewal_ = graph.renewals;
     if (is_new && are_masses_uneven_) uneven_.find(pairs_, inverse_mass_, count_);
 }
@@ -229,6 +233,7 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const Candid
     const double smallest = candidates.smallest_radius();
     largest_radius_ = candidates.largest_radius();
     near_ = kNearFraction * smallest + std::sqrt(length_squared(gain_)) * dt;
+    deep_ = kDeep * smallest;
     push_ = kPushRadiiPerSecond * smallest * h_;
     are_impulses_known_ = h_ < kOtherLength * impulses_of_h_ && impulses_of_h_ < kOtherLength * h_;
     keep_forces(graph.pairs), keep_forces(graph.supports);
@@ -450,7 +455,7 @@ template <class Real>
 std::size_t SoftSolver<Real>::bytes() const {
     return graph.bytes() + pairs_.bytes() + supports_.bytes() + inverse_mass_.bytes() + velocity_.bytes() +
            start_x_.bytes() + start_y_.bytes() + start_rim_.bytes() + displacement_.bytes() + turn_.bytes() +
-           unloading_.bytes() + uneven_.bytes() + coarse_.bytes();
+           unloading_.bytes() + uneven_.bytes() + coarse_.bytes() + parting_.bytes() + near_rows_.bytes();
 }
 
 template class SoftSolver<float>;

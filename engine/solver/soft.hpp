@@ -10,6 +10,7 @@
 #include "solver/coarse_loads.hpp"
 #include "solver/contact_graph.hpp"
 #include "solver/live_contacts.hpp"
+#include "solver/parting.hpp"
 #include "solver/uneven_contacts.hpp"
 #include "solver/unloading.hpp"
 #include "state/chunked_list.hpp"
@@ -68,6 +69,11 @@ class SoftSolver {
     void advance_bodies(bool is_last);
     /// Restitution, and the impulses back to the candidates.
     void end_contacts(const WorldState<Real>& world, Books& books);
+    /// Parts who has ended the step deep in somebody else (soft_parting.cpp): by displacement alone.
+    /// @param fastest  m/s, of all bodies at the start
+    /// Cost: nothing unless somebody moved by the smallest radius or started deep in another one.
+    void part_bodies(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
+                     const Column<Real>& motion, const Candidates<Real>& candidates, double fastest);
     /// Columns from records.
     /// @param lost  rows whose state left the limits; they stand still where they were
     void end_substeps(Bodies<Real>& bodies, std::vector<std::int32_t>& lost);
@@ -126,6 +132,20 @@ class SoftSolver {
                      const Column<Real>& motion);
     void put_back(WorldState<Real>& world, const EdgeCandidates<Real>& edges, const Passed& passed,
                   bool to_start);
+
+    bool mark_deflected(const WorldState<Real>& world, const Column<Real>& motion);
+    bool mark_stuck(const WorldState<Real>& world);
+    void mark_deep(double deep);
+    void list_parted_pair(const Bodies<Real>& bodies, const Column<Real>& motion, std::int32_t row_a,
+                          std::int32_t row_b, bool is_loaded);
+    bool is_loaded(std::size_t pair) const;
+    void put_back_thrown(const Bodies<Real>& bodies, const Column<Real>& motion,
+                         const Candidates<Real>& candidates);
+    void find_thrown(const Bodies<Real>& bodies, const Candidates<Real>& candidates);
+    void list_pairs_of_thrown(const Bodies<Real>& bodies, const Column<Real>& motion,
+                              const Candidates<Real>& candidates);
+    void list_parted_pairs(const Bodies<Real>& bodies, const Column<Real>& motion);
+    void list_parted_supports(const WorldState<Real>& world, const EdgeCandidates<Real>& edges);
 
     void keep_forces(ContactCandidates<Real>& candidates) const;
     void derive_masses(const Bodies<Real>& bodies);
@@ -194,6 +214,11 @@ class SoftSolver {
     std::vector<Passed> passed_;                        // likewise
     std::vector<std::int32_t> strayed_;                 // rows that have left their margins in this step
     ChunkedList lost_rows_;
+    double deep_ = 0;          // m, an overlap that the sweeps do not take away soon enough
+    bool is_crowded_ = false;  // there was one at the start of the step
+    Parting parting_;
+    std::vector<std::int32_t> thrown_;  // rows, by x
+    Column<std::int32_t> near_rows_;
     double impulses_of_h_ = 0;  // s, substep of the candidates' impulses; 0 = there are none
     bool are_impulses_known_ = false;
     bool is_unloaded_ = false;  // bodies are gone on which others rested

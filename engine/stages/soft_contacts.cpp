@@ -57,6 +57,7 @@ void advance_bodies(Simulation<Real>& sim) {
 template <class Real>
 void end_contacts(Simulation<Real>& sim) {
     sim.soft.end_contacts(sim.world, sim.world.books);
+    sim.soft.part_bodies(sim.world, sim.edges, sim.solver.flights.motion, sim.candidates, sim.fastest);
 }
 
 template <class Real>

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 using namespace carom;
 using namespace carom::test;
@@ -62,6 +63,43 @@ Scene lattice_around_origin(std::int64_t side, double spacing, double jitter, do
     return scene;
 }
 
+struct Poured {
+    double while_pouring = 0, after = 0;  // largest overlap, as a fraction of the smaller radius
+    double lowest = 0;                    // m, of all centres
+};
+
+/// Pours 300 discs that start at `speed` [m/s] into a funnel whose mouth is too narrow for one.
+template <class Real>
+Poured pour(double speed) {
+    constexpr double kRadius = 0.5;
+    Scene scene;
+    scene.gravity = {0, -10};
+    scene.accuracy.solver = Solver::soft;
+    const Material rough{.friction = 0.8};
+    const double mouth = 1.1 * kRadius;
+    for (const std::vector<Vec2>& side : {std::vector<Vec2>{{-mouth - 8, 60}, {-mouth - 8, 10}, {-mouth, 0}},
+                                          std::vector<Vec2>{{mouth, 0}, {mouth + 8, 10}, {mouth + 8, 60}}})
+        scene.add({.type = BodyType::static_body, .shape = Chain{side}, .material = rough});
+    const std::size_t first = scene.bodies.size();
+    for (int i = 0; i < 300; ++i)
+        scene.add({.shape = Disc{kRadius * (1.15 + 0.05 * (i % 4))},
+                   .position = {-7.2 + 1.32 * (i % 12), 12 + 1.32 * (i / 12)},
+                   .velocity = {0, -speed},
+                   .material = rough});
+    BasicWorld<Real> world(scene, {.threads = 1});
+    Poured result;
+    for (int i = 0; i < 360; ++i) {
+        world.step(kStep);
+        result.while_pouring = std::fmax(result.while_pouring, world.overlaps().max);
+    }
+    for (int i = 0; i < 120; ++i) world.step(kStep);
+    result.after = world.overlaps().max, result.lowest = 1e9;
+    for (std::size_t i = first; i < scene.bodies.size(); ++i)
+        result.lowest = std::fmin(result.lowest, world.state({static_cast<std::uint32_t>(i), 0}).position.y);
+    CHECK(world.quarantined().empty());
+    return result;
+}
+
 }  // namespace
 
 TEST_SUITE("hard cases/crowds") {
@@ -105,41 +143,18 @@ TEST_SUITE("hard cases/crowds") {
     }
 
     TEST_CASE_TEMPLATE("B16: discs poured into a funnel jam and come apart again", Real, float, double) {
-        constexpr double kRadius = 0.5;
-        Scene scene;
-        scene.gravity = {0, -10};
-        scene.accuracy.solver = Solver::soft;
-        const Material rough{.friction = 0.8};
-        const double mouth = 1.1 * kRadius;  // too narrow for one
-        for (const double side : {-1.0, 1.0})
-            scene.add(
-                {.type = BodyType::static_body,
-                 .shape = Chain{{{side * mouth, 0}, {side * (mouth + 8), 10}, {side * (mouth + 8), 60}}},
-                 .material = rough});
-        scene.bodies[0].shape = Chain{{{-mouth - 8, 60}, {-mouth - 8, 10}, {-mouth, 0}}};
-        const std::size_t first = scene.bodies.size();
-        for (int i = 0; i < 300; ++i)
-            scene.add({.shape = Disc{kRadius * (1.15 + 0.05 * (i % 4))},
-                       .position = {-7.2 + 1.32 * (i % 12), 12 + 1.32 * (i / 12)},
-                       .velocity = {0, -5},
-                       .material = rough});
-        BasicWorld<Real> world(scene, {.threads = 1});
-        double pouring = 0;
-        for (int i = 0; i < 360; ++i) {
-            world.step(kStep);
-            pouring = std::fmax(pouring, world.overlaps().max);
+        // A column that falls is stopped from below, one disc after the other, several within a step.
+        double deepest = 0, after = 0, lowest = 1e9;
+        const int kRuns = scaled(24, 4);
+        for (int i = 0; i < kRuns; ++i) {
+            const Poured found = pour<Real>(5 + 6.0 * i / kRuns);
+            deepest = std::fmax(deepest, found.while_pouring), after = std::fmax(after, found.after);
+            lowest = std::fmin(lowest, found.lowest);
         }
-        for (int i = 0; i < 120; ++i) world.step(kStep);
-        const double after = world.overlaps().max;
-        double lowest = 1e9;
-        for (std::size_t i = first; i < scene.bodies.size(); ++i)
-            lowest = std::fmin(lowest, world.state({static_cast<std::uint32_t>(i), 0}).position.y);
-        report("funnel: overlap ", pouring, " while pouring, ", after, " two seconds later, lowest at ",
-               lowest, " m");
-        // The mark while pouring, 0.2, is not held by every run: docs/decisions/0004-soft-solver.md. So it is
-        // no check yet; the others are.
+        report("funnel, ", kRuns, " starting velocities: overlap ", deepest, " while pouring, ", after,
+               " two seconds later, lowest at ", lowest, " m");
+        CHECK(deepest < 0.2);
         CHECK(after < 0.01);
         CHECK(lowest > 0);  // nobody is pressed through the mouth
-        CHECK(world.quarantined().empty());
     }
 }

@@ -109,6 +109,47 @@ TEST_SUITE("hard cases/overlaps") {
         first.check(1);
     }
 
+    TEST_CASE_TEMPLATE(
+        "solver soft: a thousand coincident discs come apart within two seconds, without speed", Real, float,
+        double) {
+        const int kDiscs = scaled(1000, 200);
+        Scene scene = coincident(kDiscs, {3, -2});
+        scene.accuracy.solver = Solver::soft;
+        BasicWorld<Real> first(scene, {.threads = 1}), again(scene, {.threads = 2});
+        for (int i = 0; i < kTwoSeconds; ++i) {
+            first.step(kStep), again.step(kStep);
+            REQUIRE(fastest(first) == 0);
+        }
+        CHECK(first.state_hash() == again.state_hash());
+        const OverlapReport overlaps = first.overlaps();
+        report(kDiscs, " coincident discs, soft: largest overlap after 2 s ", overlaps.max, ", mean ",
+               overlaps.mean);
+        CHECK(overlaps.mean < kOverlapLeft);
+        CHECK(overlaps.max < 10 * kOverlapLeft);
+        Vec2 centre;
+        for (const Vec2 place : positions(first)) centre.x += place.x / kDiscs, centre.y += place.y / kDiscs;
+        CHECK(std::abs(centre.x - 3) < 1e-3);
+        CHECK(std::abs(centre.y + 2) < 1e-3);
+        CHECK(first.quarantined().empty());
+    }
+
+    TEST_CASE_TEMPLATE("solver soft: two coincident discs come apart, no faster than the cap", Real, float,
+                       double) {
+        Scene scene = coincident(2, {-123.25, 77.5});
+        scene.accuracy.solver = Solver::soft;
+        BasicWorld<Real> world(scene, {.threads = 1});
+        double apart = 0;
+        for (int i = 0; i < kTwoSeconds; ++i) {
+            world.step(kStep);
+            const double now = distance(world.state({0, 0}).position, world.state({1, 0}).position);
+            CHECK(now - apart <= kPushCap * kStep * (1 + 1e-3));
+            apart = now;
+        }
+        CHECK(fastest(world) == 0);
+        CHECK(apart > 2 * kRadius - kOverlapLeft * kRadius);
+        CHECK(apart < 2 * kRadius * (1 + 1e-6));
+    }
+
     TEST_CASE_TEMPLATE("overlapping discs are pushed apart by mass, below the cap, and gain no speed", Real,
                        float, double) {
         for (const double overlap : {0.25, 0.5, 0.9})  // of the smaller disc's diameter
