@@ -19,7 +19,7 @@ constexpr double kRecovery = 0.4;
 constexpr double kOverRelaxation = 1.7;  // of normal impulses
 constexpr double kCalmOverRelaxation = 1.3;
 /// A contact is calm if the first sweep changes it by less than gravity does in this share of a substep.
-constexpr double kCalm = 0.5;
+constexpr double kCalm = 1;
 /// Bodies as near as this, in radii of the smallest, are solved together even if they hardly move: what
 /// pushes one of them in the middle of a step is felt by the other.
 constexpr double kNearFraction = 0.04;

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
-#include <new>
 #include <span>
 #include <type_traits>
 #include <utility>
 
+#include "state/column_memory.hpp"
+
 namespace carom {
 
-inline constexpr std::size_t kRowPadding = 16;       // floats in the widest batch we build (AVX-512)
-inline constexpr std::size_t kColumnAlignment = 64;  // bytes: a cache line, and the widest batch
+inline constexpr std::size_t kRowPadding = 16;  // floats in the widest batch we build (AVX-512)
 
 /// Rows a column holds memory for, so that a kernel over `rows` rows needs no tail.
 constexpr std::size_t padded(std::size_t rows) {
@@ -96,15 +96,14 @@ class Column {
     void grow(std::size_t rows, std::size_t kept) {
         if (held(rows) <= capacity_) return;
         const std::size_t capacity = std::max(held(rows), 2 * capacity_);
-        T* larger =
-            static_cast<T*>(::operator new (capacity * sizeof(T), std::align_val_t{kColumnAlignment}));
+        T* larger = static_cast<T*>(allocate_column(capacity * sizeof(T)));
         std::copy_n(rows_, kept, larger);
         release();
         rows_ = larger;
         capacity_ = capacity;
     }
     void release() noexcept {
-        if (rows_) ::operator delete (rows_, std::align_val_t{kColumnAlignment});
+        if (rows_) release_column(rows_, bytes());
     }
 
     T* rows_ = nullptr;

@@ -164,10 +164,10 @@ constexpr Golden kGolden[] = {
     {"falling sizes", 0x4fe0c9b61ea50e9c, 0xc84f698047eb650e},
     {"moving obstacles", 0x9450532e75523df8, 0x81f8d27062c9d725},
     {"stack at rest", 0xa436021f760768ad, 0xfd75b447dc578a50},
-    {"rough sizes", 0x5ea9ad82f08334b0, 0xcc47cb83d76a4ac7},
-    {"rolling sizes", 0x6a2119a0b42fb470, 0xaf53b9dd18101d0d},
-    {"turning chain", 0x366b32ab317fbfdd, 0xf1af324ac03210c},
-    {"woken sleepers", 0xe6351d54635fe2d6, 0xf4c6924621e2009},
+    {"rough sizes", 0x2d9b960db8533710, 0x887f6b8e69f663c1},
+    {"rolling sizes", 0xa99fa5c3cd465c64, 0xc94322e3d96b39cb},
+    {"turning chain", 0x51251b636ccaa4d4, 0x9d6c45d9e2d104d},
+    {"woken sleepers", 0x78db6bf70028a4db, 0xd79665de5f5ca1d9},
 };
 
 }  // namespace

@@ -29,12 +29,12 @@ struct Totals {
 /// Discs of several masses, contacts with their three neighbours above and to the right, a colour for each
 /// direction and parity. Behind the discs is the row of the padding.
 template <class Real>
-struct Lattice {
+struct LoadedLattice {
     Column<Real> motion, velocity, normal_x, normal_y, separation, floor, reach, normal_impulse,
         friction_impulse;
     Column<std::int32_t> a, b;
 
-    explicit Lattice(unsigned seed) {
+    explicit LoadedLattice(unsigned seed) {
         std::mt19937 random(seed);
         const auto number = [&] { return static_cast<double>(random() % 100001) * 1e-5; };
         const std::size_t rows = padded(kDiscs + 1);
@@ -116,7 +116,7 @@ struct Lattice {
 
 /// Everybody nears the middle, besides a random part, and spins.
 template <class Real>
-void close_in(Lattice<Real>& lattice, double rate, double noise, unsigned seed) {
+void close_in(LoadedLattice<Real>& lattice, double rate, double noise, unsigned seed) {
     std::mt19937 random(seed);
     const auto number = [&] { return noise * (static_cast<double>(random() % 100001) * 2e-5 - 1); };
     for (std::size_t row = 0; row < kDiscs; ++row) {
@@ -140,7 +140,7 @@ TEST_SUITE("solver/coarse loads") {
         const double allowed = sizeof(Real) == 4 ? 3e-6 : 1e-14;
         for (unsigned seed = 1; seed <= 20; ++seed) {
             CAPTURE(seed);
-            Lattice<Real> lattice(seed);
+            LoadedLattice<Real> lattice(seed);
             close_in(lattice, seed % 4 == 0 ? 0 : 0.003 * seed, 0.01 * (seed % 5), seed);
             const Totals before = lattice.totals();
             CoarseLoads<Real> coarse;
@@ -155,7 +155,7 @@ TEST_SUITE("solver/coarse loads") {
     }
 
     TEST_CASE_TEMPLATE("what nears the middle as a whole is stopped", Real, float, double) {
-        Lattice<Real> lattice(1);
+        LoadedLattice<Real> lattice(1);
         std::fill(lattice.friction_impulse.begin(), lattice.friction_impulse.end(), Real(0));
         // Under a pressure that is the same everywhere inside.
         for (std::size_t c = 0; c < lattice.a.size(); ++c)
@@ -171,7 +171,7 @@ TEST_SUITE("solver/coarse loads") {
     }
 
     TEST_CASE_TEMPLATE("what moves and turns without getting nearer is left alone", Real, float, double) {
-        Lattice<Real> lattice(2);
+        LoadedLattice<Real> lattice(2);
         constexpr double kSpin = 0.3;
         for (std::size_t row = 0; row < kDiscs; ++row) {
             const Vec2 at = lattice.place(row);
@@ -190,7 +190,7 @@ TEST_SUITE("solver/coarse loads") {
     }
 
     TEST_CASE_TEMPLATE("contacts push, and friction stays within its limit", Real, float, double) {
-        Lattice<Real> lattice(3);
+        LoadedLattice<Real> lattice(3);
         close_in(lattice, -0.5, 0.5, 3);  // apart, so that loads become less
         CoarseLoads<Real> coarse;
         const Column<Real> before = lattice.normal_impulse;
@@ -208,7 +208,7 @@ TEST_SUITE("solver/coarse loads") {
     }
 
     TEST_CASE_TEMPLATE("discs that do not push are left alone", Real, float, double) {
-        Lattice<Real> lattice(4);
+        LoadedLattice<Real> lattice(4);
         for (Column<Real>* impulses : {&lattice.normal_impulse, &lattice.friction_impulse})
             std::fill(impulses->begin(), impulses->end(), Real(0));
         close_in(lattice, 0.01, 0, 4);
@@ -217,14 +217,14 @@ TEST_SUITE("solver/coarse loads") {
     }
 
     TEST_CASE_TEMPLATE("every instruction set gives the same bits", Real, float, double) {
-        Lattice<Real> expected(5);
+        LoadedLattice<Real> expected(5);
         close_in(expected, 0.01, 0.01, 5);
-        const Lattice<Real> start = expected;
+        const LoadedLattice<Real> start = expected;
         CoarseLoads<Real> coarse;
         expected.correct(scalar_kernels<Real>(), coarse);
         for (const KernelTables* tables : runnable_kernel_tables()) {
             CAPTURE(tables->of<Real>().isa);
-            Lattice<Real> actual = start;
+            LoadedLattice<Real> actual = start;
             CoarseLoads<Real> own;
             actual.correct(tables->of<Real>(), own);
             CHECK(std::ranges::equal(actual.velocity, expected.velocity));
@@ -234,7 +234,7 @@ TEST_SUITE("solver/coarse loads") {
     }
 
     TEST_CASE("a correction that does little is followed by longer and longer pauses") {
-        Lattice<double> lattice(6);  // at rest
+        LoadedLattice<double> lattice(6);  // at rest
         CoarseLoads<double> coarse;
         int steps = 0, last = 0;
         std::vector<int> pauses;
@@ -245,7 +245,7 @@ TEST_SUITE("solver/coarse loads") {
             lattice.correct(scalar_kernels<double>(), coarse);
         }
         CHECK(pauses == std::vector<int>{2, 4, 8, 16, 16, 16});
-        Lattice<double> moving(6);
+        LoadedLattice<double> moving(6);
         for (std::size_t c = 0; c < moving.a.size(); ++c) {  // loads that balance, as in a pile
             moving.normal_impulse[c] = static_cast<std::size_t>(moving.a[c]) < kDiscs ? 1 : 0;
             moving.friction_impulse[c] = 0;
