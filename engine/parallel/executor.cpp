@@ -15,11 +15,13 @@ namespace {
 
 // A processor that other programs use can keep a finished thread waiting for whole time slices, some
 // milliseconds, at the end of every loop. When the wait is this much longer than the work was, the next loops
-// run on one thread, twice as many each time; results do not depend on it.
+// run on one thread, twice as many each time; results do not depend on it. The same goes for the wait at the
+// end of a step for threads that stand by.
 constexpr double kLongestWait = 100e-6;  // s, waking threads and small differences between chunks
 constexpr double kLongestWaitOfWork = 4;
 constexpr int kFewestLoopsAlone = 64;
 constexpr int kMostLoopsAlone = 4096;
+constexpr int kForgetting = 1024;  // loops without such a wait in which most of that is forgotten
 
 int usable_threads(int wanted, bool embedding_program_has_threads) {
     if (embedding_program_has_threads) return wanted;
@@ -46,8 +48,10 @@ bool Executor::is_left_alone() const {
 /// @param waited, worked  s, of the caller's thread in one loop
 void Executor::note_wait(double waited, double worked) const {
     const bool too_long = waited > kLongestWait + kLongestWaitOfWork * worked;
-    loops_next_time_ = too_long ? std::min(2 * loops_next_time_, kMostLoopsAlone)
-                                : std::max(loops_next_time_ / 2, kFewestLoopsAlone);
+    loops_next_time_ = too_long
+                           ? std::min(2 * loops_next_time_, kMostLoopsAlone)
+                           : std::max(loops_next_time_ - (loops_next_time_ + kForgetting - 1) / kForgetting,
+                                      kFewestLoopsAlone);
     if (too_long) loops_alone_ = loops_next_time_;
 }
 
@@ -55,12 +59,15 @@ void Executor::gather_team(TeamCall work) const {
 #if defined(_OPENMP)
     team_.gather(static_cast<std::size_t>(threads_));
     std::exception_ptr error;
+    const double start = seconds_now();
+    double begun = start, done = start;
 #pragma omp parallel num_threads(threads_)
     {
         const auto thread = static_cast<std::size_t>(omp_get_thread_num());
         if (thread > 0) {
             team_.stand_by(thread);
         } else {
+            begun = seconds_now();
             team_.begin(static_cast<std::size_t>(omp_get_num_threads()));
             try {
                 work.invoke(work.function);
@@ -68,8 +75,10 @@ void Executor::gather_team(TeamCall work) const {
                 error = std::current_exception();
             }
             team_.dismiss();
+            done = seconds_now();
         }
     }
+    note_wait(begun - start + (seconds_now() - done), done - begun);
     if (error) std::rethrow_exception(error);
 #else
     work.invoke(work.function);
