@@ -71,7 +71,7 @@ class SoftSolver {
     void end_contacts(const WorldState<Real>& world, Books& books);
     /// Parts who has ended the step deep in somebody else (soft_parting.cpp): by displacement alone.
     /// @param fastest  m/s, of all bodies at the start
-    /// Cost: nothing unless somebody moved by the smallest radius or started deep in another one.
+    /// Cost: nothing unless somebody moved by four of the smallest radius or started deep in another one.
     void part_bodies(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
                      const Column<Real>& motion, const Candidates<Real>& candidates, double fastest);
     /// Columns from records.

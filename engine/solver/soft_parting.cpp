@@ -13,7 +13,7 @@ namespace carom {
 namespace {
 
 /// Bodies are asked one by one if the fastest moves farther than this in a step, of the smallest radius.
-constexpr double kSwiftWay = 1;
+constexpr double kSwiftWay = 4;
 /// Of its own radius: who ends a step so far from where it would have flown may be in somebody.
 constexpr double kDeflected = 0.05;
 /// Of the smaller radius: what is left of an overlap.
@@ -266,7 +266,7 @@ void SoftSolver<Real>::part_bodies(const WorldState<Real>& world, const EdgeCand
                               Vec2{displacement_[2 * row], displacement_[2 * row + 1]};
     const bool any_deflected = is_fast && mark_deflected(world, motion);
     const bool any_stuck = is_fast && mark_stuck(world);
-    if (is_crowded_) mark_deep(kLeftOver * smallest_radius);
+    if (is_crowded_) mark_deep(deep_);
     if (!any_deflected && !any_stuck && !is_crowded_) return;
     for (int round = 0; round < kRounds; ++round) {
         parting_.pairs.clear(), parting_.planes.clear();
