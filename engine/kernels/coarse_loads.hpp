@@ -99,23 +99,9 @@ void scale_loads_pairs(const SolveContacts<Real>& k, std::size_t first, std::siz
     using Lanes = simd::Lanes<Real, Isa>;
     using F = typename Lanes::Batch;
     for (std::size_t c = first; c < last; c += Lanes::size) {
-        const std::int32_t *row_a = k.contacts.a + c, *row_b = k.contacts.b + c;
-        BodyLanes<Lanes> a{Lanes::load_rows4(k.velocity, row_a)}, b{Lanes::load_rows4(k.velocity, row_b)};
-        const F nx = Lanes::load(k.contacts.normal_x + c), ny = Lanes::load(k.contacts.normal_y + c);
-        const F share = F(Real(0.5)) * (Lanes::gather_at(k.scale, row_a) + Lanes::gather_at(k.scale, row_b));
-        const F normal = share * Lanes::load(k.contacts.normal_impulse + c);
-        F tangent(0);
-        if constexpr ((kVariant & kRough) != 0)
-            tangent = share * Lanes::load(k.contacts.friction_impulse + c);
-        a.template take<kVariant>(normal, tangent, nx, ny, F(-1));
-        b.template take<kVariant>(normal, tangent, nx, ny, F(1));
-        if constexpr ((kVariant & kRolling) != 0) {
-            const F roll = share * Lanes::load(k.contacts.rolling_impulse + c), of_a = share_of<Lanes>(k, c);
-            a.record[2] -= of_a * a.template inverse_inertia<kVariant>() * roll;
-            b.record[2] += (F(1) - of_a) * b.template inverse_inertia<kVariant>() * roll;
-        }
-        Lanes::store_rows4(k.velocity, row_a, a.record);
-        Lanes::store_rows4(k.velocity, row_b, b.record);
+        const F share = F(Real(0.5)) * (Lanes::gather_at(k.scale, k.contacts.a + c) +
+                                        Lanes::gather_at(k.scale, k.contacts.b + c));
+        give_impulses_to_pairs<kVariant, Lanes>(k, c, share);
         multiply_impulses<kVariant, Lanes>(k, c, F(1) + share);
     }
 }
@@ -125,19 +111,8 @@ void scale_loads_supports(const SolveContacts<Real>& k, std::size_t first, std::
     using Lanes = simd::Lanes<Real, Isa>;
     using F = typename Lanes::Batch;
     for (std::size_t c = first; c < last; c += Lanes::size) {
-        const std::int32_t* row = k.contacts.a + c;
-        BodyLanes<Lanes> body{Lanes::load_rows4(k.velocity, row)};
-        const F share = Lanes::gather_at(k.scale, row);
-        F tangent(0);
-        if constexpr ((kVariant & kRough) != 0)
-            tangent = share * Lanes::load(k.contacts.friction_impulse + c);
-        body.template take<kVariant>(share * Lanes::load(k.contacts.normal_impulse + c), tangent,
-                                     Lanes::load(k.contacts.normal_x + c),
-                                     Lanes::load(k.contacts.normal_y + c), F(-1));
-        if constexpr ((kVariant & kRolling) != 0)
-            body.record[2] -= share_of<Lanes>(k, c) * body.template inverse_inertia<kVariant>() * share *
-                              Lanes::load(k.contacts.rolling_impulse + c);
-        Lanes::store_rows4(k.velocity, row, body.record);
+        const F share = Lanes::gather_at(k.scale, k.contacts.a + c);
+        give_impulses_to_supported<kVariant, Lanes>(k, c, share);
         multiply_impulses<kVariant, Lanes>(k, c, F(1) + share);
     }
 }

@@ -272,48 +272,58 @@ void solve_supports(const SolveContacts<Real>& arguments, std::size_t first, std
     }
 }
 
+/// Gives the bodies of a batch of pairs a share of the impulses that their contacts have.
+template <unsigned kVariant, class Lanes, class Real>
+void give_impulses_to_pairs(const SolveContacts<Real>& k, std::size_t c, typename Lanes::Batch share) {
+    using F = typename Lanes::Batch;
+    const std::int32_t *row_a = k.contacts.a + c, *row_b = k.contacts.b + c;
+    BodyLanes<Lanes> a{Lanes::load_rows4(k.velocity, row_a)}, b{Lanes::load_rows4(k.velocity, row_b)};
+    const F nx = Lanes::load(k.contacts.normal_x + c), ny = Lanes::load(k.contacts.normal_y + c);
+    const F normal = share * Lanes::load(k.contacts.normal_impulse + c);
+    F tangent(0);
+    if constexpr ((kVariant & kRough) != 0) tangent = share * Lanes::load(k.contacts.friction_impulse + c);
+    a.template take<kVariant>(normal, tangent, nx, ny, F(-1));
+    b.template take<kVariant>(normal, tangent, nx, ny, F(1));
+    if constexpr ((kVariant & kRolling) != 0) {
+        const F roll = share * Lanes::load(k.contacts.rolling_impulse + c), of_a = share_of<Lanes>(k, c);
+        a.record[2] -= of_a * a.template inverse_inertia<kVariant>() * roll;
+        b.record[2] += (F(1) - of_a) * b.template inverse_inertia<kVariant>() * roll;
+    }
+    Lanes::store_rows4(k.velocity, row_a, a.record);
+    Lanes::store_rows4(k.velocity, row_b, b.record);
+}
+
+/// The same for supports.
+template <unsigned kVariant, class Lanes, class Real>
+void give_impulses_to_supported(const SolveContacts<Real>& k, std::size_t c, typename Lanes::Batch share) {
+    using F = typename Lanes::Batch;
+    BodyLanes<Lanes> body{Lanes::load_rows4(k.velocity, k.contacts.a + c)};
+    F tangent(0);
+    if constexpr ((kVariant & kRough) != 0) tangent = share * Lanes::load(k.contacts.friction_impulse + c);
+    body.template take<kVariant>(share * Lanes::load(k.contacts.normal_impulse + c), tangent,
+                                 Lanes::load(k.contacts.normal_x + c), Lanes::load(k.contacts.normal_y + c),
+                                 F(-1));
+    if constexpr ((kVariant & kRolling) != 0)
+        body.record[2] -= share_of<Lanes>(k, c) * body.template inverse_inertia<kVariant>() *
+                          (share * Lanes::load(k.contacts.rolling_impulse + c));
+    Lanes::store_rows4(k.velocity, k.contacts.a + c, body.record);
+}
+
 /// Gives the bodies the impulses that their contacts had at the end of the step before.
 template <unsigned kVariant, class Real, class Isa>
 void warm_start_pairs(const SolveContacts<Real>& arguments, std::size_t first, std::size_t last) {
-    const SolveContacts<Real> k = arguments;  // a copy: no store can change it
     using Lanes = simd::Lanes<Real, Isa>;
-    using F = typename Lanes::Batch;
-    for (std::size_t c = first; c < last; c += Lanes::size) {
-        const std::int32_t *row_a = k.contacts.a + c, *row_b = k.contacts.b + c;
-        BodyLanes<Lanes> a{Lanes::load_rows4(k.velocity, row_a)}, b{Lanes::load_rows4(k.velocity, row_b)};
-        const F nx = Lanes::load(k.contacts.normal_x + c), ny = Lanes::load(k.contacts.normal_y + c);
-        const F normal = Lanes::load(k.contacts.normal_impulse + c);
-        F tangent(0);
-        if constexpr ((kVariant & kRough) != 0) tangent = Lanes::load(k.contacts.friction_impulse + c);
-        a.template take<kVariant>(normal, tangent, nx, ny, F(-1));
-        b.template take<kVariant>(normal, tangent, nx, ny, F(1));
-        if constexpr ((kVariant & kRolling) != 0) {
-            const F roll = Lanes::load(k.contacts.rolling_impulse + c), of_a = share_of<Lanes>(k, c);
-            a.record[2] -= of_a * a.template inverse_inertia<kVariant>() * roll;
-            b.record[2] += (F(1) - of_a) * b.template inverse_inertia<kVariant>() * roll;
-        }
-        Lanes::store_rows4(k.velocity, row_a, a.record);
-        Lanes::store_rows4(k.velocity, row_b, b.record);
-    }
+    const SolveContacts<Real> k = arguments;  // a copy: no store can change it
+    for (std::size_t c = first; c < last; c += Lanes::size)
+        give_impulses_to_pairs<kVariant, Lanes>(k, c, typename Lanes::Batch(1));
 }
 
 template <unsigned kVariant, class Real, class Isa>
 void warm_start_supports(const SolveContacts<Real>& arguments, std::size_t first, std::size_t last) {
-    const SolveContacts<Real> k = arguments;  // a copy: no store can change it
     using Lanes = simd::Lanes<Real, Isa>;
-    using F = typename Lanes::Batch;
-    for (std::size_t c = first; c < last; c += Lanes::size) {
-        BodyLanes<Lanes> body{Lanes::load_rows4(k.velocity, k.contacts.a + c)};
-        F tangent(0);
-        if constexpr ((kVariant & kRough) != 0) tangent = Lanes::load(k.contacts.friction_impulse + c);
-        body.template take<kVariant>(Lanes::load(k.contacts.normal_impulse + c), tangent,
-                                     Lanes::load(k.contacts.normal_x + c),
-                                     Lanes::load(k.contacts.normal_y + c), F(-1));
-        if constexpr ((kVariant & kRolling) != 0)
-            body.record[2] -= share_of<Lanes>(k, c) * body.template inverse_inertia<kVariant>() *
-                              Lanes::load(k.contacts.rolling_impulse + c);
-        Lanes::store_rows4(k.velocity, k.contacts.a + c, body.record);
-    }
+    const SolveContacts<Real> k = arguments;  // a copy: no store can change it
+    for (std::size_t c = first; c < last; c += Lanes::size)
+        give_impulses_to_supported<kVariant, Lanes>(k, c, typename Lanes::Batch(1));
 }
 
 }  // namespace
