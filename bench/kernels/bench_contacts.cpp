@@ -35,7 +35,7 @@ struct PressedPairs {
           floor(count),
           velocity(8 * count),
           displacement(4 * count),
-          is_restless(count / kContactBlock) {
+          needs_second_sweep(count / kContactBlock) {
         std::mt19937 random(19);
         std::uniform_real_distribution<double> speed(-0.1, 0.1);
         for (std::size_t c = 0; c < count; ++c) {
@@ -78,13 +78,13 @@ struct PressedPairs {
                 .calm = 0,
                 .over_relaxation = Real(1.7),
                 .calm_over_relaxation = Real(1.4),
-                .is_restless = is_restless.data()};
+                .needs_second_sweep = needs_second_sweep.data()};
     }
 
     Column<std::int32_t> a, b;
     Column<Real> normal_x, normal_y, separation, mass, normal_impulse, friction_impulse, floor;
     Column<Real> velocity, displacement;
-    Column<std::uint8_t> is_restless;
+    Column<std::uint8_t> needs_second_sweep;
 };
 
 /// @param numbers     of an item, read and written

@@ -7,7 +7,7 @@
 
 #include "broadphase/candidates.hpp"
 #include "math/rotation.hpp"
-#include "world/world_state.hpp"
+#include "state/world_state.hpp"
 
 namespace carom {
 

@@ -3,7 +3,7 @@
 #include "isa/kernel_table.hpp"
 #include "kernels/advance_bodies.hpp"
 #include "kernels/begin_flight.hpp"
-#include "kernels/coarse_loads.hpp"
+#include "kernels/coarse_correction.hpp"
 #include "kernels/end_flight.hpp"
 #include "kernels/find_bounds.hpp"
 #include "kernels/find_candidates.hpp"
@@ -30,8 +30,8 @@ constexpr ContactKernels<Real> make_contact_kernels() {
         .sum_loads_supports = &sum_loads_supports<kVariant, Real, Isa>,
         .scale_loads_pairs = &scale_loads_pairs<kVariant, Real, Isa>,
         .scale_loads_supports = &scale_loads_supports<kVariant, Real, Isa>,
-        .keep_loads_pairs = &keep_loads<kVariant, true, Real, Isa>,
-        .keep_loads_supports = &keep_loads<kVariant, false, Real, Isa>,
+        .keep_loads_pairs = &retain_correction<kVariant, true, Real, Isa>,
+        .keep_loads_supports = &retain_correction<kVariant, false, Real, Isa>,
     };
 }
 

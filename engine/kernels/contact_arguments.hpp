@@ -66,8 +66,9 @@ struct SolveContacts {
     Real calm;  // m/s: a contact that changes by no more needs no second sweep; below zero: all need one
     Real over_relaxation;       // of normal impulses, 1 ... 2
     Real calm_over_relaxation;  // of those of calm contacts
-    std::uint8_t* is_restless;  // out, [last / kContactBlock]: set where a contact of the block is not calm
-    // Of kernels/coarse_loads.hpp alone.
+    std::uint8_t*
+        needs_second_sweep;  // out, [last / kContactBlock]: set where a contact of the block is not calm
+    // Of kernels/coarse_correction.hpp alone.
     const Real* reach = nullptr;  // m, sum of the radii; null where b is
     Real* load = nullptr;         // [rows][4]
     Real* stress = nullptr;       // [rows][4]

@@ -30,7 +30,7 @@ struct BodyLanes {
     /// Takes an impulse `normal` along n and `tangent` along t at the rim; the rim arm has the sign of both
     /// bodies' (docs/conventions.md): j along the tangent on b slows both rims.
     template <unsigned kVariant>
-    void take(F normal, F tangent, F nx, F ny, F sign) {
+    void apply_impulse(F normal, F tangent, F nx, F ny, F sign) {
         const F w = inverse_mass<kVariant>() * sign;
         if constexpr ((kVariant & kRough) != 0) {
             record[0] += w * (normal * nx - tangent * ny);
@@ -45,7 +45,7 @@ struct BodyLanes {
 
 /// An impulse of a batch of contacts after this sweep, and what the sweep added to it.
 template <class F>
-struct Held {
+struct ImpulseUpdate {
     F impulse, added;
 };
 
@@ -56,9 +56,9 @@ struct Held {
 /// it goes farther than the contact alone would want, since the next one will push back; less so where it
 /// hardly changes, because nothing follows on the first sweep there.
 template <bool kOverRelaxed, class Lanes, class Real>
-Held<typename Lanes::Batch> solve_normal(const SolveContacts<Real>& k, std::size_t c,
-                                         typename Lanes::Batch mass, typename Lanes::Batch velocity,
-                                         typename Lanes::Batch floor) {
+ImpulseUpdate<typename Lanes::Batch> solve_normal(const SolveContacts<Real>& k, std::size_t c,
+                                                  typename Lanes::Batch mass, typename Lanes::Batch velocity,
+                                                  typename Lanes::Batch floor) {
     using F = typename Lanes::Batch;
     const F before = Lanes::load(k.contacts.normal_impulse + c);
     F wanted = mass * (floor - velocity);
@@ -137,11 +137,11 @@ void note_largest_impulse(const SolveContacts<Real>& k, std::size_t c) {
 
 /// Marks the block of a batch in which a contact has changed too much to be left after one sweep.
 template <class Lanes, class Real>
-void note_restless(const SolveContacts<Real>& k, std::size_t c, typename Lanes::Batch mass,
-                   typename Lanes::Batch normal_added, typename Lanes::Batch tangent_added) {
+void note_second_sweep(const SolveContacts<Real>& k, std::size_t c, typename Lanes::Batch mass,
+                       typename Lanes::Batch normal_added, typename Lanes::Batch tangent_added) {
     using F = typename Lanes::Batch;
     const F added = simd::max(simd::abs(normal_added), simd::abs(tangent_added));
-    if (simd::any(added > mass * F(k.calm))) k.is_restless[c / kContactBlock] = 1;
+    if (simd::any(added > mass * F(k.calm))) k.needs_second_sweep[c / kContactBlock] = 1;
 }
 
 /// Pairs of bodies that both move. kFirst: the first sweep of a substep.
@@ -204,11 +204,11 @@ void solve_pairs(const SolveContacts<Real>& arguments, std::size_t first, std::s
         }
         const F tangent =
             solve_friction<kVariant, Lanes>(k, c, normal.impulse, tangent_mass, tangent_velocity);
-        a.template take<kVariant>(normal.added, tangent, nx, ny, F(-1));
-        b.template take<kVariant>(normal.added, tangent, nx, ny, F(1));
+        a.template apply_impulse<kVariant>(normal.added, tangent, nx, ny, F(-1));
+        b.template apply_impulse<kVariant>(normal.added, tangent, nx, ny, F(1));
         Lanes::store_rows4(k.velocity, row_a, a.record);
         Lanes::store_rows4(k.velocity, row_b, b.record);
-        if constexpr (kFirst) note_restless<Lanes>(k, c, mass, normal.added, tangent);
+        if constexpr (kFirst) note_second_sweep<Lanes>(k, c, mass, normal.added, tangent);
     }
 }
 
@@ -267,7 +267,7 @@ void solve_supports(const SolveContacts<Real>& arguments, std::size_t first, std
         }
         const F tangent =
             solve_friction<kVariant, Lanes>(k, c, normal.impulse, tangent_mass, tangent_velocity);
-        body.template take<kVariant>(normal.added, tangent, nx, ny, F(-1));
+        body.template apply_impulse<kVariant>(normal.added, tangent, nx, ny, F(-1));
         Lanes::store_rows4(k.velocity, row, body.record);
     }
 }
@@ -282,8 +282,8 @@ void give_impulses_to_pairs(const SolveContacts<Real>& k, std::size_t c, typenam
     const F normal = share * Lanes::load(k.contacts.normal_impulse + c);
     F tangent(0);
     if constexpr ((kVariant & kRough) != 0) tangent = share * Lanes::load(k.contacts.friction_impulse + c);
-    a.template take<kVariant>(normal, tangent, nx, ny, F(-1));
-    b.template take<kVariant>(normal, tangent, nx, ny, F(1));
+    a.template apply_impulse<kVariant>(normal, tangent, nx, ny, F(-1));
+    b.template apply_impulse<kVariant>(normal, tangent, nx, ny, F(1));
     if constexpr ((kVariant & kRolling) != 0) {
         const F roll = share * Lanes::load(k.contacts.rolling_impulse + c), of_a = share_of<Lanes>(k, c);
         a.record[2] -= of_a * a.template inverse_inertia<kVariant>() * roll;
@@ -300,9 +300,9 @@ void give_impulses_to_supported(const SolveContacts<Real>& k, std::size_t c, typ
     BodyLanes<Lanes> body{Lanes::load_rows4(k.velocity, k.contacts.a + c)};
     F tangent(0);
     if constexpr ((kVariant & kRough) != 0) tangent = share * Lanes::load(k.contacts.friction_impulse + c);
-    body.template take<kVariant>(share * Lanes::load(k.contacts.normal_impulse + c), tangent,
-                                 Lanes::load(k.contacts.normal_x + c), Lanes::load(k.contacts.normal_y + c),
-                                 F(-1));
+    body.template apply_impulse<kVariant>(share * Lanes::load(k.contacts.normal_impulse + c), tangent,
+                                          Lanes::load(k.contacts.normal_x + c),
+                                          Lanes::load(k.contacts.normal_y + c), F(-1));
     if constexpr ((kVariant & kRolling) != 0)
         body.record[2] -= share_of<Lanes>(k, c) * body.template inverse_inertia<kVariant>() *
                           (share * Lanes::load(k.contacts.rolling_impulse + c));

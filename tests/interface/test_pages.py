@@ -19,7 +19,7 @@ def text_of(path):
 
 def stages_of_source():
     """(name, reads, writes) of each stage, in order."""
-    return re.findall(r'StageInfo\{\s*"([^"]*)",\s*"([^"]*)",\s*"([^"]*)"\s*\}', text_of("engine/stage_info.hpp"))
+    return re.findall(r'StageInfo\{\s*"([^"]*)",\s*"([^"]*)",\s*"([^"]*)"\s*\}', text_of("engine/step/stage_info.hpp"))
 
 
 def pages():
@@ -39,10 +39,10 @@ class StagesTest(unittest.TestCase):
         self.assertEqual(headings, [name for name, _, _ in stages_of_source()])
 
     def test_the_step_runs_the_stages_in_the_order_of_the_list(self):
-        run = re.findall(r"run\(StageName::(\w+), plan\.(\w+)\)", text_of("engine/step.cpp"))
+        run = re.findall(r"run\(StageName::(\w+), plan\.(\w+)\)", text_of("engine/step/step.cpp"))
         names = [name for name, _, _ in stages_of_source()]
         self.assertEqual(run, [(name, name) for name in names])
-        listed = re.search(r"enum class StageName[^{]*\{([^}]*)\}", text_of("engine/stage_info.hpp")).group(1)
+        listed = re.search(r"enum class StageName[^{]*\{([^}]*)\}", text_of("engine/step/stage_info.hpp")).group(1)
         self.assertEqual(re.findall(r"\w+", listed), names)
 
 
@@ -73,7 +73,7 @@ class NamesTest(unittest.TestCase):
     def test_files(self):
         for page, name in self.names(r"`((?:engine|bench|tests|docs|tools)/[\w./-]+)`"):
             self.assertTrue((SOURCE / name).exists(), f"{page}: {name}")
-        for page, name in self.names(r"`((?:stages|solver|world|isa|effects)/[\w./-]+\.\w+)`"):
+        for page, name in self.names(r"`((?:constraints|solvers|sleeping|step|shapes|world|isa|effects|state)/[\w./-]+\.\w+)`"):
             self.assertTrue((SOURCE / "engine" / name).exists(), f"{page}: {name}")
 
     def test_functions_types_and_keys(self):

@@ -1,6 +1,6 @@
 // What contacts of solver `soft` carry, and how well they are solved: read inside the solver.
 #include "isa/select_isa.hpp"
-#include "step.hpp"
+#include "step/step.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"
 
@@ -26,9 +26,9 @@ struct Inside {
     explicit Inside(const Scene& scene, int substeps = 4) {
         sim.kernels = &select_kernels("auto").of<Real>();
         sim.executor = Executor(1, {});
-        sim.method = Solver::soft;
+        sim.solver = Solver::soft;
         sim.candidates = Candidates<Real>(MarginRule::own);
-        sim.substeps = substeps;
+        sim.substeps_asked_for = substeps;
         sim.world.effects = call_effects(scene, {}).effects;
         sim.world.gravity = scene.gravity;
         sim.world.walls = scene.walls;
@@ -45,7 +45,7 @@ struct Inside {
             if ((pairs.a[i] == a && pairs.b[i] == b) || (pairs.a[i] == b && pairs.b[i] == a))
                 impulse = static_cast<double>(pairs.normal_impulse[i]);
         });
-        return impulse / sim.substep_h;
+        return impulse / sim.substep_dt;
     }
     /// N, that the floor holds up.
     double floor_force() const {
@@ -54,7 +54,7 @@ struct Inside {
             if (sim.soft.graph.supports.b[i] == kBottom)
                 impulse += static_cast<double>(sim.soft.graph.supports.normal_impulse[i]);
         });
-        return impulse / sim.substep_h;
+        return impulse / sim.substep_dt;
     }
 };
 

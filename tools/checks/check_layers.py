@@ -14,25 +14,29 @@ from sources import ROOT, project_files, report, without_comments
 LAYER_OF_FOLDER = {
     "include": -1,  # the public headers: everybody may include them, they include only each other
     "math": 0,
-    "state": 1, "simd": 1, "parallel": 1,
+    "simd": 1, "parallel": 1, "shapes": 1,
     "effects": 2,
     "narrowphase": 2,  # geometry of two shapes: no columns, no physics
     "kernels": 3,
-    "world": 4, "isa": 4,
-    "broadphase": 4.5,  # below the solvers: `impulse` asks it for neighbours while it works
-    "solver": 5, "joints": 5, "ledger": 5, "scene": 5,
-    "stages": 5.5,  # what the step calls, one function a stage: they join the parts of layer 5
+    "state": 3,  # what a snapshot holds
+    "isa": 4,
+    "broadphase": 5,  # below the solvers: `impulse` asks it for neighbours while it works
+    "scene": 5,
+    "constraints": 6,  # what acts between two bodies
+    "sleeping": 7,
+    "solvers": 8,
+    "step": 9,  # joins the stages of the solvers
+    "world": 10,  # the public class over all of it
     "reference": 5,  # and see SHARES_NOTHING
 }
 LAYER_OF_FILE = {  # patterns of paths without suffix: files that differ from their folder or have none
     r"version": 0,
-    r"stage_(info|times)": 1,
+    r"step/stage_(info|times)": 1,
+    r"state/edges": 1,
     r"kernels/(\w+_)?arguments": 2,
     r"scene/mass": 2,
-    r"step_plan": 6,
-    r"step": 7,
 }
-TOP_LAYER = 8  # other files directly in engine/: what joins the step to the public headers
+TOP_LAYER = 11  # other files directly in engine/
 SHARES_NOTHING = "reference"  # the yardstick: includes the public headers and itself, nobody in engine/ includes it
 
 MAY_USE_OPENMP = ("parallel/",)

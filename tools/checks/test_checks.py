@@ -45,8 +45,8 @@ class WithoutComments(unittest.TestCase):
 class CheckLayers(WithFolder):
     def setUp(self):
         super().setUp()
-        for path in ("math/vec2", "state/bodies", "kernels/arguments", "kernels/drag", "solver/impulse", "joints/weld",
-                     "reference/pairwise", "include/carom/world", "step", "step_plan"):
+        for path in ("math/vec2", "state/bodies", "kernels/arguments", "kernels/drag", "solvers/impulse/impulse", "sleeping/islands",
+                     "reference/pairwise", "include/carom/world", "step/step"):
             self.write(f"engine/{path}.hpp", "")
 
     def findings(self, path, text):
@@ -59,20 +59,20 @@ class CheckLayers(WithFolder):
         self.assertIn(expected, findings[0])
 
     def test_lower_layers_and_the_own_folder_are_fine(self):
-        text = '#include <carom/world.hpp>\n#include "kernels/arguments.hpp"\n#include "weld.hpp"\n#include <vector>\n'
-        self.assertEqual(self.findings("engine/joints/rod.cpp", text), [])
+        text = '#include <carom/world.hpp>\n#include "kernels/arguments.hpp"\n#include "islands.hpp"\n#include <vector>\n'
+        self.assertEqual(self.findings("engine/sleeping/rod.cpp", text), [])
 
     def test_a_higher_layer(self):
-        self.assert_fails("engine/state/contacts.hpp", '\n#include "solver/impulse.hpp"\n', "contacts.hpp:2")
+        self.assert_fails("engine/state/contacts.hpp", '\n#include "solvers/impulse/impulse.hpp"\n', "contacts.hpp:2")
 
     def test_a_neighbour_in_the_same_layer(self):
-        self.assert_fails("engine/joints/rod.cpp", '#include "../solver/impulse.hpp"\n', "layer 5 includes layer 5")
+        self.assert_fails("engine/sleeping/rod.cpp", '#include "../solvers/impulse/impulse.hpp"\n', "layer 7 includes layer 8")
 
     def test_a_file_above_its_folder(self):
         self.assert_fails("engine/kernels/arguments.hpp", '#include "kernels/drag.hpp"\n', "layer 2 includes layer 3")
 
     def test_a_stage_that_includes_the_step(self):
-        self.assert_fails("engine/solver/soft.cpp", '#include "step.hpp"\n', "layer 5 includes layer 7")
+        self.assert_fails("engine/solvers/soft/soft_solver.cpp", '#include "step/step.hpp"\n', "layer 8 includes layer 9")
 
     def test_a_folder_in_no_layer(self):
         self.assert_fails("engine/magic/wand.cpp", '#include "math/vec2.hpp"\n', "engine/magic is in no layer")
@@ -83,22 +83,22 @@ class CheckLayers(WithFolder):
     def test_the_reference_shares_nothing(self):
         self.assert_fails("engine/reference/walls.cpp", '#include "math/vec2.hpp"\n', "shares no code")
         (self.root / "engine/reference/walls.cpp").unlink()
-        self.assert_fails("engine/solver/soft.cpp", '#include "reference/pairwise.hpp"\n', "shares no code")
+        self.assert_fails("engine/solvers/soft/soft_solver.cpp", '#include "reference/pairwise.hpp"\n', "shares no code")
 
     def test_a_tool_that_includes_a_private_header(self):
         self.assert_fails("tools/carom/run.cpp", '#include "state/bodies.hpp"\n', "public headers only")
 
     def test_xsimd_outside_of_its_places(self):
-        self.assert_fails("engine/solver/soft.cpp", "#include <xsimd/xsimd.hpp>\n", "includes xsimd outside")
+        self.assert_fails("engine/solvers/soft/soft_solver.cpp", "#include <xsimd/xsimd.hpp>\n", "includes xsimd outside")
 
     def test_openmp_outside_of_its_place(self):
-        self.assert_fails("engine/solver/soft.cpp", "void f() {\n#pragma omp parallel\n}\n", "uses OpenMP outside")
-        self.assertEqual(self.findings("engine/solver/soft.cpp", "// no #pragma omp here\n"), [])
+        self.assert_fails("engine/solvers/soft/soft_solver.cpp", "void f() {\n#pragma omp parallel\n}\n", "uses OpenMP outside")
+        self.assertEqual(self.findings("engine/solvers/soft/soft_solver.cpp", "// no #pragma omp here\n"), [])
         self.assertEqual(self.findings("engine/parallel/chunks.cpp", "#pragma omp parallel for\n"), [])
 
 
 class CheckExactOperations(WithFolder):
-    def findings(self, line, path="engine/solver/impulse.cpp"):
+    def findings(self, line, path="engine/solvers/impulse/impulse_solver.cpp"):
         self.write(path, line + "\n")
         return check_exact_operations.check(self.root)
 

@@ -1,0 +1,135 @@
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "broadphase/candidates.hpp"
+#include "broadphase/edge_candidates.hpp"
+#include "constraints/contact_candidates.hpp"
+#include "constraints/impulse_memory.hpp"
+#include "constraints/rolling_memory.hpp"
+#include "constraints/row_renaming.hpp"
+#include "constraints/task_groups.hpp"
+#include "parallel/executor.hpp"
+#include "state/bodies.hpp"
+
+namespace carom {
+
+/// A body that is awake, or kinematic, and one that sleeps, near enough to touch before the pairs are void.
+struct SleeperPair {
+    std::int32_t row, sleeper;
+};
+
+/// A body pushed another one that was removed.
+struct LostContact {
+    std::int32_t gone, row;  // a number for who is not there any more; of who is
+    friend auto operator<=>(const LostContact&, const LostContact&) = default;
+};
+
+/// Which bodies can touch which, in groups and colours, until the candidate pairs change.
+///
+/// Colouring is greedy in the order of the pairs, group by group, which depends on the input alone. It is
+/// done anew with the candidate pairs, because then the pairs change throughout; between rebuilds nothing is
+/// done.
+template <class Real>
+class ContactGraph {
+  public:
+    static constexpr std::size_t kColours = 64;  // one bit each of a word a body
+
+    /// Takes the candidate pairs over. Contacts that were there before keep their impulses.
+    /// Cost: about 20 ns a pair on one thread.
+    void renew(const Candidates<Real>& candidates, const EdgeCandidates<Real>& edges,
+               const Bodies<Real>& bodies, const Walls* walls, const Executor& executor);
+
+    /// Adds the pairs that have come with new margins, and walls and edges that these reach: to the last
+    /// groups. Cost: O(contacts of those groups) if there are any.
+    void add(const Candidates<Real>& candidates, const EdgeCandidates<Real>& edges,
+             const Bodies<Real>& bodies, const Walls* walls);
+
+    /// Edges were removed; later ones moved up. Cost: O(supports).
+    void follow_removed_edges(EdgeStore::Removed gone);
+
+    bool keeps_rolling = false;             ///< rolling impulses, too
+    std::int64_t renewals = 0;              ///< so many times pairs were found anew
+    std::int64_t version = 0;               ///< counts renewals and additions
+    std::span<const SleeperPair> sleepers;  ///< supports besides those that `renew` finds
+    RowRenaming trail;                      ///< to be told of rows that change between renewals
+    std::vector<LostContact> lost;          ///< that pushed, until they are dealt with
+    TaskGroups groups;                      ///< of the last renewal
+    ContactCandidates<Real> pairs;          ///< of two bodies that move, a < b
+    /// Of a body that moves and what nothing moves: walls, immovable bodies.
+    ContactCandidates<Real> supports;
+
+    /// Rows that padding names: each group has its own beyond the bodies, so that no two threads write to
+    /// one.
+    static std::size_t padding_rows(const TaskGroups& groups) {
+        return groups.count() + groups.support_count();
+    }
+
+    std::size_t bytes() const;
+
+  private:
+    /// Contacts in the order of groups, before they are sorted by colour.
+    struct Found {
+        Column<std::int32_t> a, b;
+        Column<std::uint8_t> colour;  // kColours: none was free
+        Column<std::uint32_t> order;  // in which a group's contacts are coloured
+        Column<Real> normal_impulse, friction_impulse;
+        std::vector<std::size_t> begin;  // of each group, and the end
+
+        void resize(std::size_t contacts) {
+            a.resize_for_overwrite(contacts), b.resize_for_overwrite(contacts);
+            colour.resize_for_overwrite(contacts), order.resize_for_overwrite(contacts);
+            normal_impulse.resize_for_overwrite(contacts), friction_impulse.resize_for_overwrite(contacts);
+        }
+        std::size_t bytes() const {
+            return a.bytes() + b.bytes() + colour.bytes() + order.bytes() + normal_impulse.bytes() +
+                   friction_impulse.bytes();
+        }
+    };
+
+    /// A contact of a last group, while that is laid out anew.
+    struct Late {
+        std::int32_t a, b;
+        Real normal_impulse, friction_impulse;
+        std::uint32_t colour;
+    };
+
+    void rename_rows();
+    double far_share(const Candidates<Real>& candidates, const TaskGroups& tried) const;
+    void choose_groups(const Candidates<Real>& candidates, std::size_t rows);
+    void find_crowds(const Candidates<Real>& candidates, std::size_t rows);
+    bool is_left_out(std::int32_t a, std::int32_t b, const Bodies<Real>& bodies) const;
+    void group_pairs(const Candidates<Real>& candidates, const Bodies<Real>& bodies,
+                     const Executor& executor);
+    template <class Pair>
+    void for_each_piece(const Candidates<Real>& candidates, const Bodies<Real>& bodies,
+                        const Executor& executor, const Pair& pair);
+    void list_walls(const Candidates<Real>& candidates, const Bodies<Real>& bodies, const Walls& walls);
+    void group_supports();
+    void colour_pairs(std::size_t rows, const Executor& executor);
+    void colour_supports(std::size_t rows);
+    void colour_group(Found& found, std::size_t group, std::uint64_t* of_a, std::uint64_t* of_b);
+    void sort_by_colour(const Found& found, ContactCandidates<Real>& sorted, std::size_t first_padding_row,
+                        const Executor& executor);
+    void add_late(ContactCandidates<Real>& sorted, std::int32_t padding_row, bool both_move);
+    void lay_out_colours(const Found& found, ContactCandidates<Real>& sorted, std::size_t first_padding_row);
+
+    Found found_pairs_, found_supports_;
+    std::vector<std::int32_t> listed_a_, listed_b_;  // supports as they are found
+    std::vector<Late> late_, new_pairs_, new_supports_;
+    std::vector<std::uint32_t> crowd_;          // candidates of each row; empty where no body has many
+    std::vector<std::uint32_t> piece_counts_;   // by piece of the pair list and group
+    Column<std::uint64_t> colours_of_[2];       // a row, bit a colour: inside or as a, as b of a border
+    std::vector<std::uint32_t> colour_counts_;  // by group and colour
+    std::vector<std::size_t> next_;             // place of each group's next contact without a colour
+    ImpulseMemory<Real> memory_;
+    RollingMemory<Real> rolling_of_pairs_, rolling_of_supports_;
+};
+
+extern template class ContactGraph<float>;
+extern template class ContactGraph<double>;
+
+}  // namespace carom

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace carom {
+
+/// Where rows have gone since `start`: they are sorted now and then, and the last row takes the place of a
+/// removed one.
+class RowRenaming {
+  public:
+    static constexpr std::int32_t kGone = INT32_MIN;  // a row that no longer exists; no wall, no edge
+
+    /// Follows the rows [0, rows) from here on.
+    void start(std::size_t rows);
+    /// Rows were sorted: new row i is the old row order[i]. Rows that were appended may be among them.
+    void follow_sorted(const std::int32_t* order, std::size_t count);
+    /// A body was removed; the last row took its place. Cost: O(rows) the first time since `start`, then
+    /// O(1).
+    void follow_removed(std::size_t row, std::size_t last);
+
+    /// Whether any row may have gone elsewhere.
+    bool has_moved() const { return has_moved_; }
+    /// Today's row of each row at the start, or kGone, [rows at the start]. Cost: O(rows).
+    const std::vector<std::int32_t>& new_rows();
+
+    std::size_t bytes() const { return (old_row_.capacity() + new_row_.capacity()) * sizeof(std::int32_t); }
+
+  private:
+    void keep();
+
+    std::size_t rows_ = 0;  // at the start
+    bool has_moved_ = false;
+    std::vector<std::int32_t> old_row_;  // of each present row, or kGone; if something has moved
+    std::vector<std::int32_t> new_row_;
+};
+
+}  // namespace carom

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <carom/scene.hpp>
+
+#include <array>
+#include <cstdint>
+#include <limits>
+
+// The walls around a world: up to four half planes that nothing moves. Everything that tells the sides apart
+// is here.
+
+namespace carom {
+
+/// Sides of the walls as the `b` of a meeting or of a support: rows are >= 0.
+enum WallSide : std::int32_t { kLeft = -1, kRight = -2, kBottom = -3, kTop = -4 };
+inline constexpr std::array kWallSides{kLeft, kRight, kBottom, kTop};
+
+inline bool has_wall(const Walls& walls, std::int32_t side) {
+    const bool has[] = {walls.left, walls.right, walls.bottom, walls.top};
+    return has[-1 - side];
+}
+
+/// From a body into the wall; no unit.
+inline Vec2 wall_normal(std::int32_t side) {
+    constexpr Vec2 kNormals[] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+    return kNormals[-1 - side];
+}
+
+/// A point of the wall's surface [m]: the corner that it shares with another one.
+inline Vec2 wall_corner(const Walls& walls, std::int32_t side) {
+    return side == kLeft || side == kBottom ? walls.min : walls.max;
+}
+
+/// Distance of a point from a wall [m]; negative behind it.
+inline double wall_clearance(const Walls& walls, std::int32_t side, Vec2 x) {
+    const double clearance[] = {x.x - walls.min.x, walls.max.x - x.x, x.y - walls.min.y, walls.max.y - x.y};
+    return clearance[-1 - side];
+}
+
+/// What the walls enclose [m]; infinite where there is none.
+template <class Real>
+struct Enclosure {
+    Real min_x, min_y, max_x, max_y;
+
+    explicit Enclosure(const Walls* walls) {
+        constexpr Real kOpen = std::numeric_limits<Real>::infinity();
+        min_x = walls && walls->left ? static_cast<Real>(walls->min.x) : -kOpen;
+        min_y = walls && walls->bottom ? static_cast<Real>(walls->min.y) : -kOpen;
+        max_x = walls && walls->right ? static_cast<Real>(walls->max.x) : kOpen;
+        max_y = walls && walls->top ? static_cast<Real>(walls->max.y) : kOpen;
+    }
+
+    bool is_outside(Real x, Real y) const { return (x < min_x) | (x > max_x) | (y < min_y) | (y > max_y); }
+
+    /// Calls fn(side) for the walls that something at (x, y) comes to within `reach`.
+    template <class Fn>
+    void for_each_side_within(Real x, Real y, Real reach, const Fn& fn) const {
+        const bool near[] = {x - min_x < reach, max_x - x < reach, y - min_y < reach, max_y - y < reach};
+        for (const std::int32_t side : kWallSides)
+            if (near[-1 - side]) fn(side);
+    }
+};
+
+}  // namespace carom

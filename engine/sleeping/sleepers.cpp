@@ -1,0 +1,274 @@
+#include "sleeping/sleepers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "effects/sleeping.hpp"
+#include "math/vec2_math.hpp"
+
+namespace carom {
+namespace {
+
+/// Islands are looked for so often while somebody has been still for long enough.
+constexpr double kLookInterval = kTimeToSleep / 8;  // s
+
+/// Calls fn(i) for every contact that carries an impulse.
+template <class Real, class Fn>
+void for_each_loaded(const ContactCandidates<Real>& contacts, const Fn& fn) {
+    contacts.for_each([&](std::size_t i) {
+        if (contacts.normal_impulse[i] > 0) fn(i);
+    });
+}
+
+/// Whether a support stands still, so that one can sleep on it.
+template <class Real>
+bool is_steady(const WorldState<Real>& world, std::int32_t support) {
+    if (support < 0) return true;
+    const Bodies<Real>& bodies = world.bodies;
+    const auto row = static_cast<std::size_t>(support);
+    if ((bodies.flags_of(row) & kKinematic) == 0) return true;
+    return bodies.velocity_x[row] == 0 && bodies.velocity_y[row] == 0 &&
+           (!bodies.has_rotation || bodies.angular_velocity[row] == 0);
+}
+
+}  // namespace
+
+/// @return whether anybody has been still for long enough.
+template <class Real>
+bool Sleepers<Real>::note_still(WorldState<Real>& world, double dt, double substep) const {
+    Bodies<Real>& bodies = world.bodies;
+    const double gravity = std::sqrt(length_squared(world.gravity));
+    bool any = false;
+    for (std::size_t row = 0; row < bodies.count; ++row) {
+        const double vx = bodies.velocity_x[row], vy = bodies.velocity_y[row], radius = bodies.radius[row];
+        const double rim =
+            bodies.has_rotation ? radius * static_cast<double>(bodies.angular_velocity[row]) : 0;
+        const double speed = still_speed(gravity, substep, radius);
+        const bool is_still = vx * vx + vy * vy <= speed * speed && rim * rim <= speed * speed;
+        bodies.still[row] = is_still ? bodies.still[row] + static_cast<float>(dt) : 0.0f;
+        any = any || bodies.still[row] >= static_cast<float>(kTimeToSleep);
+    }
+    return any;
+}
+
+/// Islands of the contacts that carry an impulse; which of them stay awake; which lean on sleepers.
+template <class Real>
+void Sleepers<Real>::connect(const WorldState<Real>& world, const ContactGraph<Real>& graph) {
+    const Bodies<Real>& bodies = world.bodies;
+    islands_.reset(bodies.count);
+    stays_awake_.assign(bodies.count, 0);
+    leaning_.clear();
+    for_each_loaded(graph.pairs, [&](std::size_t i) { islands_.join(graph.pairs.a[i], graph.pairs.b[i]); });
+    const auto keep_awake = [&](std::int32_t row) {
+        stays_awake_[static_cast<std::size_t>(islands_.island_of(row))] = 1;
+    };
+    for_each_loaded(graph.supports, [&](std::size_t i) {
+        const std::int32_t row = graph.supports.a[i], support = graph.supports.b[i];
+        if (support >= static_cast<std::int32_t>(bodies.count))
+            leaning_.push_back({row, bodies.island[static_cast<std::size_t>(support)]});
+        else if (!is_steady(world, support))
+            keep_awake(row);
+    });
+    for (std::size_t row = 0; row < bodies.count; ++row)
+        if (bodies.is_immovable(row) || bodies.still[row] < static_cast<float>(kTimeToSleep))
+            keep_awake(static_cast<std::int32_t>(row));
+}
+
+template <class Real>
+void Sleepers<Real>::keep_contact(const WorldState<Real>& world, const ContactCandidates<Real>& contacts,
+                                  std::size_t i, double substep) {
+    const std::int32_t a = contacts.a[i], b = contacts.b[i];
+    const std::int32_t smallest = islands_.island_of(a);
+    const auto force = [&](const Column<Real>& impulses) {
+        return impulses.empty() ? 0 : static_cast<double>(impulses[i]) / substep;
+    };
+    const BodyId id_a = world.bodies.id[static_cast<std::size_t>(a)];
+    kept_.push_back({label_[static_cast<std::size_t>(smallest)], id_a,
+                     b < 0 ? id_a : world.bodies.id[static_cast<std::size_t>(b)], b < 0 ? b : 0,
+                     force(contacts.normal_impulse), force(contacts.friction_impulse),
+                     force(contacts.rolling_impulse)});
+}
+
+template <class Real>
+void Sleepers<Real>::keep_contacts(const WorldState<Real>& world, ContactCandidates<Real>& contacts,
+                                   double substep) {
+    for_each_loaded(contacts, [&](std::size_t i) {
+        const std::int32_t smallest = islands_.island_of(contacts.a[i]);
+        if (label_[static_cast<std::size_t>(smallest)] < 0) return;
+        keep_contact(world, contacts, i, substep);
+        contacts.normal_impulse[i] = 0;  // they are no contacts of rows any more
+    });
+}
+
+/// Stops a row and moves it behind those awake.
+template <class Real>
+void Sleepers<Real>::lay_down(WorldState<Real>& world, std::size_t row) {
+    Bodies<Real>& bodies = world.bodies;
+    const Sums lost = world.sums_of(row);
+    world.books.sleep -= lost.energy.kinetic + lost.energy.rotational;
+    world.books.sleep_momentum -= lost.momentum;
+    world.dynamic_mass -= static_cast<double>(bodies.mass[row]);
+    bodies.velocity_x[row] = bodies.velocity_y[row] = 0;
+    if (bodies.has_rotation) bodies.angular_velocity[row] = 0;
+    const std::size_t last = bodies.count - 1;
+    bodies.island[row] = label_[static_cast<std::size_t>(islands_.island_of(order_[row]))];
+    world.swap_rows(row, last);
+    std::swap(order_[row], order_[last]);
+    --bodies.count, ++bodies.asleep;
+}
+
+template <class Real>
+void Sleepers<Real>::rename_island(WorldState<Real>& world, std::int32_t from, std::int32_t to) {
+    if (from == to) return;
+    for (std::size_t row = world.bodies.count; row < world.bodies.rows(); ++row)
+        if (world.bodies.island[row] == from) world.bodies.island[row] = to;
+    for (Kept& kept : kept_)
+        if (kept.island == from) kept.island = to;
+    for (std::int32_t& label : label_)
+        if (label == from) label = to;
+    --island_count_;
+}
+
+template <class Real>
+bool Sleepers<Real>::put_to_sleep(WorldState<Real>& world, ContactGraph<Real>& graph, double dt,
+                                  double substep) {
+    Bodies<Real>& bodies = world.bodies;
+    since_look_ += dt;
+    if (!note_still(world, dt, substep) || since_look_ < kLookInterval) return false;
+    since_look_ = 0;
+    connect(world, graph);
+    label_.assign(bodies.count, -1);
+    bool any = false;
+    for (std::size_t row = 0; row < bodies.count; ++row) {
+        if (islands_.island_of(static_cast<std::int32_t>(row)) != static_cast<std::int32_t>(row)) continue;
+        if (stays_awake_[row]) continue;
+        label_[row] = next_island_++, any = true, ++island_count_;
+    }
+    if (!any) return false;
+    for (const Held& held : leaning_) {
+        const auto smallest = static_cast<std::size_t>(islands_.island_of(held.row));
+        if (label_[smallest] < 0) continue;
+        std::int32_t other = held.island;
+        rename_island(world, other, label_[smallest]);
+        for (Held& later : leaning_)
+            if (later.island == other) later.island = label_[smallest];
+    }
+    keep_contacts(world, graph.pairs, substep), keep_contacts(world, graph.supports, substep);
+    order_.resize(bodies.count);
+    std::iota(order_.begin(), order_.end(), 0);
+    for (std::size_t row = bodies.count; row-- > 0;) {
+        const auto smallest = static_cast<std::size_t>(islands_.island_of(static_cast<std::int32_t>(row)));
+        if (label_[smallest] >= 0) lay_down(world, row);
+    }
+    graph.trail.follow_sorted(order_.data(), bodies.count);
+    world.list_immovable_rows();
+    is_grid_old_ = true, pairs_of_rebuild_ = -1;
+    pairs_.clear();
+    return true;
+}
+
+template <class Real>
+void Sleepers<Real>::forget_contacts(ContactGraph<Real>& graph, const WorldState<Real>& world) {
+    ContactCandidates<Real>& supports = graph.supports;
+    supports.for_each([&](std::size_t i) {
+        if (supports.b[i] >= static_cast<std::int32_t>(world.bodies.count))
+            supports.b[i] = supports.a[i], supports.normal_impulse[i] = 0;
+    });
+}
+
+template <class Real>
+bool Sleepers<Real>::mark_pressed(const WorldState<Real>& world, const ContactGraph<Real>& graph,
+                                  double substep) {
+    const Bodies<Real>& bodies = world.bodies;
+    if (pairs_.empty()) return false;
+    const double gravity = std::sqrt(length_squared(world.gravity));
+    for_each_loaded(graph.supports, [&](std::size_t i) {
+        const std::int32_t support = graph.supports.b[i];
+        if (support < static_cast<std::int32_t>(bodies.count)) return;
+        const auto sleeper = static_cast<std::size_t>(support);
+        const double speed =
+            static_cast<double>(graph.supports.normal_impulse[i]) * bodies.inverse_mass(sleeper);
+        if (speed > kWakingShare * still_speed(gravity, substep, bodies.radius[sleeper]))
+            mark(bodies.island[sleeper]);
+    });
+    return !marked_.empty();
+}
+
+template <class Real>
+std::size_t Sleepers<Real>::wake_marked(WorldState<Real>& world) {
+    if (marked_.empty()) return 0;
+    Bodies<Real>& bodies = world.bodies;
+    std::sort(marked_.begin(), marked_.end());
+    marked_.erase(std::unique(marked_.begin(), marked_.end()), marked_.end());
+    const auto is_marked = [&](std::int32_t island) {
+        return std::binary_search(marked_.begin(), marked_.end(), island);
+    };
+    const std::size_t before = bodies.count;
+    for (std::size_t row = bodies.count; row < bodies.count + bodies.asleep; ++row) {
+        if (!is_marked(bodies.island[row])) continue;
+        bodies.still[row] = 0;
+        world.dynamic_mass += static_cast<double>(bodies.mass[row]);
+        world.swap_rows(row, bodies.count);
+        ++bodies.count, --bodies.asleep;
+    }
+    const auto wakes = [&](const Kept& kept) { return is_marked(kept.island); };
+    std::copy_if(kept_.begin(), kept_.end(), std::back_inserter(woken_), wakes);
+    std::erase_if(kept_, wakes);
+    island_count_ -= static_cast<std::int64_t>(marked_.size());
+    woken_count_ += static_cast<std::int64_t>(marked_.size());
+    marked_.clear();
+    pairs_of_rebuild_ = -1;
+    pairs_.clear();
+    return bodies.count - before;
+}
+
+/// What a contact is filed under among those that have woken.
+struct Woken {
+    std::int32_t a, b;
+    std::size_t kept;
+    friend auto operator<=>(const Woken&, const Woken&) = default;
+};
+
+template <class Real>
+void Sleepers<Real>::restore_impulses(ContactGraph<Real>& graph, const WorldState<Real>& world,
+                                      double substep) {
+    if (woken_.empty()) return;
+    std::vector<Woken> filed;
+    for (std::size_t i = 0; i < woken_.size(); ++i) {
+        const Kept& kept = woken_[i];
+        const auto row_of = [&](BodyId id) {
+            return static_cast<std::int32_t>(world.handles.row_of_slot(id.index));
+        };
+        if (!world.handles.is_alive(kept.a) || !world.handles.is_alive(kept.b)) {
+            if (world.handles.is_alive(kept.a))
+                graph.lost.push_back({-1 - static_cast<std::int32_t>(kept.b.index), row_of(kept.a)});
+            if (world.handles.is_alive(kept.b))
+                graph.lost.push_back({-1 - static_cast<std::int32_t>(kept.a.index), row_of(kept.b)});
+            continue;
+        }
+        filed.push_back({row_of(kept.a), kept.support < 0 ? kept.support : row_of(kept.b), i});
+    }
+    std::sort(filed.begin(), filed.end());
+    const auto restore = [&](ContactCandidates<Real>& contacts, bool is_turned) {
+        contacts.for_each([&](std::size_t i) {
+            Woken wanted{contacts.a[i], contacts.b[i], 0};
+            if (is_turned) std::swap(wanted.a, wanted.b);
+            const auto found = std::lower_bound(filed.begin(), filed.end(), wanted);
+            if (found == filed.end() || found->a != wanted.a || found->b != wanted.b) return;
+            const Kept& kept = woken_[found->kept];
+            const auto impulse = [&](double force) { return static_cast<Real>(force * substep); };
+            contacts.normal_impulse[i] = impulse(kept.normal);
+            if (!contacts.friction_impulse.empty()) contacts.friction_impulse[i] = impulse(kept.friction);
+            if (!contacts.rolling_impulse.empty())
+                contacts.rolling_impulse[i] = impulse(is_turned ? -kept.rolling : kept.rolling);
+        });
+    };
+    restore(graph.pairs, false), restore(graph.pairs, true), restore(graph.supports, false);
+    woken_.clear();
+}
+
+template class Sleepers<float>;
+template class Sleepers<double>;
+
+}  // namespace carom

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "broadphase/candidates.hpp"
+#include "constraints/contact_graph.hpp"
+#include "sleeping/islands.hpp"
+#include "state/world_state.hpp"
+
+namespace carom {
+
+/// The bodies that sleep: rows behind those that a step works on. They stand in a grid of their own, which
+/// those awake look into when their candidate pairs are found; to them a sleeper is a support.
+///
+/// An island sleeps as a whole and wakes as a whole, with the forces its contacts had.
+/// Rules and derivations: docs/decisions/0010-sleeping.md.
+template <class Real>
+class Sleepers {
+  public:
+    // At the start of a step.
+
+    /// Finds the pairs anew if the candidate pairs were. Cost: O(rows awake) then, O(sleepers) if those have
+    /// changed.
+    void find_pairs(const WorldState<Real>& world, const Candidates<Real>& candidates,
+                    const KernelTable<Real>& kernels, const Executor& executor);
+    std::span<const SleeperPair> pairs() const { return pairs_; }
+    /// Whether any of these rows, whose margins are new, comes near a sleeper.
+    bool is_near_any(const WorldState<Real>& world, const Candidates<Real>& candidates,
+                     std::span<const std::int32_t> rows);
+    /// To be called before rows get another order: contacts with sleepers keep no impulses.
+    static void forget_contacts(ContactGraph<Real>& graph, const WorldState<Real>& world);
+    /// Marks the islands that something is about to hit in this step. @return whether there are any.
+    bool mark_hit(const WorldState<Real>& world, double dt, double substep);
+    /// Gives contacts that have woken the impulses of a substep of length `substep`.
+    void restore_impulses(ContactGraph<Real>& graph, const WorldState<Real>& world, double substep);
+
+    // At its end.
+
+    /// Marks the islands that something presses on. @return whether there are any.
+    bool mark_pressed(const WorldState<Real>& world, const ContactGraph<Real>& graph, double substep);
+    /// Takes note of who is still, and puts islands to sleep that have been so for long enough.
+    /// @return whether rows have changed.
+    bool put_to_sleep(WorldState<Real>& world, ContactGraph<Real>& graph, double dt, double substep);
+
+    // At any time.
+
+    void mark(std::int32_t island) { marked_.push_back(island); }
+    /// Marks the islands of sleepers within `reach` of a place, and a little more. @return whether there are
+    /// any.
+    bool mark_near(const WorldState<Real>& world, Vec2 place, double reach, const KernelTable<Real>& kernels,
+                   const Executor& executor);
+    bool mark_all(const WorldState<Real>& world);
+    /// Wakes the islands that are marked. @return how many rows woke: the last of those awake.
+    std::size_t wake_marked(WorldState<Real>& world);
+
+    /// Forgets the forces of those that have woken since the last step.
+    void forget_woken() { woken_.clear(); }
+
+    std::int64_t island_count() const { return island_count_; }
+    std::int64_t woken_count() const { return woken_count_; }
+    std::size_t bytes() const;
+
+  private:
+    /// A contact of an island that sleeps.
+    struct Kept {
+        std::int32_t island;
+        BodyId a, b;
+        std::int32_t support;              // a wall or an edge in place of b, else 0
+        double normal, friction, rolling;  // N
+    };
+    /// A row that leans on a sleeper.
+    struct Held {
+        std::int32_t row, island;
+    };
+
+    void build_grid(const WorldState<Real>& world, const KernelTable<Real>& kernels,
+                    const Executor& executor);
+    std::span<const std::int32_t> find_near(const WorldState<Real>& world, Vec2 place, double reach);
+    bool note_still(WorldState<Real>& world, double dt, double substep) const;
+    void connect(const WorldState<Real>& world, const ContactGraph<Real>& graph);
+    void keep_contacts(const WorldState<Real>& world, ContactCandidates<Real>& contacts, double substep);
+    void keep_contact(const WorldState<Real>& world, const ContactCandidates<Real>& contacts, std::size_t i,
+                      double substep);
+    void lay_down(WorldState<Real>& world, std::size_t row);
+    void rename_island(WorldState<Real>& world, std::int32_t from, std::int32_t to);
+
+    std::vector<Kept> kept_, woken_;
+    std::vector<std::int32_t> marked_;
+    std::vector<SleeperPair> pairs_;
+    std::int64_t pairs_of_rebuild_ = -1;
+    std::int32_t next_island_ = 0;
+    std::int64_t island_count_ = 0, woken_count_ = 0;
+    double since_look_ = 0;  // s
+
+    // The grid: of those who slept when it was built.
+    UniformGrid<Real> grid_;
+    Column<Real> x_, y_, reach_;  // m
+    std::vector<BodyId> ids_;
+    double low_x_ = 0, low_y_ = 0, high_x_ = 0, high_y_ = 0;  // m, around all of them
+    bool is_grid_old_ = false;
+    Column<std::int32_t> places_;
+    std::vector<std::int32_t> near_;
+
+    // Of a look at the islands.
+    Islands islands_;
+    std::vector<std::uint8_t> stays_awake_;  // by row: of its island, at its smallest row
+    std::vector<std::int32_t> label_;        // by row: the island it sleeps in, at its smallest row
+    std::vector<Held> leaning_;
+    std::vector<std::int32_t> order_;  // old rows, as they are exchanged
+};
+
+extern template class Sleepers<float>;
+extern template class Sleepers<double>;
+
+}  // namespace carom

@@ -1,0 +1,104 @@
+#include <cmath>
+
+#include "solvers/shared/stages.hpp"
+
+namespace carom {
+namespace {
+
+/// How far different accelerations can bring two paths nearer to each other than the straight lines the
+/// kernel looks at [m]: two bodies' worth of fall, as held and static bodies do not fall.
+template <class Real>
+double slack_of(const Simulation<Real>& sim) {
+    const Flights<Real>& flights = sim.impulse.flights;
+    if (flights.accelerations.empty()) return 0;
+    double largest = length_squared(flights.common_acceleration);
+    for (const std::int32_t row : sim.world.immovable_rows)
+        largest = std::fmax(largest, length_squared(flights.acceleration(row)));
+    return 2 * std::sqrt(largest) * flights.end.q;
+}
+
+/// Separation up to which the solver wants to see a pair that does not approach: overlaps, and with gravity
+/// contacts that may rest. Generous for the smaller of different bodies; the solver looks again.
+template <class Real>
+double near_of(const Simulation<Real>& sim) {
+    const bool may_rest = length_squared(sim.world.gravity) > 0;
+    return may_rest ? kTouchFraction * sim.candidates.largest_radius()
+                    : -kSlopFraction * sim.candidates.smallest_radius();
+}
+
+template <class Real>
+void list_wall_meetings(Simulation<Real>& sim, double near) {
+    const Flights<Real>& flights = sim.impulse.flights;
+    sim.wall_rows.for_each_below(sim.world.bodies.count, [&](std::int32_t row) {
+        if (flights.is_immovable(row)) return;
+        const Flight f = flights.flight(row);
+        const Vec2 end = position_at(f, flights.end.s, flights.end.q);
+        for (const std::int32_t side : kWallSides) {
+            if (!flights.has_wall(side)) continue;
+            const double fall = std::fabs(dot(wall_normal(side), f.acceleration)) * flights.end.q;
+            const double nearest = std::fmin(wall_clearance(*flights.walls, side, f.position),
+                                             wall_clearance(*flights.walls, side, end));
+            if (nearest - fall - near < flights.radius(row))
+                sim.meetings.push_back(sim.impulse.examine({row, side}));
+        }
+    });
+}
+
+/// Of pairs [first, last) those that may touch, examined while what the kernel has read is in the cache.
+template <class Real>
+void append_meetings(const Simulation<Real>& sim, const FindImpacts<Real>& all, std::size_t first,
+                     std::size_t last, std::vector<FoundMeeting>& meetings) {
+    std::int32_t found[kRowsPerChunk + kRowPadding];
+    FindImpacts<Real> k = all;
+    k.found = found;
+    const auto kernel = all.radius ? sim.kernels->find_impacts : sim.kernels->find_impacts_uniform_radius;
+    const std::size_t count = kernel(k, first, padded(last));
+    for (std::size_t n = 0; n < count; ++n) {
+        const auto p = static_cast<std::size_t>(found[n]);
+        if (p >= last) return;  // padding
+        const std::int32_t a = all.a[p], b = all.b[p];
+        meetings.push_back(sim.impulse.examine(a < b ? Meeting{a, b} : Meeting{b, a}));
+    }
+}
+
+template <class Real>
+void list_pair_meetings(Simulation<Real>& sim, const FindImpacts<Real>& all) {
+    const std::size_t pairs = sim.candidates.pair_count();
+    const bool is_parallel = sim.executor.is_parallel(pairs);
+    const std::size_t chunks = (pairs + kRowsPerChunk - 1) / kRowsPerChunk;
+    if (is_parallel && sim.chunk_meetings.size() < chunks) sim.chunk_meetings.resize(chunks);
+    sim.executor.for_each_chunk(
+        pairs, kRowsPerChunk, [&](std::size_t chunk, std::size_t first, std::size_t last) {
+            std::vector<FoundMeeting>& meetings = is_parallel ? sim.chunk_meetings[chunk] : sim.meetings;
+            if (is_parallel) meetings.clear();
+            append_meetings(sim, all, first, last, meetings);
+        });
+    for (std::size_t chunk = 0; is_parallel && chunk < chunks; ++chunk) {
+        const std::vector<FoundMeeting>& found = sim.chunk_meetings[chunk];
+        sim.meetings.insert(sim.meetings.end(), found.begin(), found.end());
+    }
+}
+
+}  // namespace
+
+template <class Real>
+void find_impacts(Simulation<Real>& sim) {
+    const Bodies<Real>& bodies = sim.world.bodies;
+    const double near = near_of(sim), slack = slack_of(sim);
+    sim.impulse.begin_substep(sim.candidates, slack, *sim.kernels);
+    FindImpacts<Real> all{};
+    all.motion = sim.impulse.flights.motion.data();
+    all.a = sim.candidates.pair_a(), all.b = sim.candidates.pair_b();
+    all.radius = bodies.radius.data(), all.uniform_radius = bodies.radius.uniform_value();
+    all.s = static_cast<Real>(sim.impulse.flights.end.s);
+    all.slack = static_cast<Real>(slack);
+    all.near = static_cast<Real>(near);
+    sim.meetings.clear();
+    list_pair_meetings(sim, all);
+    if (sim.world.walls) list_wall_meetings(sim, std::fmax(near, 0));
+}
+
+template void find_impacts(Simulation<float>&);
+template void find_impacts(Simulation<double>&);
+
+}  // namespace carom

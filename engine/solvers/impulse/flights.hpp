@@ -1,0 +1,203 @@
+#pragma once
+
+#include <carom/scene.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "effects/flight.hpp"
+#include "effects/restitution.hpp"
+#include "shapes/walls.hpp"
+#include "state/bodies.hpp"
+#include "state/books.hpp"
+
+// The flights of all bodies during one substep, and the meetings of two of them or of one with a wall. All
+// arithmetic here is in double precision; only the store is Real.
+
+namespace carom {
+
+/// Two bodies, or a body and a wall, that may touch.
+struct Meeting {
+    std::int32_t a;  ///< body row
+    std::int32_t b;  ///< body row, or a WallSide
+
+    bool with_wall() const { return b < 0; }
+    friend bool operator==(Meeting, Meeting) = default;
+};
+
+/// A meeting seen at one instant.
+struct Encounter {
+    Vec2 normal;             ///< from A to B, or from A into the wall
+    double separation;       ///< m
+    double normal_velocity;  ///< m/s, of B relative to A; negative = approaching
+};
+
+/// Overlap left uncorrected, and the distance within which surfaces count as touching: fractions of the
+/// smaller radius, so that they scale with the scene. Above float's resolution at 1,000 m for radii near 1 m.
+inline constexpr double kSlopFraction = 0.002;
+inline constexpr double kTouchFraction = 0.001;
+
+template <class Real>
+class Flights {
+  public:
+    /// One body's packed record (x0, y0, vx0, vy0): one load a body in the kernels.
+    static constexpr std::size_t kMotionWidth = 4;
+
+    Column<Real> motion;         // [padded(rows)][4], m and m/s
+    Column<Vec2> accelerations;  // m/s², only if bodies' accelerations can differ
+    Vec2 common_acceleration;    // m/s²
+    FlightClock end;             // the clock at the end of the substep
+    double rest_speed = 0;       // m/s, approaches slower than this do not bounce
+    const Walls* walls = nullptr;
+    Bodies<Real>* bodies = nullptr;
+    Books* books = nullptr;
+
+    double drag() const { return end.drag; }
+
+    Vec2 acceleration(std::int32_t row) const {
+        return accelerations.empty() ? common_acceleration : accelerations[static_cast<std::size_t>(row)];
+    }
+
+    Flight flight(std::int32_t row) const {
+        const Real* m = &motion[static_cast<std::size_t>(row) * kMotionWidth];
+        return {{m[0], m[1]}, {m[2], m[3]}, acceleration(row)};
+    }
+
+    void store(std::int32_t row, const Flight& f) {
+        Real* m = &motion[static_cast<std::size_t>(row) * kMotionWidth];
+        m[0] = static_cast<Real>(f.position.x), m[1] = static_cast<Real>(f.position.y);
+        m[2] = static_cast<Real>(f.velocity.x), m[3] = static_cast<Real>(f.velocity.y);
+    }
+
+    double radius(std::int32_t row) const { return bodies->radius[static_cast<std::size_t>(row)]; }
+    double inverse_mass(std::int32_t row) const {
+        return bodies->inverse_mass(static_cast<std::size_t>(row));
+    }
+    bool is_immovable(std::int32_t row) const { return bodies->is_immovable(static_cast<std::size_t>(row)); }
+
+    /// Distance between the centres, or between centre and wall, at which a meeting touches [m].
+    double reach(Meeting m) const { return m.with_wall() ? radius(m.a) : radius(m.a) + radius(m.b); }
+
+    /// The smaller body's radius: what tolerances are fractions of [m].
+    double smaller_radius(Meeting m) const {
+        return m.with_wall() ? radius(m.a) : std::fmin(radius(m.a), radius(m.b));
+    }
+
+    double restitution(Meeting m) const {
+        const double a = bodies->restitution[static_cast<std::size_t>(m.a)];
+        return pair_restitution(a, m.with_wall() ? walls->material.restitution
+                                                 : bodies->restitution[static_cast<std::size_t>(m.b)]);
+    }
+
+    double inverse_mass_sum(Meeting m) const {
+        return inverse_mass(m.a) + (m.with_wall() ? 0 : inverse_mass(m.b));
+    }
+
+    /// What a meeting looks like at clock s.
+    Encounter encounter(Meeting m, double s) const {
+        const double q = flight_q(s, drag());
+        const Flight fa = flight(m.a);
+        const Vec2 xa = position_at(fa, s, q), va = velocity_at(fa, s, drag());
+        if (m.with_wall()) {
+            const Vec2 n = wall_normal(m.b);
+            return {n, wall_clearance(*walls, m.b, xa) - radius(m.a), -dot(va, n)};
+        }
+        const Flight fb = flight(m.b);
+        const Vec2 d = position_at(fb, s, q) - xa;
+        const double distance = std::sqrt(length_squared(d));
+        const Vec2 n = distance > 1e-12 * reach(m) ? (1 / distance) * d : direction_of_coincident(m);
+        return {n, distance - reach(m), dot(velocity_at(fb, s, drag()) - va, n)};
+    }
+
+    /// Whether surfaces touch so gently at clock s that this is rest, not an impact.
+    bool rests(Meeting m, double s) const {
+        if (!(rest_speed > 0)) return false;
+        const Encounter e = encounter(m, s);
+        return e.separation <= kTouchFraction * smaller_radius(m) && e.normal_velocity > -rest_speed;
+    }
+
+    /// Applies impulse j [N s] along the encounter's normal at clock s; both bodies fly on from there.
+    void apply_impulse(Meeting m, const Encounter& e, double j, double s) {
+        push(m.a, -j * inverse_mass(m.a) * e.normal, s);
+        if (!m.with_wall()) push(m.b, j * inverse_mass(m.b) * e.normal, s);
+        if (m.with_wall()) books->add_wall_impulse(-j * e.normal);
+        if (books->is_open && !m.with_wall()) book_immovable(m, j * e.normal, s);
+    }
+
+    /// Work that the contacts a body rests on do on it from the start of flight f to clock s [J]. Two bodies
+    /// at rest on each other get opposite amounts; what is left over is the error of the contact forces.
+    double support_work(std::int32_t row, const Flight& f, double s, double q) const {
+        return dot(f.acceleration - common_acceleration, position_at(f, s, q) - f.position) /
+               inverse_mass(row);
+    }
+
+    bool has_wall(std::int32_t side) const { return walls && carom::has_wall(*walls, side); }
+
+  private:
+    /// Changes a body's velocity at clock s by dv, and keeps what drag takes on the way in the books.
+    void push(std::int32_t row, Vec2 dv, double s) {
+        if (is_immovable(row)) return;
+        const Flight before = flight(row);
+        Flight after = before;
+        const double q = flight_q(s, drag());
+        const Vec2 support = before.acceleration - common_acceleration;
+        const double lift = dot(dv, support);  // outward, times the support's magnitude
+        if (lift > 0 && lift * lift > rest_speed * rest_speed * length_squared(support)) {
+            // A held body that is hit off its support flies freely for the rest of the substep.
+            accelerations[static_cast<std::size_t>(row)] = common_acceleration;
+            const double unused = end.t - (s + drag() * q);  // t = s + k q
+            books->wall_momentum -= (unused / inverse_mass(row)) * support;
+            after = flight_through(position_at(before, s, q), velocity_at(before, s, drag()) + dv,
+                                   common_acceleration, s, q, drag());
+        } else {
+            const Vec2 dv0 = (1 / (1 - drag() * s)) * dv;
+            after.velocity += dv0;
+            after.position -= s * dv0;
+        }
+        store(row, after);
+        if (!books->is_open) return;
+        if (support != Vec2{})
+            books->restitution += support_work(row, before, s, q) - support_work(row, flight(row), s, q);
+        if (drag() != 0) book_drag(row, before, s, q);
+    }
+
+    /// The end of the substep books drag for the flight as it ends; here the part flown before is set right.
+    void book_drag(std::int32_t row, const Flight& before, double s, double q) {
+        const Flight after = flight(row);
+        const double mass = 1 / inverse_mass(row);
+        books->drag -=
+            mass * (drag_loss_per_mass(before, s, q, drag()) - drag_loss_per_mass(after, s, q, drag()));
+        const Vec2 way =
+            position_at(before, s, q) - before.position - (position_at(after, s, q) - after.position);
+        books->drag_momentum -= mass * drag() * way;
+    }
+
+    /// j acts on B, -j on A; if one of them is immovable the other's momentum came from outside.
+    void book_immovable(Meeting m, Vec2 j, double s) {
+        const bool a = is_immovable(m.a), b = is_immovable(m.b);
+        if (a == b) return;
+        const Vec2 on_movable = a ? j : -j;
+        books->immovable_momentum += on_movable;
+        const Flight f = flight(a ? m.a : m.b);
+        books->drive += dot(on_movable, velocity_at(f, s, drag()));
+    }
+
+    /// Coincident centres have no normal; each pair gets a fixed one of its own, from its handles:
+    /// ((1 - t²), 2t) / (1 + t²) with t in [-1, 1].
+    Vec2 direction_of_coincident(Meeting m) const {
+        const auto id_a = bodies->id[static_cast<std::size_t>(m.a)].index;
+        const auto id_b = bodies->id[static_cast<std::size_t>(m.b)].index;
+        const std::uint32_t low = id_a < id_b ? id_a : id_b, high = id_a < id_b ? id_b : id_a;
+        std::uint64_t h = (std::uint64_t{high} << 32 | low) * 0x9E3779B97F4A7C15u;  // Fibonacci hashing
+        h ^= h >> 29;
+        const double t = static_cast<double>(h % 2000001u) * 1e-6 - 1;
+        const double scale = 1 / (1 + t * t);
+        const Vec2 n{(1 - t * t) * scale, 2 * t * scale};
+        const bool upside_down = (h >> 40 & 1u) != 0;
+        const Vec2 outward = upside_down ? -n : n;
+        return id_a < id_b ? outward : -outward;
+    }
+};
+
+}  // namespace carom

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "solvers/impulse/flights.hpp"
+
+namespace carom {
+
+/// Impacts at one instant, solved together: impulses j >= 0 such that every normal velocity ends at or above
+/// its target (-e times the approach; Newton's law for multiple impacts, Moreau 1988), and exactly there
+/// where j > 0. Projected Gauss-Seidel until converged. The velocities are unique, so the scene's symmetry is
+/// kept; with one coefficient e = 1 for all the energy is exact. Cost: O(meetings · sweeps); meetings that
+/// share no body converge in one sweep.
+template <class Real>
+class SimultaneousImpacts {
+  public:
+    struct Impact {
+        Meeting meeting;
+        Encounter encounter;  ///< before
+        double s;
+        double target;                 ///< m/s, least normal velocity after
+        double impulse = 0;            ///< N s
+        double normal_velocity_after;  ///< m/s
+        double inverse_mass_sum;
+        std::size_t place_a, place_b;
+    };
+
+    void reserve(std::size_t count) { impacts_.reserve(count), changes_.reserve(count); }
+    void clear() { impacts_.clear(), changes_.clear(); }
+
+    void add(const Flights<Real>& flights, Meeting m, const Encounter& e, double s, double target);
+
+    /// Solves all that was added, deflects the bodies and books the work as restitution. `negligible`: change
+    /// of a velocity that is round-off [m/s].
+    void carry_out(Flights<Real>& flights, double negligible = 0);
+
+    const std::vector<Impact>& impacts() const { return impacts_; }
+    std::size_t bytes() const;
+
+  private:
+    struct VelocityChange {
+        std::int32_t row;
+        double inverse_mass;
+        Vec2 change;  ///< m/s
+    };
+
+    std::size_t place_of(const Flights<Real>& flights, std::int32_t row);
+    double normal_velocity(const Impact& i) const;
+    void solve(double negligible);
+
+    std::vector<Impact> impacts_;
+    std::vector<VelocityChange> changes_;     // of every body that takes part
+    std::vector<std::int32_t> place_of_row_;  // [rows], in changes_, or -1
+};
+
+extern template class SimultaneousImpacts<float>;
+extern template class SimultaneousImpacts<double>;
+
+}  // namespace carom

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "constraints/contact_candidates.hpp"
+#include "constraints/contact_rows.hpp"
+#include "kernels/contact_arguments.hpp"
+
+namespace carom {
+
+/// Contacts of bodies of very different masses, and those around the lighter ones, solved to convergence.
+///
+/// A sweep takes from a heavy body what its light neighbours can stop: their share of its mass. Between a
+/// floor and a body a million times heavier it would take a million sweeps. So what is squeezed by somebody
+/// more than kUneven times as heavy is solved on its own after the sweeps, as a small system in double
+/// precision, by sweeps that a conjugate gradient makes faster: of many contacts under one heavy body nearly
+/// all behave alike, and what is alike takes one step. Scenes of like masses have none of it.
+/// Numbers: docs/decisions/0014-mass-ratios.md.
+/// Source: nonsmooth nonlinear conjugate gradients (Silcowitz-Hansen, Niebe & Erleben 2010).
+template <class Real>
+class LocalSolve {
+  public:
+    static constexpr double kUneven = 10;  // ratio of masses
+
+    /// Looks for them among all pairs, when these are new.
+    /// @param inverse_mass  of each row, with any sign
+    /// Cost: O(pairs), a few times if there are any.
+    void find(const ContactRows<Real>& pairs, const Column<Real>& inverse_mass, std::size_t rows);
+    void clear() { pairs_.clear(); }
+
+    /// Those that can touch in this step. Cost: O(supports + what was found).
+    void begin_step(const ContactRows<Real>& pairs, const ContactRows<Real>& supports);
+    /// After the sweeps of a substep.
+    /// @param k  of pairs and of supports
+    /// @param fall  m/s, what gravity adds in a substep
+    void solve(const SolveContacts<Real>& of_pairs, const SolveContacts<Real>& of_supports, double fall);
+
+    std::size_t bytes() const;
+
+  private:
+    struct BodyState {
+        std::int32_t row;
+        double vx, vy, rim, inverse_mass, inverse_inertia;  // as in the velocity records
+    };
+    struct Contact {
+        std::int32_t a, b;      // of bodies_; b < 0: nothing moves it
+        std::uint32_t contact;  // of the pairs, or of the supports
+        double nx, ny, mass, tangent_mass, friction, floor;
+        double surface_normal, surface_tangent;  // m/s, of b where nothing moves it
+        double normal, tangent;                  // N s
+        double normal_before, tangent_before;    // at the start of an iteration
+        double normal_step, tangent_step;        // of the conjugate gradient
+    };
+
+    std::int32_t body_of(std::int32_t row);
+    void load(const SolveContacts<Real>& of_pairs, const SolveContacts<Real>& of_supports);
+    void store(const SolveContacts<Real>& of_pairs, const SolveContacts<Real>& of_supports) const;
+    void apply(const Contact& contact, double normal, double tangent);
+    double sweep();
+    double change() const;
+    void conjugate_step(double share);
+
+    std::vector<std::uint32_t> pairs_;     // that may touch until the pairs change
+    std::vector<std::uint8_t> is_near_;    // by row: how many contacts from a heavy body, at least 1
+    std::vector<std::int32_t> number_of_;  // by row, in bodies_
+    std::vector<BodyState> bodies_;        // of this step
+    std::vector<Contact> contacts_;        // of this step: pairs, then supports
+    std::size_t pair_count_ = 0;
+    std::vector<BodyState> first_bodies_;  // after the first sweep
+    std::vector<Contact> first_contacts_;
+};
+
+extern template class LocalSolve<float>;
+extern template class LocalSolve<double>;
+
+}  // namespace carom

@@ -1,0 +1,232 @@
+#include "solvers/shared/rebalance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/vec2_math.hpp"
+
+namespace carom {
+namespace {
+
+/// What a body may get too much, in impulses of its own weight and as a share of what presses on it.
+constexpr double kAllowedWeights = 0.5, kAllowedShare = 0.002;
+/// Of a contact along its tangent, as a share of that along its normal: as masses are for a disc.
+constexpr double kTangentStiffness = 1.0 / 3;
+/// Of the stiffness of one contact: so that a body with a single contact is held sideways, too.
+constexpr double kLeastStiffness = 1e-3;
+constexpr double kOverRelaxation = 1.5;
+/// Bodies are looked at so often at most, 0.1 us each: what is still uneven then is left to the sweeps.
+constexpr std::size_t kMostLooks = 20000;
+
+Vec2 tangent_of(Vec2 normal) {
+    return {-normal.y, normal.x};
+}
+
+}  // namespace
+
+template <class Real>
+void Rebalance<Real>::list(const ContactRows<Real>& contacts, bool are_pairs, double friction) {
+    contacts.for_each([&](std::size_t i) {
+        if (!(contacts.normal_impulse[i] > 0)) return;
+        const bool is_rough = !contacts.friction_impulse.empty();
+        const double own = contacts.friction.empty() ? friction : static_cast<double>(contacts.friction[i]);
+        loaded_.push_back({contacts.a[i],
+                           are_pairs ? contacts.b[i] : -1,
+                           static_cast<std::uint32_t>(i),
+                           {contacts.normal_x[i], contacts.normal_y[i]},
+                           is_rough ? own : 0,
+                           contacts.normal_impulse[i],
+                           is_rough ? static_cast<double>(contacts.friction_impulse[i]) : 0});
+    });
+}
+
+template <class Real>
+void Rebalance<Real>::sort_by_body() {
+    for (const Loaded& contact : loaded_)
+        for (const std::int32_t row : {contact.a, contact.b})
+            if (row >= 0) ++loads_[static_cast<std::size_t>(row)].end;
+    std::uint32_t place = 0;
+    for (Load& load : loads_) {
+        load.begin = place;
+        place += load.end;
+        load.end = load.begin;
+    }
+    of_body_.resize(place);
+    for (std::uint32_t i = 0; i < loaded_.size(); ++i) {
+        const Loaded& contact = loaded_[i];
+        const Vec2 impulse =
+            contact.normal_impulse * contact.normal + contact.friction_impulse * tangent_of(contact.normal);
+        for (const std::int32_t row : {contact.a, contact.b}) {
+            if (row < 0) continue;
+            Load& load = loads_[static_cast<std::size_t>(row)];
+            of_body_[load.end++] = i;
+            load.excess += (row == contact.a ? -1.0 : 1.0) * impulse;
+            load.allowed += kAllowedShare * std::sqrt(length_squared(impulse));
+        }
+    }
+}
+
+/// What neither rest nor free fall explains: a body may go without any part of what its weight asks for.
+template <class Real>
+Vec2 Rebalance<Real>::excess_of(const Load& load) const {
+    const double w2 = length_squared(load.weight);
+    if (!(w2 > 0)) return load.excess;
+    const double share = std::fmax(0, std::fmin(1, dot(load.excess, load.weight) / w2));
+    return load.excess - share * load.weight;
+}
+
+template <class Real>
+void Rebalance<Real>::queue_if_uneven(std::int32_t row) {
+    Load& load = loads_[static_cast<std::size_t>(row)];
+    if (load.is_queued) return;
+    const Vec2 excess = excess_of(load);
+    if (length_squared(excess) <= load.allowed * load.allowed) return;
+    load.is_queued = true;
+    queue_.push_back(row);
+}
+
+/// What was the weight of the body that is gone: what it pressed on others with, less what pressed on it.
+/// That load flows off; the rest finds another way.
+template <class Real>
+void Rebalance<Real>::begin_flows(std::span<const LostContact> lost) {
+    for (std::size_t first = 0, last = 0; first < lost.size(); first = last) {
+        double up = 0, down = 0;  // times the weight of who was pressed
+        for (; last < lost.size() && lost[last].gone == lost[first].gone; ++last) {
+            const Load& load = loads_[static_cast<std::size_t>(lost[last].row)];
+            const double along = dot(load.excess, load.weight) / std::sqrt(length_squared(load.weight));
+            (along < 0 ? up : down) += std::fabs(along);
+        }
+        if (!(up > down)) continue;
+        for (std::size_t i = first; i < last; ++i) {
+            Load& load = loads_[static_cast<std::size_t>(lost[i].row)];
+            if (dot(load.excess, load.weight) < 0) flow_to(lost[i].row, (1 - down / up) * load.excess);
+        }
+    }
+}
+
+template <class Real>
+void Rebalance<Real>::flow_to(std::int32_t row, Vec2 impulse) {
+    Load& load = loads_[static_cast<std::size_t>(row)];
+    load.flow += impulse;
+    if (load.is_queued || length_squared(load.flow) <= load.allowed * load.allowed) return;
+    load.is_queued = true;
+    queue_.push_back(row);
+}
+
+/// Takes what flows through a body from the contacts that push its way, from each the same share.
+template <class Real>
+void Rebalance<Real>::pass_load_on(std::int32_t row) {
+    Load& load = loads_[static_cast<std::size_t>(row)];
+    const auto on_body = [&](const Loaded& contact) {
+        const Vec2 n = contact.normal;
+        return (row == contact.a ? -1.0 : 1.0) *
+               (contact.normal_impulse * n + contact.friction_impulse * tangent_of(n));
+    };
+    const Vec2 flow = load.flow;
+    load.flow = {};
+    double along = 0;
+    for (std::uint32_t k = load.begin; k < load.end; ++k)
+        along += std::fmax(0, dot(on_body(loaded_[of_body_[k]]), flow));
+    if (!(along > 0)) return;
+    const double share = std::fmin(1, length_squared(flow) / along);
+    for (std::uint32_t k = load.begin; k < load.end; ++k) {
+        Loaded& contact = loaded_[of_body_[k]];
+        const Vec2 taken = share * on_body(contact);
+        if (!(dot(taken, flow) > 0)) continue;
+        contact.normal_impulse *= 1 - share, contact.friction_impulse *= 1 - share;
+        load.excess -= taken;
+        const std::int32_t other = row == contact.a ? contact.b : contact.a;
+        if (other < 0) continue;
+        loads_[static_cast<std::size_t>(other)].excess += taken;
+        flow_to(other, taken);
+    }
+}
+
+/// Shares the excess of a body out among its contacts.
+template <class Real>
+void Rebalance<Real>::relax_body(std::int32_t row) {
+    Load& load = loads_[static_cast<std::size_t>(row)];
+    // The body on springs of stiffness 1 along normals: sum (n n' + k t t') x = excess.
+    double xx = kLeastStiffness, xy = 0, yy = kLeastStiffness;
+    for (std::uint32_t k = load.begin; k < load.end; ++k) {
+        const Loaded& contact = loaded_[of_body_[k]];
+        const Vec2 n = contact.normal;
+        const double along = contact.friction > 0 ? kTangentStiffness : 0;
+        xx += n.x * n.x + along * n.y * n.y;
+        xy += (1 - along) * n.x * n.y;
+        yy += n.y * n.y + along * n.x * n.x;
+    }
+    const double scale = kOverRelaxation / (xx * yy - xy * xy);
+    const Vec2 excess = excess_of(load);
+    const Vec2 moved{scale * (yy * excess.x - xy * excess.y), scale * (xx * excess.y - xy * excess.x)};
+    for (std::uint32_t k = load.begin; k < load.end; ++k) {
+        Loaded& contact = loaded_[of_body_[k]];
+        const Vec2 n = contact.normal, t = tangent_of(n);
+        const double side = row == contact.a ? 1 : -1;  // towards b
+        const double normal = std::fmax(0, contact.normal_impulse + side * dot(moved, n));
+        const double limit = contact.friction * normal;
+        const double wanted = contact.friction_impulse + side * kTangentStiffness * dot(moved, t);
+        const double friction = std::fmax(-limit, std::fmin(limit, wanted));
+        const Vec2 added = (normal - contact.normal_impulse) * n + (friction - contact.friction_impulse) * t;
+        contact.normal_impulse = normal, contact.friction_impulse = friction;
+        load.excess -= side * added;
+        const std::int32_t other = row == contact.a ? contact.b : contact.a;
+        if (other < 0) continue;
+        loads_[static_cast<std::size_t>(other)].excess += side * added;
+        queue_if_uneven(other);
+    }
+}
+
+/// First come, first served; who is in the queue may bring others into it.
+template <class Real>
+void Rebalance<Real>::drain_queue(void (Rebalance::*deal_with)(std::int32_t)) {
+    for (std::size_t i = 0; i < queue_.size(); ++i) {
+        loads_[static_cast<std::size_t>(queue_[i])].is_queued = false;
+        if (i < kMostLooks) (this->*deal_with)(queue_[i]);
+    }
+}
+
+template <class Real>
+void Rebalance<Real>::balance(std::span<const LostContact> lost, ContactRows<Real>& pairs,
+                              ContactRows<Real>& supports, const Bodies<Real>& bodies, double friction,
+                              Vec2 gain) {
+    loaded_.clear(), queue_.clear();
+    list(pairs, true, friction);
+    const std::size_t pair_count = loaded_.size();
+    list(supports, false, friction);
+    loads_.assign(bodies.count, {});
+    sort_by_body();
+    const double weight = kAllowedWeights * std::sqrt(length_squared(gain));
+    for (std::size_t row = 0; row < bodies.count; ++row) {
+        if (bodies.is_immovable(row)) continue;
+        const double mass = bodies.mass[row];
+        loads_[row].excess += mass * gain, loads_[row].weight = mass * gain;
+        loads_[row].allowed += mass * weight;
+    }
+    if (weight > 0) begin_flows(lost);
+    drain_queue(&Rebalance::pass_load_on);
+    touched_.swap(queue_);
+    queue_.clear();
+    for (const std::int32_t row : touched_) queue_if_uneven(row);
+    for (const LostContact& contact : lost) queue_if_uneven(contact.row);
+    drain_queue(&Rebalance::relax_body);
+    for (std::size_t i = 0; i < loaded_.size(); ++i) {
+        ContactRows<Real>& contacts = i < pair_count ? pairs : supports;
+        const Loaded& contact = loaded_[i];
+        contacts.normal_impulse[contact.contact] = static_cast<Real>(contact.normal_impulse);
+        if (!contacts.friction_impulse.empty())
+            contacts.friction_impulse[contact.contact] = static_cast<Real>(contact.friction_impulse);
+    }
+}
+
+template <class Real>
+std::size_t Rebalance<Real>::bytes() const {
+    return loaded_.capacity() * sizeof(Loaded) + loads_.capacity() * sizeof(Load) +
+           of_body_.capacity() * sizeof(std::uint32_t) +
+           (queue_.capacity() + touched_.capacity()) * sizeof(std::int32_t);
+}
+
+template class Rebalance<float>;
+template class Rebalance<double>;
+
+}  // namespace carom

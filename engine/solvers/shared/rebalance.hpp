@@ -1,0 +1,77 @@
+#pragma once
+
+#include <carom/vec2.hpp>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "constraints/contact_graph.hpp"
+#include "constraints/contact_rows.hpp"
+#include "state/bodies.hpp"
+
+namespace carom {
+
+/// Brings contacts back into balance where a body was removed that pressed on others, or held them up.
+///
+/// Contacts begin a step with the impulses of the step before. Beside a body that is gone these are far from
+/// what they should be, and sweeps take long to find out: each contact of a chain is in balance with the
+/// next, only the body at its end feels what is wrong, and is thrown. Two things are done about it before the
+/// step. What was the weight of the body itself is gone: it is taken from the contacts that carried it, body
+/// by body, down to the walls. What it carried for others has to find another way: what a body gets too much
+/// is shared out among its contacts, as if they were springs and its neighbours stood still; then these have
+/// it, and so on, until nobody has much more than one who falls. Impulses act on both bodies of a contact, so
+/// momentum is kept; they push, and friction stays within its limit.
+/// Numbers: docs/decisions/0013-removed-loads.md.
+/// Source: relaxation where the residual is largest (Southwell 1940), here in the order in which it appears.
+template <class Real>
+class Rebalance {
+  public:
+    /// @param lost  contacts that are gone with their bodies, sorted by those
+    /// @param friction  coefficient where contacts have none of their own
+    /// @param gain  m/s, what gravity adds in a substep
+    /// Cost: O(bodies + contacts), and what is passed on.
+    void balance(std::span<const LostContact> lost, ContactRows<Real>& pairs, ContactRows<Real>& supports,
+                 const Bodies<Real>& bodies, double friction, Vec2 gain);
+
+    std::size_t bytes() const;
+
+  private:
+    /// A contact that pushes.
+    struct Loaded {
+        std::int32_t a, b;        // rows; b < 0: nothing moves it
+        std::uint32_t contact;    // of the pairs, or of the supports
+        Vec2 normal;              // from a to b
+        double friction;          // coefficient
+        double normal_impulse;    // N s
+        double friction_impulse;  // N s, along the normal turned by a quarter counter-clockwise, on b
+    };
+    struct Load {
+        Vec2 excess;                       // N s, what contacts and gravity add up to
+        Vec2 weight;                       // N s, of gravity in a substep
+        Vec2 flow;                         // N s, to be taken from contacts and passed on
+        double allowed = 0;                // N s, of what rests, falls, slides or rolls
+        std::uint32_t begin = 0, end = 0;  // in of_body_
+        bool is_queued = false;
+    };
+
+    void list(const ContactRows<Real>& contacts, bool are_pairs, double friction);
+    void sort_by_body();
+    Vec2 excess_of(const Load& load) const;
+    void queue_if_uneven(std::int32_t row);
+    void begin_flows(std::span<const LostContact> lost);
+    void flow_to(std::int32_t row, Vec2 impulse);
+    void pass_load_on(std::int32_t row);
+    void relax_body(std::int32_t row);
+    void drain_queue(void (Rebalance::*deal_with)(std::int32_t));
+
+    std::vector<Loaded> loaded_;          // pairs, then supports
+    std::vector<Load> loads_;             // by row
+    std::vector<std::uint32_t> of_body_;  // indices of loaded_, by row
+    std::vector<std::int32_t> queue_, touched_;
+};
+
+extern template class Rebalance<float>;
+extern template class Rebalance<double>;
+
+}  // namespace carom

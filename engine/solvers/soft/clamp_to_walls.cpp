@@ -1,0 +1,56 @@
+#include "shapes/walls.hpp"
+#include "solvers/shared/stages.hpp"
+
+namespace carom {
+namespace {
+
+/// Puts one coordinate back to where the body touches the wall, and stops what drives it out.
+/// @return the velocity that was taken [m/s]
+template <class Real>
+Real put_back(Real& position, Real& velocity, Real min, Real max, Real radius) {
+    const bool is_below = position < min;
+    if (!is_below && !(position > max)) return 0;
+    position = is_below ? min + radius : max - radius;
+    if (is_below ? velocity >= 0 : velocity <= 0) return 0;
+    const Real taken = velocity;
+    velocity = 0;
+    return taken;
+}
+
+}  // namespace
+
+/// Contacts with walls are those of the bodies that can come there by themselves. One that another body
+/// throws at a wall within a step may have none: then this is its contact. It looks at centres, so it acts
+/// on nobody whose contact held.
+template <class Real>
+void clamp_to_walls(Simulation<Real>& sim) {
+    WorldState<Real>& world = sim.world;
+    Bodies<Real>& bodies = world.bodies;
+    const Enclosure<Real> box(&*world.walls);
+    constexpr std::size_t kBlock = 256;  // rows that are asked together
+    for (std::size_t first = 0; first < bodies.count; first += kBlock) {
+        const std::size_t last = first + kBlock < bodies.count ? first + kBlock : bodies.count;
+        const Real *x = bodies.position_x.data(), *y = bodies.position_y.data();
+        int outside = 0;
+        for (std::size_t row = first; row < last; ++row) outside |= box.is_outside(x[row], y[row]) ? 1 : 0;
+        if (outside == 0) continue;
+        for (std::size_t row = first; row < last; ++row) {
+            if (!box.is_outside(x[row], y[row]) || bodies.is_immovable(row)) continue;
+            const Real* start = &sim.impulse.flights.motion[4 * row];
+            if (box.is_outside(start[0], start[1])) continue;  // somebody has put it there
+            const Real radius = bodies.radius[row];
+            const Vec2 taken{
+                put_back(bodies.position_x[row], bodies.velocity_x[row], box.min_x, box.max_x, radius),
+                put_back(bodies.position_y[row], bodies.velocity_y[row], box.min_y, box.max_y, radius)};
+            const double mass = bodies.mass[row];
+            world.books.add_wall_impulse({-mass * taken.x, 0});
+            world.books.add_wall_impulse({0, -mass * taken.y});
+            if (world.books.is_open) world.books.restitution -= 0.5 * mass * length_squared(taken);
+        }
+    }
+}
+
+template void clamp_to_walls(Simulation<float>&);
+template void clamp_to_walls(Simulation<double>&);
+
+}  // namespace carom

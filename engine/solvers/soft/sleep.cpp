@@ -1,0 +1,111 @@
+#include "solvers/soft/sleep.hpp"
+
+#include "solvers/shared/stages.hpp"
+
+namespace carom {
+namespace {
+
+/// Rows have changed places: what was derived from them is made anew.
+template <class Real>
+void rows_changed(Simulation<Real>& sim) {
+    sim.world.list_immovable_rows();
+    sim.forget_derived_state();
+}
+
+/// @return whether anybody woke.
+template <class Real>
+bool wake_marked(Simulation<Real>& sim) {
+    Sleepers<Real>::forget_contacts(sim.soft.graph, sim.world);
+    if (sim.sleepers.wake_marked(sim.world) == 0) return false;
+    rows_changed(sim);
+    return true;
+}
+
+/// While segments or chains move nobody sleeps: they may be anywhere.
+template <class Real>
+bool do_edges_move(const WorldState<Real>& world) {
+    const Bodies<Real>& bodies = world.bodies;
+    for (const std::int32_t row : world.immovable_rows) {
+        const auto i = static_cast<std::size_t>(row);
+        if ((bodies.flags_of(i) & kEdges) == 0) continue;
+        if (bodies.velocity_x[i] != 0 || bodies.velocity_y[i] != 0) return true;
+        if (bodies.has_rotation && bodies.angular_velocity[i] != 0) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+template <class Real>
+void wake_sleepers(Simulation<Real>& sim) {
+    if (sim.world.bodies.asleep == 0) return;
+    if (do_edges_move(sim.world)) {
+        sim.sleepers.mark_all(sim.world);
+        wake_marked(sim);
+        begin_flight(sim);
+        update_candidates(sim);
+        return;
+    }
+    const auto find_pairs = [&] {
+        sim.sleepers.find_pairs(sim.world, sim.candidates, *sim.kernels, sim.executor);
+    };
+    if (!sim.candidates.strays().empty() &&
+        sim.sleepers.is_near_any(sim.world, sim.candidates, sim.candidates.strays())) {
+        sim.candidates.invalidate_pairs();
+        update_candidates(sim);
+    }
+    find_pairs();
+    if (!sim.sleepers.mark_hit(sim.world, sim.flight_dt, sim.substep_dt)) return;
+    wake_marked(sim);
+    begin_flight(sim);
+    update_candidates(sim);
+    find_pairs();
+}
+
+template <class Real>
+void put_to_sleep(Simulation<Real>& sim) {
+    WorldState<Real>& world = sim.world;
+    bool is_pressed = sim.sleepers.mark_pressed(world, sim.soft.graph, sim.substep_dt);
+    if (!sim.lost.empty()) is_pressed = sim.sleepers.mark_all(world);  // what they lay on may be gone
+    if (is_pressed) {
+        wake_marked(sim);
+        return;
+    }
+    if (do_edges_move(world)) return;
+    if (!sim.sleepers.put_to_sleep(world, sim.soft.graph, sim.flight_dt, sim.substep_dt)) return;
+    Sleepers<Real>::forget_contacts(sim.soft.graph, world);
+    rows_changed(sim);
+}
+
+template <class Real>
+void wake_at(Simulation<Real>& sim, Vec2 place, double reach) {
+    if (sim.sleepers.mark_near(sim.world, place, reach, *sim.kernels, sim.executor)) wake_marked(sim);
+}
+
+template <class Real>
+void wake_all(Simulation<Real>& sim) {
+    if (sim.sleepers.mark_all(sim.world)) wake_marked(sim);
+}
+
+template <class Real>
+std::size_t wake_body(Simulation<Real>& sim, std::size_t row) {
+    Bodies<Real>& bodies = sim.world.bodies;
+    if (row < bodies.count) return row;
+    const BodyId id = bodies.id[row];
+    sim.sleepers.mark(bodies.island[row]);
+    wake_marked(sim);
+    return sim.world.handles.row_of_slot(id.index);
+}
+
+template void wake_sleepers(Simulation<float>&);
+template void wake_sleepers(Simulation<double>&);
+template void put_to_sleep(Simulation<float>&);
+template void put_to_sleep(Simulation<double>&);
+template void wake_at(Simulation<float>&, Vec2, double);
+template void wake_at(Simulation<double>&, Vec2, double);
+template void wake_all(Simulation<float>&);
+template void wake_all(Simulation<double>&);
+template std::size_t wake_body(Simulation<float>&, std::size_t);
+template std::size_t wake_body(Simulation<double>&, std::size_t);
+
+}  // namespace carom

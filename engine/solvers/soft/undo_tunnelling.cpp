@@ -1,0 +1,154 @@
+// The last line of defence of solver `soft` against tunnelling: nothing ends a step behind an edge that it
+// was before.
+//
+// Contacts are planes for the length of a step. That is wrong where a very fast disc slides along one edge
+// into another, where an edge turns so far in one step that it overtakes what it pushes, and where a slow
+// disc is shot out of its margin, in the middle of a step, through an edge that was none of its candidates.
+#include "solvers/soft/soft_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "math/vec2_math.hpp"
+
+namespace carom {
+namespace {
+
+/// Whose centre moves less than this share of its radius past an edge is still held by its contact.
+constexpr double kSmallestWay = 0.5;
+
+/// Discs are looked at one by one if the fastest body moves more than this share of the smallest radius.
+constexpr double kFastWay = 0.25;
+
+/// Whoever is put back may get behind another edge by that.
+constexpr int kRounds = 3;
+
+/// When the line from p to q crosses the one from a to b, as a share of the way; 2 if it does not.
+double time_of_crossing(Vec2 p, Vec2 q, Vec2 a, Vec2 b) {
+    const Vec2 along = b - a;
+    const double before = cross(along, p - a), after = cross(along, q - a);
+    if (!((before < 0 && after > 0) || (before > 0 && after < 0))) return 2;
+    const double time = before / (before - after), place = dot(p + time * (q - p) - a, along);
+    return place >= 0 && place <= length_squared(along) ? time : 2;
+}
+
+}  // namespace
+
+template <class Real>
+void SoftSolver<Real>::note_tunnelled(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
+                                      const Column<Real>& motion, std::int32_t disc, std::int32_t number) {
+    const auto row = static_cast<std::size_t>(disc);
+    const Edge& edge = world.edges[number];
+    const EdgePose& pose = edges.pose_of(edge);
+    const Vec2 x{world.bodies.position_x[row], world.bodies.position_y[row]};
+    const Vec2 from = rotate_back(pose.turn, Vec2{motion[4 * row], motion[4 * row + 1]} - pose.position);
+    const Vec2 to = rotate_back(pose.end_turn, x - pose.end_position);
+    const double radius = world.bodies.radius[row], least = kSmallestWay * radius;
+    if (length_squared(to - from) < least * least) return;
+    const double time = time_of_crossing(from, to, edge.a, edge.b);
+    if (time <= 1) tunnelled_.push_back({disc, number, time, from, from + time * (to - from)});
+}
+
+/// Lists who crossed what, the first edge first.
+template <class Real>
+void SoftSolver<Real>::find_tunnelled(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
+                                      const Column<Real>& motion) {
+    tunnelled_.clear();
+    const ContactCandidates<Real>& supports = graph.supports;
+    supports.for_each([&](std::size_t i) {
+        if (is_edge_support(supports.b[i]))
+            note_tunnelled(world, edges, motion, supports.a[i], edge_of_support(supports.b[i]));
+    });
+    const auto edge_count = static_cast<std::int32_t>(world.edges.edges.size());
+    for (const std::int32_t row : strayed_)
+        for (std::int32_t edge = 0; edge < edge_count; ++edge)
+            note_tunnelled(world, edges, motion, row, edge);
+    std::sort(tunnelled_.begin(), tunnelled_.end(), [](const Tunnelled& left, const Tunnelled& right) {
+        return std::tie(left.row, left.time, left.edge) < std::tie(right.row, right.time, right.edge);
+    });
+}
+
+template <class Real>
+void SoftSolver<Real>::undo_tunnelling(WorldState<Real>& world, const EdgeCandidates<Real>& edges,
+                                       const Column<Real>& motion, const Candidates<Real>& candidates,
+                                       double fastest) {
+    strayed_.clear();
+    const Bodies<Real>& bodies = world.bodies;
+    // Nobody is made faster than the fastest by much, and only who is fast can pass.
+    if (fastest * dt_ > kFastWay * candidates.smallest_radius())
+        for (std::size_t row = 0; row < count_; ++row) {
+            const Vec2 way = Vec2{bodies.position_x[row], bodies.position_y[row]} -
+                             Vec2{candidates.built_x()[row], candidates.built_y()[row]};
+            const double margin =
+                static_cast<double>(candidates.reach()[row]) - static_cast<double>(bodies.radius[row]);
+            const double squared = length_squared(way);
+            if (squared <= margin * margin || bodies.is_immovable(row)) continue;
+            // Edges somewhat beyond its margin are among the supports, too.
+            if (std::sqrt(squared) - margin + candidates.farther_than_first(row) > edges.allowance())
+                strayed_.push_back(static_cast<std::int32_t>(row));
+        }
+    for (int round = 0; round < kRounds; ++round) {
+        find_tunnelled(world, edges, motion);
+        if (tunnelled_.empty()) return;
+        std::int32_t done = -1;
+        for (const Tunnelled& passed : tunnelled_) {
+            if (passed.row == done) continue;  // the edge it crossed first
+            done = passed.row;
+            put_back(world, edges, passed, round > 0);
+        }
+    }
+}
+
+/// To where it crossed the edge, on the side it came from, without its velocity into the edge. In a sharp
+/// corner that can be behind the other edge: then to where it was before the step, beside the same edge.
+template <class Real>
+void SoftSolver<Real>::put_back(WorldState<Real>& world, const EdgeCandidates<Real>& edges,
+                                const Tunnelled& passed, bool to_start) {
+    Bodies<Real>& bodies = world.bodies;
+    const auto row = static_cast<std::size_t>(passed.row);
+    const Edge& edge = world.edges[passed.edge];
+    const EdgePose& pose = edges.pose_of(edge);
+    const Vec2 along = edge.b - edge.a;
+    const double length = std::sqrt(length_squared(along));
+    const double side = cross(along, passed.from - edge.a) > 0 ? 1 / length : -1 / length;
+    const Vec2 out = side * Vec2{-along.y, along.x};
+    const double radius = bodies.radius[row];
+    const Vec2 place = to_start ? passed.from : passed.point + radius * out;
+    const Vec2 x = pose.end_position + rotate(pose.end_turn, place);
+    const Vec2 n = rotate(pose.end_turn, out);
+    const double spin = (pose.end_angle - pose.angle) / dt_;
+    const Vec2 arm = rotate(pose.end_turn, passed.point);
+    const Vec2 surface = (1 / dt_) * (pose.end_position - pose.position) + spin * Vec2{-arm.y, arm.x};
+    const Vec2 v{bodies.velocity_x[row], bodies.velocity_y[row]};
+    const double leaving = dot(v - surface, n);
+    const Vec2 held = leaving < 0 ? v - leaving * n : v;
+    bodies.position_x[row] = static_cast<Real>(x.x), bodies.position_y[row] = static_cast<Real>(x.y);
+    bodies.velocity_x[row] = static_cast<Real>(held.x), bodies.velocity_y[row] = static_cast<Real>(held.y);
+    if (!world.books.is_open) return;
+    const double mass = bodies.mass[row];
+    const Vec2 now{bodies.velocity_x[row], bodies.velocity_y[row]};
+    const double drive = mass * dot(now - v, surface);
+    world.books.drive += drive;
+    world.books.restitution += 0.5 * mass * (length_squared(now) - length_squared(v)) - drive;
+    world.books.immovable_momentum += mass * (now - v);
+}
+
+template void SoftSolver<float>::put_back(WorldState<float>&, const EdgeCandidates<float>&, const Tunnelled&,
+                                          bool);
+template void SoftSolver<double>::put_back(WorldState<double>&, const EdgeCandidates<double>&,
+                                           const Tunnelled&, bool);
+template void SoftSolver<float>::note_tunnelled(const WorldState<float>&, const EdgeCandidates<float>&,
+                                                const Column<float>&, std::int32_t, std::int32_t);
+template void SoftSolver<double>::note_tunnelled(const WorldState<double>&, const EdgeCandidates<double>&,
+                                                 const Column<double>&, std::int32_t, std::int32_t);
+template void SoftSolver<float>::find_tunnelled(const WorldState<float>&, const EdgeCandidates<float>&,
+                                                const Column<float>&);
+template void SoftSolver<double>::find_tunnelled(const WorldState<double>&, const EdgeCandidates<double>&,
+                                                 const Column<double>&);
+template void SoftSolver<float>::undo_tunnelling(WorldState<float>&, const EdgeCandidates<float>&,
+                                                 const Column<float>&, const Candidates<float>&, double);
+template void SoftSolver<double>::undo_tunnelling(WorldState<double>&, const EdgeCandidates<double>&,
+                                                  const Column<double>&, const Candidates<double>&, double);
+
+}  // namespace carom

@@ -1,0 +1,157 @@
+#include "state/world_state.hpp"
+
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
+#include "math/vec2_math.hpp"
+#include "scene/mass.hpp"
+
+namespace carom {
+
+Sums operator+(const Sums& a, const Sums& b) {
+    return {{a.energy.kinetic + b.energy.kinetic, a.energy.rotational + b.energy.rotational,
+             a.energy.potential + b.energy.potential},
+            a.momentum + b.momentum,
+            a.angular_momentum + b.angular_momentum};
+}
+
+Sums operator-(const Sums& a, const Sums& b) {
+    return {{a.energy.kinetic - b.energy.kinetic, a.energy.rotational - b.energy.rotational,
+             a.energy.potential - b.energy.potential},
+            a.momentum - b.momentum,
+            a.angular_momentum - b.angular_momentum};
+}
+
+template <class Real>
+Sums WorldState<Real>::sums_of(std::size_t row) const {
+    if (bodies.is_immovable(row)) return {};
+    const double mass = bodies.mass[row], radius = bodies.radius[row];
+    const Vec2 x{bodies.position_x[row], bodies.position_y[row]},
+        v{bodies.velocity_x[row], bodies.velocity_y[row]};
+    Sums sums{{0.5 * mass * length_squared(v), 0, -mass * dot(gravity, x)}, mass * v, mass * cross(x, v)};
+    if (bodies.has_rotation) {
+        const double inertia = 0.5 * mass * radius * radius, spin = bodies.angular_velocity[row];
+        sums.energy.rotational = 0.5 * inertia * spin * spin;
+        sums.angular_momentum += inertia * spin;
+    }
+    return sums;
+}
+
+template <class Real>
+Sums WorldState<Real>::sums() const {
+    Sums sums;
+    for (std::size_t row = 0; row < bodies.rows(); ++row) sums = sums + sums_of(row);
+    return sums;
+}
+
+template <class Real>
+BodyId WorldState<Real>::append(const Body& body) {
+    const std::size_t row = bodies.count, rows = bodies.rows() + 1;
+    bodies.resize(rows);
+    if (bodies.asleep > 0) {  // the first that sleeps makes room
+        bodies.for_each_column([&](auto, auto, auto& column) {
+            column[rows - 1] = column[row];
+            column[row] = {};
+        });
+        handles.set_row(bodies.id[rows - 1], static_cast<std::uint32_t>(rows - 1));
+    }
+    const BodyId id = handles.add(static_cast<std::uint32_t>(row));
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    const double mass = mass_of(body);
+    const bool has_edges = !is_disc(body.shape);
+    bodies.position_x[row] = real(body.position.x), bodies.position_y[row] = real(body.position.y);
+    bodies.velocity_x[row] = real(body.velocity.x), bodies.velocity_y[row] = real(body.velocity.y);
+    bodies.id[row] = id;
+    if (bodies.has_rotation)
+        bodies.angle[row] = real(body.angle), bodies.angular_velocity[row] = real(body.angular_velocity);
+    if (has_edges) {
+        edges.append(id, body.shape);
+        bodies.radius.set_any(row, rows, Real(1));
+    } else {
+        bodies.radius.set(row, rows, real(radius_of(body.shape)));
+    }
+    bodies.restitution.set(row, rows, real(body.material.restitution));
+    bodies.friction.set(row, rows, real(body.material.friction));
+    bodies.rolling_resistance.set(row, rows, real(body.material.rolling_resistance));
+    if (body.type == BodyType::dynamic_body) {
+        bodies.mass.set(row, rows, real(mass));
+        bodies.set_flags(row, body.fixed_rotation ? kFixedAngle : 0);
+        dynamic_mass += static_cast<double>(bodies.mass[row]);
+    } else {
+        bodies.mass.set_any(row, rows, Real(1));  // it counts as infinite
+        const bool moves = body.type == BodyType::kinematic_body;
+        bodies.set_flags(
+            row, static_cast<std::uint8_t>(kImmovable | (moves ? kKinematic : 0) | (has_edges ? kEdges : 0)));
+        immovable_rows.push_back(static_cast<std::int32_t>(row));
+    }
+    initial = initial + sums_of(row);
+    return id;
+}
+
+template <class Real>
+EdgeStore::Removed WorldState<Real>::remove(std::size_t row) {
+    const EdgeStore::Removed gone = edges.remove(bodies.id[row]);
+    initial = initial - sums_of(row);
+    if (!bodies.is_immovable(row)) dynamic_mass -= static_cast<double>(bodies.mass[row]);
+    handles.remove(bodies.id[row]);
+    const std::size_t last_awake = bodies.count - 1, last = bodies.rows() - 1;
+    const auto fill = [&](std::size_t to, std::size_t from) {
+        if (to == from) return;
+        bodies.for_each_column([&](auto, auto, auto& column) { column[to] = column[from]; });
+        handles.set_row(bodies.id[to], static_cast<std::uint32_t>(to));
+    };
+    fill(row, last_awake), fill(last_awake, last);
+    bodies.resize(last);
+    list_immovable_rows();
+    return gone;
+}
+
+template <class Real>
+void WorldState<Real>::quarantine(std::size_t row) {
+    if (!bodies.is_immovable(row)) dynamic_mass -= static_cast<double>(bodies.mass[row]);
+    initial = initial - sums_of(row);
+    bodies.set_flags(
+        row, static_cast<std::uint8_t>((bodies.flags_of(row) & ~kKinematic) | kImmovable | kDisabled));
+    bodies.velocity_x[row] = 0, bodies.velocity_y[row] = 0;
+    if (bodies.has_rotation) bodies.angular_velocity[row] = 0;
+    ++quarantined_count;
+    list_immovable_rows();
+}
+
+template <class Real>
+void WorldState<Real>::list_immovable_rows() {
+    immovable_rows.clear();
+    if (!bodies.has_flags) return;
+    for (std::size_t row = 0; row < bodies.count; ++row)
+        if (bodies.is_immovable(row)) immovable_rows.push_back(static_cast<std::int32_t>(row));
+}
+
+template <class Real>
+void WorldState<Real>::swap_rows(std::size_t a, std::size_t b) {
+    if (a == b) return;
+    bodies.for_each_column([&](auto, auto, auto& column) { std::swap(column[a], column[b]); });
+    handles.set_row(bodies.id[a], static_cast<std::uint32_t>(a));
+    handles.set_row(bodies.id[b], static_cast<std::uint32_t>(b));
+}
+
+template <class Real>
+void WorldState<Real>::reorder(const std::int32_t* order) {
+    const std::size_t count = bodies.count;
+    bodies.for_each_column([&](auto, auto, auto& column) {
+        using T = std::remove_reference_t<decltype(column[0])>;
+        spare_.resize_for_overwrite(count * sizeof(T));
+        std::byte* sorted = spare_.data();
+        for (std::size_t row = 0; row < count; ++row)
+            std::memcpy(sorted + row * sizeof(T), &column[static_cast<std::size_t>(order[row])], sizeof(T));
+        std::memcpy(column.data(), sorted, count * sizeof(T));
+    });
+    for (std::size_t row = 0; row < count; ++row)
+        handles.set_row(bodies.id[row], static_cast<std::uint32_t>(row));
+    list_immovable_rows();
+}
+
+template struct WorldState<float>;
+template struct WorldState<double>;
+
+}  // namespace carom

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <carom/ledger.hpp>
+#include <carom/scene.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "state/bodies.hpp"
+#include "state/books.hpp"
+#include "state/edges.hpp"
+#include "state/handles.hpp"
+
+namespace carom {
+
+/// Which optional laws a world runs: what its scene calls for, and what was forced on.
+struct Effects {
+    bool gravity = false;
+    bool drag = false;
+    bool angular_drag = false;
+    bool walls = false;
+    bool restitution = false;
+    bool rotation = false;
+    bool friction = false;
+    bool rolling_resistance = false;
+    bool ledger = false;
+    bool sleeping = false;
+};
+
+/// Sums over the dynamic bodies, in double precision.
+struct Sums {
+    Energy energy;
+    Vec2 momentum;                ///< kg m/s
+    double angular_momentum = 0;  ///< kg m²/s
+};
+
+Sums operator+(const Sums& a, const Sums& b);
+Sums operator-(const Sums& a, const Sums& b);
+
+/// The columns and the laws: everything that a snapshot would have to hold.
+template <class Real>
+struct WorldState {
+    Bodies<Real> bodies;
+    Handles handles;
+    EdgeStore edges;  ///< of segments and chains
+    Vec2 gravity;     ///< m/s²
+    Drag drag;
+    std::optional<Walls> walls;
+    Effects effects;
+    double time = 0;          ///< s
+    std::uint64_t falls = 0;  ///< flights so far: says how speeds are rounded in the next one
+    Books books;
+    Sums initial;                              ///< of the bodies there are, at the moment each joined
+    double dynamic_mass = 0;                   ///< kg, of those awake
+    std::vector<std::int32_t> immovable_rows;  ///< static, kinematic and disabled ones
+    std::int64_t quarantined_count = 0;
+
+    /// What one row adds to the sums; nothing if it is not dynamic.
+    Sums sums_of(std::size_t row) const;
+    Sums sums() const;
+
+    /// Appends a row for a body that has been validated.
+    BodyId append(const Body& body);
+    /// Takes a row out; the last row takes its place.
+    /// @return the edges that went with it.
+    EdgeStore::Removed remove(std::size_t row);
+    /// Rolls a row whose next state would leave the limits out of the simulation, where it is.
+    void quarantine(std::size_t row);
+    /// Exchanges two rows. `list_immovable_rows` is to be called after it.
+    void swap_rows(std::size_t a, std::size_t b);
+    void list_immovable_rows();
+    /// Sorts the rows that are awake: new row i is the old row order[i].
+    void reorder(const std::int32_t* order);
+
+  private:
+    Column<std::byte> spare_;  // one column's worth, kept so that reordering allocates nothing
+};
+
+extern template struct WorldState<float>;
+extern template struct WorldState<double>;
+
+}  // namespace carom

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <carom/world.hpp>
+
+#include "solvers/shared/simulation.hpp"
+
+// Questions about a simulation that are not part of a step.
+
+namespace carom {
+
+/// Overlaps of all candidate pairs and at the walls, from the positions in the columns.
+template <class Real>
+OverlapReport measure_overlaps(Simulation<Real>& sim);
+
+/// Memory a simulation holds now.
+template <class Real>
+std::size_t bytes_of(Simulation<Real>& sim);
+
+}  // namespace carom

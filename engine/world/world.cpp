@@ -1,0 +1,441 @@
+#include <carom/world.hpp>
+
+#include <bit>
+#include <cmath>
+#include <string>
+
+#include "isa/select_isa.hpp"
+#include "scene/choose_solver.hpp"
+#include "scene/mass.hpp"
+#include "scene/validation.hpp"
+#include "solvers/shared/stages.hpp"
+#include "solvers/soft/sleep.hpp"
+#include "step/step.hpp"
+#include "world/measure.hpp"
+
+namespace carom {
+namespace {
+
+/// FNV-1a over 64-bit words (Fowler, Noll & Vo), with the two zeros made one.
+class StateHash {
+  public:
+    template <class Real>
+    void add(Real value) {
+        const Real zero_is_positive = value + Real(0);
+        if constexpr (sizeof(Real) == sizeof(std::uint32_t))
+            add_bits(std::bit_cast<std::uint32_t>(zero_is_positive));
+        else
+            add_bits(std::bit_cast<std::uint64_t>(zero_is_positive));
+    }
+    std::uint64_t value() const { return hash_; }
+
+  private:
+    void add_bits(std::uint64_t bits) {
+        for (int byte = 0; byte < 8; ++byte) {
+            hash_ ^= bits & 0xFF;
+            hash_ *= 0x100000001B3u;
+            bits >>= 8;
+        }
+    }
+    std::uint64_t hash_ = 0xCBF29CE484222325u;
+};
+
+/// `solver` is never automatic here.
+Accuracy accuracy_of(const Scene& scene, const WorldOptions& options) {
+    Accuracy accuracy = scene.accuracy;
+    accuracy.solver = choose_solver(scene, options.solver.value_or(accuracy.solver)).solver;
+    if (options.substeps) accuracy.substeps = options.substeps;
+    if (options.iterations) accuracy.iterations = options.iterations;
+    return accuracy;
+}
+
+void check_options(const Scene& scene, const WorldOptions& options) {
+    const Accuracy accuracy = accuracy_of(scene, options);
+    validate_accuracy(accuracy, "World");
+    if (accuracy.solver == Solver::pairwise)
+        throw Error(
+            ErrorCode::inconsistent,
+            "World: solver \"pairwise\" is the naive reference engine, class carom::Pairwise "
+            "(<carom/pairwise.hpp>), not a solver of World. Use \"auto\", \"impulse\" or \"soft\" here.");
+    raise_if("World", find_solver_problem(scene, accuracy.solver));
+    raise_if("World: option effects", find_solver_problem(options.effects, accuracy.solver));
+    validate_effects(scene, scene.effects, "World");
+    validate_effects(scene, options.effects, "World: option effects");
+    constexpr int kMostThreads = 1024;
+    if (options.threads < 0 || options.threads > kMostThreads)
+        throw Error(ErrorCode::out_of_range, "World: option threads is " + std::to_string(options.threads) +
+                                                 "; expected 0 (as many as there are) to " +
+                                                 std::to_string(kMostThreads) + ".");
+}
+
+}  // namespace
+
+template <class Real>
+struct BasicWorld<Real>::Implementation {
+    Simulation<Real> sim;
+    StageTimes times;
+    CalledEffects called;
+    EffectOverrides overrides;  // of the scene and of the options
+    double angular_drag = 0;    // 1/s, of the scene; in force once something turns
+
+    WorldState<Real>& world() { return sim.world; }
+    Bodies<Real>& bodies() { return sim.world.bodies; }
+    std::size_t row_of(BodyId body, std::string_view where) const {
+        return sim.world.handles.row_of(body, where);
+    }
+
+    void turn_rotation_on() {
+        Bodies<Real>& b = bodies();
+        if (b.has_rotation) return;
+        b.has_rotation = true;
+        b.angle.resize(b.rows()), b.angular_velocity.resize(b.rows());
+        world().effects.rotation = true;
+        report_on("rotation", "a body turns");
+        if (!(angular_drag > 0)) return;
+        world().drag.angular = angular_drag;
+        world().effects.angular_drag = true;
+        report_on("angular drag", "a body turns");
+    }
+
+    void report_on(std::string_view effect, const char* reason) {
+        for (EffectReport& report : called.reports)
+            if (report.name == effect) report.on = true, report.reason = reason;
+    }
+
+    /// Turns on what a body to be added calls for and no other body has.
+    void call_effects_of(const Body& body) {
+        Effects& on = world().effects;
+        const bool bounces = body.material.restitution > 0 && !on.restitution;
+        const bool resists = body.material.rolling_resistance > 0 && !on.rolling_resistance;
+        const bool rubs = (body.material.friction > 0 || resists) && !on.friction;
+        if (!bounces && !resists && !rubs) return;
+        Scene alone;  // what is forced off cannot be called for
+        alone.accuracy.solver = sim.solver;
+        alone.add(body);
+        validate_effects(alone, overrides, "World::add");
+        const auto turn_on = [&](bool is_called, bool& effect, std::string_view name, const char* reason) {
+            if (!is_called) return;
+            effect = true;
+            report_on(name, reason);
+        };
+        turn_on(bounces, on.restitution, "restitution", "a body that was added has a restitution above zero");
+        turn_on(rubs, on.friction, "friction", "a body that was added has friction");
+        turn_on(resists, on.rolling_resistance, "rolling resistance",
+                "a body that was added has rolling resistance");
+        if (rubs) turn_rotation_on();
+    }
+
+    /// Calls change(row), which alters one body from outside, and keeps the books right.
+    template <class Change>
+    void change_row(std::size_t row, const Change& change) {
+        const Sums before = world().sums_of(row);
+        change();
+        world().initial = world().initial + (world().sums_of(row) - before);
+        sim.forget_derived_state();
+    }
+
+    /// Wakes a body that is about to be changed, and those that touch it. @return its row then
+    std::size_t wake_around(std::size_t row) {
+        const Bodies<Real>& b = bodies();
+        if (b.asleep == 0) return row;
+        const BodyId id = b.id[row];
+        if (b.flags_of(row) & kEdges) wake_all(sim);
+        wake_body(sim, row);
+        const std::size_t now = world().handles.row_of_slot(id.index);
+        wake_at(sim, {b.position_x[now], b.position_y[now]}, b.radius[now]);
+        return world().handles.row_of_slot(id.index);
+    }
+
+    /// Solver `event` refuses bodies that overlap: then undo() takes the change back.
+    template <class Undo>
+    void undo_if_refused(std::string_view where, const Undo& undo) {
+        if (sim.solver != Solver::event) return;
+        try {
+            load_events(sim, where);
+        } catch (const Error&) {
+            undo();
+            sim.forget_derived_state();
+            throw;
+        }
+    }
+
+    std::vector<BodyId> quarantined() const {
+        std::vector<BodyId> ids;
+        const WorldState<Real>& state = sim.world;
+        for (std::size_t slot = 0; slot < state.handles.slot_count(); ++slot) {
+            const std::uint32_t row = state.handles.row_of_slot(slot);
+            if (row != Handles::kNoRow && (state.bodies.flags_of(row) & kDisabled))
+                ids.push_back(state.bodies.id[row]);
+        }
+        return ids;
+    }
+};
+
+template <class Real>
+BasicWorld<Real>::BasicWorld(const Scene& scene, const WorldOptions& options) {
+    scene.validate();
+    check_options(scene, options);
+    const Accuracy accuracy = accuracy_of(scene, options);
+    implementation_ = std::make_unique<Implementation>();
+    Simulation<Real>& sim = implementation_->sim;
+    sim.kernels = &select_kernels(options.isa).template of<Real>();
+    sim.executor = Executor(options.threads, options.parallel_for);
+    sim.solver = accuracy.solver;
+    if (sim.solver == Solver::soft) sim.candidates = Candidates<Real>(MarginRule::own);
+    sim.substeps_asked_for = accuracy.substeps.value_or(default_substeps(sim.solver));
+    implementation_->called = call_effects(scene, options.effects);
+    const auto either = [](const std::optional<bool>& first, const std::optional<bool>& second) {
+        return first ? first : second;
+    };
+    EffectOverrides& overrides = implementation_->overrides;
+    overrides.restitution = either(options.effects.restitution, scene.effects.restitution);
+    overrides.rotation = either(options.effects.rotation, scene.effects.rotation);
+    overrides.friction = either(options.effects.friction, scene.effects.friction);
+    overrides.rolling_resistance =
+        either(options.effects.rolling_resistance, scene.effects.rolling_resistance);
+    implementation_->angular_drag = scene.drag.angular;
+    implementation_->called.solver_reason =
+        choose_solver(scene, options.solver.value_or(scene.accuracy.solver)).reason;
+
+    WorldState<Real>& world = sim.world;
+    world.effects = implementation_->called.effects;
+    world.gravity = scene.gravity;
+    world.drag = {world.effects.drag ? scene.drag.linear : 0,
+                  world.effects.rotation ? scene.drag.angular : 0};
+    world.walls = scene.walls;
+    world.books.is_open = world.effects.ledger;
+    world.bodies.has_rotation = world.effects.rotation;
+    world.bodies.has_sleep = world.effects.sleeping;
+    for (const Body& body : scene.bodies) world.append(body);
+    if (sim.solver == Solver::event) load_events(sim, "World");
+}
+
+template <class Real>
+BasicWorld<Real>::~BasicWorld() = default;
+template <class Real>
+BasicWorld<Real>::BasicWorld(BasicWorld&&) noexcept = default;
+template <class Real>
+BasicWorld<Real>& BasicWorld<Real>::operator=(BasicWorld&&) noexcept = default;
+
+template <class Real>
+void BasicWorld<Real>::step(double dt) {
+    validate_dt(dt, "World::step");
+    if (dt == 0) return;
+    Simulation<Real>& sim = implementation_->sim;
+    const auto step = [&] { carom::step(sim, dt, implementation_->times); };
+    const bool has_loops = sim.solver == Solver::soft ? sim.soft.graph.groups.chunks > 1
+                                                      : sim.executor.is_parallel(sim.world.bodies.count);
+    if (has_loops)
+        sim.executor.with_team(step);
+    else
+        step();
+}
+
+template <class Real>
+std::size_t BasicWorld<Real>::body_count() const noexcept {
+    return implementation_->bodies().rows();
+}
+
+template <class Real>
+BodyView<Real> BasicWorld<Real>::bodies() const noexcept {
+    const Bodies<Real>& b = implementation_->sim.world.bodies;
+    BodyView<Real> view{
+        b.rows(), b.position_x.span(), b.position_y.span(), b.velocity_x.span(), b.velocity_y.span(), {},
+        {},       b.id.span()};
+    if (b.has_rotation) view.angle = b.angle.span(), view.angular_velocity = b.angular_velocity.span();
+    return view;
+}
+
+template <class Real>
+std::uint32_t BasicWorld<Real>::row(BodyId body) const {
+    return implementation_->sim.world.handles.row_of(body, "World::row");
+}
+
+template <class Real>
+bool BasicWorld<Real>::is_asleep(BodyId body) const {
+    return implementation_->row_of(body, "World::is_asleep") >= implementation_->sim.world.bodies.count;
+}
+
+template <class Real>
+BodyState BasicWorld<Real>::state(BodyId body) const {
+    const std::size_t row = implementation_->row_of(body, "World::state");
+    const Bodies<Real>& b = implementation_->sim.world.bodies;
+    BodyState state{{b.position_x[row], b.position_y[row]}, 0, {b.velocity_x[row], b.velocity_y[row]}, 0};
+    if (b.has_rotation) state.angle = b.angle[row], state.angular_velocity = b.angular_velocity[row];
+    return state;
+}
+
+template <class Real>
+BodyId BasicWorld<Real>::add(const Body& body) {
+    validate_body(body, "World::add");
+    raise_if("World::add",
+             find_solver_problem({"the body has", "", -1, ""}, body, implementation_->sim.solver));
+    if (implementation_->world().walls) validate_inside(body, *implementation_->world().walls, "World::add");
+    if (body_count() >= kLargestBodyCount)
+        throw Error(ErrorCode::too_large, "World::add: the world has " + std::to_string(body_count()) +
+                                              " bodies, which is the limit. Remove some first.");
+    implementation_->call_effects_of(body);
+    if (body.angular_velocity != 0 || body.angle != 0) implementation_->turn_rotation_on();
+    if (is_disc(body.shape))
+        wake_at(implementation_->sim, body.position, radius_of(body.shape));
+    else
+        wake_all(implementation_->sim);
+    const BodyId id = implementation_->world().append(body);
+    implementation_->sim.forget_derived_state();
+    implementation_->undo_if_refused("World::add",
+                                     [&] { implementation_->world().remove(body_count() - 1); });
+    return id;
+}
+
+template <class Real>
+void BasicWorld<Real>::remove(BodyId body) {
+    Simulation<Real>& sim = implementation_->sim;
+    std::size_t row = implementation_->row_of(body, "World::remove");
+    row = implementation_->wake_around(row);
+    sim.soft.graph.trail.follow_removed(row, sim.world.bodies.count - 1);
+    const EdgeStore::Removed edges = sim.world.remove(row);
+    sim.soft.graph.follow_removed_edges(edges);
+    if (edges.count > 0) sim.sleepers.forget_woken();
+    sim.forget_derived_state();
+}
+
+template <class Real>
+void BasicWorld<Real>::set_position(BodyId body, Vec2 position) {
+    std::size_t row = implementation_->row_of(body, "World::set_position");
+    validate_position(position, "World::set_position");
+    Bodies<Real>& b = implementation_->bodies();
+    row = implementation_->wake_around(row);
+    wake_at(implementation_->sim, position, b.radius[row]);
+    row = implementation_->row_of(body, "World::set_position");
+    const auto move_to = [&](Real x, Real y) {
+        implementation_->change_row(row, [&] { b.position_x[row] = x, b.position_y[row] = y; });
+    };
+    const Real x = b.position_x[row], y = b.position_y[row];
+    move_to(static_cast<Real>(position.x), static_cast<Real>(position.y));
+    implementation_->undo_if_refused("World::set_position", [&] { move_to(x, y); });
+}
+
+template <class Real>
+void BasicWorld<Real>::set_velocity(BodyId body, Vec2 velocity) {
+    std::size_t row = implementation_->row_of(body, "World::set_velocity");
+    validate_velocity(velocity, "World::set_velocity");
+    row = implementation_->wake_around(row);
+    Bodies<Real>& b = implementation_->bodies();
+    implementation_->change_row(row, [&] {
+        b.velocity_x[row] = static_cast<Real>(velocity.x), b.velocity_y[row] = static_cast<Real>(velocity.y);
+    });
+}
+
+template <class Real>
+void BasicWorld<Real>::set_angular_velocity(BodyId body, double angular_velocity) {
+    std::size_t row = implementation_->row_of(body, "World::set_angular_velocity");
+    validate_angular_velocity(angular_velocity, "World::set_angular_velocity");
+    if (angular_velocity != 0) implementation_->turn_rotation_on();
+    Bodies<Real>& b = implementation_->bodies();
+    if (!b.has_rotation) return;
+    row = implementation_->wake_around(row);
+    implementation_->change_row(row, [&] { b.angular_velocity[row] = static_cast<Real>(angular_velocity); });
+}
+
+template <class Real>
+double BasicWorld<Real>::time() const noexcept {
+    return implementation_->sim.world.time;
+}
+
+template <class Real>
+Ledger BasicWorld<Real>::ledger() const {
+    const WorldState<Real>& world = implementation_->sim.world;
+    const Books& books = world.books;
+    const Sums now = world.sums(), &start = world.initial;
+    Ledger ledger;
+    ledger.time = world.time;
+    ledger.initial = start.energy, ledger.energy = now.energy;
+    ledger.initial_momentum = start.momentum, ledger.momentum = now.momentum;
+    ledger.initial_angular_momentum = start.angular_momentum, ledger.angular_momentum = now.angular_momentum;
+    ledger.wall_impulse = books.wall_impulse;
+    if (!books.is_open) return ledger;
+
+    EnergyByCause& energy = ledger.energy_by_cause;
+    energy.gravity = start.energy.potential - now.energy.potential;
+    energy.drag = books.drag, energy.restitution = books.restitution, energy.friction = books.friction;
+    energy.correction = books.correction, energy.drive = books.drive, energy.sleep = books.sleep;
+    energy.unexplained = (now.energy.kinetic + now.energy.rotational) -
+                         (start.energy.kinetic + start.energy.rotational) - energy.sum();
+    MomentumByCause& momentum = ledger.momentum_by_cause;
+    momentum.gravity = books.gravity_momentum, momentum.drag = books.drag_momentum;
+    momentum.walls = books.wall_momentum, momentum.immovable = books.immovable_momentum;
+    momentum.sleep = books.sleep_momentum;
+    momentum.unexplained = now.momentum - start.momentum - momentum.gravity - momentum.drag - momentum.walls -
+                           momentum.immovable - momentum.sleep;
+    return ledger;
+}
+
+template <class Real>
+Profile BasicWorld<Real>::profile() const {
+    const Simulation<Real>& sim = implementation_->sim;
+    const ImpulseCounters& counters = sim.impulse.counters;
+    Profile profile;
+    for (std::size_t i = 0; i < kStages.size(); ++i) {
+        const StageTimes::Entry& entry = implementation_->times[static_cast<StageName>(i)];
+        if (entry.calls > 0) profile.stages.push_back({kStages[i].name, entry.calls, entry.seconds});
+    }
+    profile.steps = sim.step_count;
+    profile.rebuilds = sim.candidates.rebuild_count();
+    profile.candidate_pairs = static_cast<std::int64_t>(sim.candidates.pair_count());
+    const EventCounters& events = sim.events.counters();  // of one of the two there are none
+    profile.pair_tests = events.pair_tests;
+    profile.impacts = counters.impacts + events.impacts;
+    profile.wall_impacts = counters.wall_impacts + events.wall_impacts;
+    profile.simultaneous_impacts = counters.simultaneous_impacts + events.simultaneous_impacts;
+    profile.resting_contacts = counters.resting_contacts;
+    const SoftCounters& soft = sim.soft.counters;
+    profile.contacts = soft.contacts, profile.colours = soft.colours;
+    profile.overflow = soft.overflow, profile.bounces = soft.bounces;
+    const SolveQuality solve = sim.soft.quality();
+    profile.touching = counters.resting_contacts + solve.touching;
+    profile.residual = solve.residual, profile.residual_max = solve.residual_max;
+    profile.overlaps_corrected = counters.overlaps_corrected;
+    profile.unresolved_impacts = counters.unresolved_impacts;
+    profile.asleep = static_cast<std::int64_t>(sim.world.bodies.asleep);
+    profile.islands_asleep = sim.sleepers.island_count();
+    profile.islands_woken = sim.sleepers.woken_count();
+    profile.quarantined = sim.world.quarantined_count;
+    profile.bytes = bytes_of(implementation_->sim);
+    return profile;
+}
+
+template <class Real>
+Plan BasicWorld<Real>::plan() const {
+    return describe_plan(implementation_->sim, implementation_->called);
+}
+
+template <class Real>
+OverlapReport BasicWorld<Real>::overlaps() const {
+    return measure_overlaps(implementation_->sim);
+}
+
+template <class Real>
+std::vector<BodyId> BasicWorld<Real>::quarantined() const {
+    return implementation_->quarantined();
+}
+
+template <class Real>
+std::uint64_t BasicWorld<Real>::state_hash() const {
+    const WorldState<Real>& world = implementation_->sim.world;
+    const Bodies<Real>& b = world.bodies;
+    StateHash hash;
+    for (std::size_t slot = 0; slot < world.handles.slot_count(); ++slot) {
+        const std::uint32_t row = world.handles.row_of_slot(slot);
+        if (row == Handles::kNoRow) continue;
+        hash.add(b.position_x[row]), hash.add(b.position_y[row]);
+        hash.add(b.velocity_x[row]), hash.add(b.velocity_y[row]);
+        hash.add(b.has_rotation ? b.angle[row] : Real(0));
+        hash.add(b.has_rotation ? b.angular_velocity[row] : Real(0));
+    }
+    return hash.value();
+}
+
+template class BasicWorld<float>;
+template class BasicWorld<double>;
+
+}  // namespace carom
