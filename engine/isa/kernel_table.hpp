@@ -34,6 +34,10 @@ struct KernelTable {
     FlightCounts<Real> (*begin_flight)(const BeginFlight<Real>&, std::size_t first, std::size_t last);
     FlightCounts<Real> (*begin_flight_uniform_radius)(const BeginFlight<Real>&, std::size_t first,
                                                       std::size_t last);
+    // The same without a list of rows near walls.
+    FlightCounts<Real> (*pack_motion)(const BeginFlight<Real>&, std::size_t first, std::size_t last);
+    FlightCounts<Real> (*pack_motion_uniform_radius)(const BeginFlight<Real>&, std::size_t first,
+                                                     std::size_t last);
     std::size_t (*find_impacts)(const FindImpacts<Real>&, std::size_t first, std::size_t last);
     std::size_t (*find_impacts_uniform_radius)(const FindImpacts<Real>&, std::size_t first, std::size_t last);
     std::size_t (*find_impacts_near)(const GridLevel<Real>&, const FindImpactsNear<Real>&);

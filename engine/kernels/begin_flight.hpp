@@ -13,14 +13,15 @@ auto reaches_wall(F x, F end, F touch, F bend, F min, F max) {
     return (simd::min(x, end) - touch - bend < min) | (simd::max(x, end) + touch + bend > max);
 }
 
-template <bool kUniformRadius, class Real, class Isa>
+/// @tparam kListsWalls  false: the rows that may reach a wall are not asked for
+template <bool kUniformRadius, bool kListsWalls, class Real, class Isa>
 FlightCounts<Real> begin_flight(const BeginFlight<Real>& k, std::size_t first, std::size_t last) {
     using Lanes = simd::Lanes<Real, Isa>;
     using F = typename Lanes::Batch;
     const F s(k.s), fall_x(k.fall_x), fall_y(k.fall_y), gain_x(k.gain_x), gain_y(k.gain_y);
-    const F bend_x(k.bend_x), bend_y(k.bend_y), min_x(k.min_x), min_y(k.min_y), max_x(k.max_x),
-        max_y(k.max_y);
-    const F touch_ratio(k.touch_ratio), largest_position(k.largest_position), largest_speed(k.largest_speed);
+    [[maybe_unused]] const F bend_x(k.bend_x), bend_y(k.bend_y), min_x(k.min_x), min_y(k.min_y),
+        max_x(k.max_x), max_y(k.max_y), touch_ratio(k.touch_ratio);
+    const F largest_position(k.largest_position), largest_speed(k.largest_speed);
     FlightCounts<Real> counts{0, 0, 0, 0};
     F fastest(Real(0));
     for (std::size_t i = first; i < last; i += Lanes::size) {
@@ -33,9 +34,12 @@ FlightCounts<Real> begin_flight(const BeginFlight<Real>& k, std::size_t first, s
         const F end_x = x + (vx * s + fall_x), end_y = y + (vy * s + fall_y);
         F radius(k.uniform_radius);
         if constexpr (!kUniformRadius) radius = Lanes::load(k.radius + i);
-        const F touch = radius * touch_ratio;
-        const auto at_wall = reaches_wall(x, end_x, touch, bend_x, min_x, max_x) |
-                             reaches_wall(y, end_y, touch, bend_y, min_y, max_y);
+        unsigned wall_bits = 0;
+        if constexpr (kListsWalls) {
+            const F touch = radius * touch_ratio;
+            wall_bits = simd::bitmask(reaches_wall(x, end_x, touch, bend_x, min_x, max_x) |
+                                      reaches_wall(y, end_y, touch, bend_y, min_y, max_y));
+        }
 
         const F moved_x = end_x - Lanes::load(k.built_x + i), moved_y = end_y - Lanes::load(k.built_y + i);
         const F margin = Lanes::load(k.reach + i) - radius;
@@ -46,7 +50,7 @@ FlightCounts<Real> begin_flight(const BeginFlight<Real>& k, std::size_t first, s
                           (simd::abs(vx + gain_x) <= largest_speed) &
                           (simd::abs(vy + gain_y) <= largest_speed);
 
-        const unsigned wall_bits = simd::bitmask(at_wall), displaced_bits = simd::bitmask(displaced);
+        const unsigned displaced_bits = simd::bitmask(displaced);
         const unsigned lost_bits = simd::bitmask(kept) ^ ((1u << Lanes::size) - 1);
         if ((wall_bits | displaced_bits | lost_bits) == 0) continue;
         const auto rows = Lanes::load_rows(kConsecutive);
@@ -55,7 +59,7 @@ FlightCounts<Real> begin_flight(const BeginFlight<Real>& k, std::size_t first, s
             count += Lanes::compress_store(out + before, rows, bits);
             for (std::size_t n = before; n < count; ++n) out[n] += static_cast<std::int32_t>(i);
         };
-        list(k.wall_rows, counts.wall, wall_bits);
+        if constexpr (kListsWalls) list(k.wall_rows, counts.wall, wall_bits);
         list(k.displaced_rows, counts.displaced, displaced_bits);
         list(k.lost_rows, counts.lost, lost_bits);
     }

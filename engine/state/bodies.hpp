@@ -19,6 +19,7 @@ class Property {
     /// The column, or null if one value serves all.
     const Real* data() const { return spread_ ? column_.data() : nullptr; }
     Column<Real>& column() { return column_; }
+    const Column<Real>& column() const { return column_; }
 
     /// Sets row `row` of `count`; spreads into a column when a value differs from the others'.
     void set(std::size_t row, std::size_t count, Real value) {
@@ -80,20 +81,14 @@ struct Bodies {
         return is_immovable(row) ? 0 : 1 / static_cast<double>(mass[row]);
     }
 
-    /// Calls fn(name, unit, column) for every column that exists. The one list of columns.
+    /// Calls fn(name, unit, column) for every column that exists.
     template <class Fn>
-    void for_each_column(Fn&& fn) {
-        fn("position_x", "m", position_x), fn("position_y", "m", position_y);
-        fn("velocity_x", "m/s", velocity_x), fn("velocity_y", "m/s", velocity_y);
-        fn("id", "handle", id);
-        if (has_rotation) fn("angle", "rad", angle), fn("angular_velocity", "rad/s", angular_velocity);
-        if (!mass.is_uniform()) fn("mass", "kg", mass.column());
-        if (!radius.is_uniform()) fn("radius", "m", radius.column());
-        if (!restitution.is_uniform()) fn("restitution", "1", restitution.column());
-        if (!friction.is_uniform()) fn("friction", "1", friction.column());
-        if (!rolling_resistance.is_uniform()) fn("rolling_resistance", "1", rolling_resistance.column());
-        if (has_flags) fn("flags", "bits", flags);
-        if (has_sleep) fn("still", "s", still), fn("island", "1", island);
+    void for_each_column(const Fn& fn) {
+        list_columns(*this, fn);
+    }
+    template <class Fn>
+    void for_each_column(const Fn& fn) const {
+        list_columns(*this, fn);
     }
 
     /// All bodies, awake or not.
@@ -112,6 +107,23 @@ struct Bodies {
             has_flags = true;
         }
         flags[row] = value;
+    }
+
+  private:
+    /// The one list of columns.
+    template <class Self, class Fn>
+    static void list_columns(Self& b, const Fn& fn) {
+        fn("position_x", "m", b.position_x), fn("position_y", "m", b.position_y);
+        fn("velocity_x", "m/s", b.velocity_x), fn("velocity_y", "m/s", b.velocity_y);
+        fn("id", "handle", b.id);
+        if (b.has_rotation) fn("angle", "rad", b.angle), fn("angular_velocity", "rad/s", b.angular_velocity);
+        if (!b.mass.is_uniform()) fn("mass", "kg", b.mass.column());
+        if (!b.radius.is_uniform()) fn("radius", "m", b.radius.column());
+        if (!b.restitution.is_uniform()) fn("restitution", "1", b.restitution.column());
+        if (!b.friction.is_uniform()) fn("friction", "1", b.friction.column());
+        if (!b.rolling_resistance.is_uniform()) fn("rolling_resistance", "1", b.rolling_resistance.column());
+        if (b.has_flags) fn("flags", "bits", b.flags);
+        if (b.has_sleep) fn("still", "s", b.still), fn("island", "1", b.island);
     }
 };
 

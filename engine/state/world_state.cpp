@@ -151,6 +151,14 @@ void WorldState<Real>::reorder(const std::int32_t* order) {
     list_immovable_rows();
 }
 
+template <class Real>
+std::size_t WorldState<Real>::bytes() const {
+    std::size_t bytes =
+        handles.bytes() + edges.bytes() + spare_.bytes() + immovable_rows.capacity() * sizeof(std::int32_t);
+    bodies.for_each_column([&](auto, auto, const auto& column) { bytes += column.bytes(); });
+    return bytes;
+}
+
 template struct WorldState<float>;
 template struct WorldState<double>;
 

@@ -56,6 +56,8 @@ struct WorldState {
     std::vector<std::int32_t> immovable_rows;  ///< static, kinematic and disabled ones
     std::int64_t quarantined_count = 0;
 
+    std::size_t bytes() const;
+
     /// What one row adds to the sums; nothing if it is not dynamic.
     Sums sums_of(std::size_t row) const;
     Sums sums() const;

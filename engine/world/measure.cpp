@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "broadphase/edge_candidates.hpp"
 #include "math/vec2_math.hpp"
 #include "narrowphase/disc_edge.hpp"
 #include "shapes/walls.hpp"
@@ -108,22 +109,7 @@ OverlapReport measure_overlaps(Simulation<Real>& sim) {
     return overlaps.report;
 }
 
-template <class Real>
-std::size_t bytes_of(Simulation<Real>& sim) {
-    std::size_t bytes = sizeof(sim) + sim.world.handles.bytes() + sim.candidates.bytes() +
-                        sim.impulse.bytes() + sim.soft.bytes() + sim.events.bytes() +
-                        sim.edge_candidates.bytes() + sim.world.edges.bytes() + sim.wall_rows.bytes() +
-                        sim.displaced_rows.bytes() + sim.lost_rows.bytes() +
-                        sim.meetings.capacity() * sizeof(FoundMeeting) +
-                        sim.world.immovable_rows.capacity() * sizeof(std::int32_t);
-    for (const auto& meetings : sim.chunk_meetings) bytes += meetings.capacity() * sizeof(FoundMeeting);
-    sim.world.bodies.for_each_column([&](auto, auto, auto& column) { bytes += column.bytes(); });
-    return bytes;
-}
-
 template OverlapReport measure_overlaps(Simulation<float>&);
 template OverlapReport measure_overlaps(Simulation<double>&);
-template std::size_t bytes_of(Simulation<float>&);
-template std::size_t bytes_of(Simulation<double>&);
 
 }  // namespace carom

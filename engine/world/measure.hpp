@@ -12,8 +12,4 @@ namespace carom {
 template <class Real>
 OverlapReport measure_overlaps(Simulation<Real>& sim);
 
-/// Memory a simulation holds now.
-template <class Real>
-std::size_t bytes_of(Simulation<Real>& sim);
-
 }  // namespace carom

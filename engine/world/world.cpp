@@ -8,9 +8,8 @@
 #include "scene/choose_solver.hpp"
 #include "scene/mass.hpp"
 #include "scene/validation.hpp"
-#include "solvers/shared/stages.hpp"
-#include "solvers/soft/sleep.hpp"
-#include "step/step.hpp"
+#include "step/make_simulation.hpp"
+#include "step/plan.hpp"
 #include "world/measure.hpp"
 
 namespace carom {
@@ -72,16 +71,17 @@ void check_options(const Scene& scene, const WorldOptions& options) {
 
 template <class Real>
 struct BasicWorld<Real>::Implementation {
-    Simulation<Real> sim;
-    StageTimes times;
+    std::unique_ptr<Simulation<Real>> simulation;
     CalledEffects called;
     EffectOverrides overrides;  // of the scene and of the options
     double angular_drag = 0;    // 1/s, of the scene; in force once something turns
 
-    WorldState<Real>& world() { return sim.world; }
-    Bodies<Real>& bodies() { return sim.world.bodies; }
+    Simulation<Real>& sim() { return *simulation; }
+    const Simulation<Real>& sim() const { return *simulation; }
+    WorldState<Real>& world() { return simulation->world; }
+    Bodies<Real>& bodies() { return simulation->world.bodies; }
     std::size_t row_of(BodyId body, std::string_view where) const {
-        return sim.world.handles.row_of(body, where);
+        return simulation->world.handles.row_of(body, where);
     }
 
     void turn_rotation_on() {
@@ -110,7 +110,7 @@ struct BasicWorld<Real>::Implementation {
         const bool rubs = (body.material.friction > 0 || resists) && !on.friction;
         if (!bounces && !resists && !rubs) return;
         Scene alone;  // what is forced off cannot be called for
-        alone.accuracy.solver = sim.solver;
+        alone.accuracy.solver = sim().solver();
         alone.add(body);
         validate_effects(alone, overrides, "World::add");
         const auto turn_on = [&](bool is_called, bool& effect, std::string_view name, const char* reason) {
@@ -131,7 +131,7 @@ struct BasicWorld<Real>::Implementation {
         const Sums before = world().sums_of(row);
         change();
         world().initial = world().initial + (world().sums_of(row) - before);
-        sim.forget_derived_state();
+        sim().forget_derived_state();
     }
 
     /// Wakes a body that is about to be changed, and those that touch it. @return its row then
@@ -139,29 +139,28 @@ struct BasicWorld<Real>::Implementation {
         const Bodies<Real>& b = bodies();
         if (b.asleep == 0) return row;
         const BodyId id = b.id[row];
-        if (b.flags_of(row) & kEdges) wake_all(sim);
-        wake_body(sim, row);
+        if (b.flags_of(row) & kEdges) sim().wake_all();
+        sim().wake_body(row);
         const std::size_t now = world().handles.row_of_slot(id.index);
-        wake_at(sim, {b.position_x[now], b.position_y[now]}, b.radius[now]);
+        sim().wake_at({b.position_x[now], b.position_y[now]}, b.radius[now]);
         return world().handles.row_of_slot(id.index);
     }
 
-    /// Solver `event` refuses bodies that overlap: then undo() takes the change back.
+    /// A solver may refuse what the bodies are now: then undo() takes the change back.
     template <class Undo>
     void undo_if_refused(std::string_view where, const Undo& undo) {
-        if (sim.solver != Solver::event) return;
         try {
-            load_events(sim, where);
+            sim().check_bodies(where);
         } catch (const Error&) {
             undo();
-            sim.forget_derived_state();
+            sim().forget_derived_state();
             throw;
         }
     }
 
     std::vector<BodyId> quarantined() const {
         std::vector<BodyId> ids;
-        const WorldState<Real>& state = sim.world;
+        const WorldState<Real>& state = simulation->world;
         for (std::size_t slot = 0; slot < state.handles.slot_count(); ++slot) {
             const std::uint32_t row = state.handles.row_of_slot(slot);
             if (row != Handles::kNoRow && (state.bodies.flags_of(row) & kDisabled))
@@ -177,12 +176,11 @@ BasicWorld<Real>::BasicWorld(const Scene& scene, const WorldOptions& options) {
     check_options(scene, options);
     const Accuracy accuracy = accuracy_of(scene, options);
     implementation_ = std::make_unique<Implementation>();
-    Simulation<Real>& sim = implementation_->sim;
+    implementation_->simulation = make_simulation<Real>(accuracy.solver);
+    Simulation<Real>& sim = *implementation_->simulation;
     sim.kernels = &select_kernels(options.isa).template of<Real>();
     sim.executor = Executor(options.threads, options.parallel_for);
-    sim.solver = accuracy.solver;
-    if (sim.solver == Solver::soft) sim.candidates = Candidates<Real>(MarginRule::own);
-    sim.substeps_asked_for = accuracy.substeps.value_or(default_substeps(sim.solver));
+    sim.substeps_asked_for = accuracy.substeps.value_or(default_substeps(accuracy.solver));
     implementation_->called = call_effects(scene, options.effects);
     const auto either = [](const std::optional<bool>& first, const std::optional<bool>& second) {
         return first ? first : second;
@@ -207,7 +205,7 @@ BasicWorld<Real>::BasicWorld(const Scene& scene, const WorldOptions& options) {
     world.bodies.has_rotation = world.effects.rotation;
     world.bodies.has_sleep = world.effects.sleeping;
     for (const Body& body : scene.bodies) world.append(body);
-    if (sim.solver == Solver::event) load_events(sim, "World");
+    sim.check_bodies("World");
 }
 
 template <class Real>
@@ -221,11 +219,9 @@ template <class Real>
 void BasicWorld<Real>::step(double dt) {
     validate_dt(dt, "World::step");
     if (dt == 0) return;
-    Simulation<Real>& sim = implementation_->sim;
-    const auto step = [&] { carom::step(sim, dt, implementation_->times); };
-    const bool has_loops = sim.solver == Solver::soft ? sim.soft.graph.groups.chunks > 1
-                                                      : sim.executor.is_parallel(sim.world.bodies.count);
-    if (has_loops)
+    Simulation<Real>& sim = implementation_->sim();
+    const auto step = [&] { sim.step(dt); };
+    if (sim.has_long_loops())
         sim.executor.with_team(step);
     else
         step();
@@ -238,7 +234,7 @@ std::size_t BasicWorld<Real>::body_count() const noexcept {
 
 template <class Real>
 BodyView<Real> BasicWorld<Real>::bodies() const noexcept {
-    const Bodies<Real>& b = implementation_->sim.world.bodies;
+    const Bodies<Real>& b = implementation_->sim().world.bodies;
     BodyView<Real> view{
         b.rows(), b.position_x.span(), b.position_y.span(), b.velocity_x.span(), b.velocity_y.span(), {},
         {},       b.id.span()};
@@ -248,18 +244,18 @@ BodyView<Real> BasicWorld<Real>::bodies() const noexcept {
 
 template <class Real>
 std::uint32_t BasicWorld<Real>::row(BodyId body) const {
-    return implementation_->sim.world.handles.row_of(body, "World::row");
+    return implementation_->sim().world.handles.row_of(body, "World::row");
 }
 
 template <class Real>
 bool BasicWorld<Real>::is_asleep(BodyId body) const {
-    return implementation_->row_of(body, "World::is_asleep") >= implementation_->sim.world.bodies.count;
+    return implementation_->row_of(body, "World::is_asleep") >= implementation_->sim().world.bodies.count;
 }
 
 template <class Real>
 BodyState BasicWorld<Real>::state(BodyId body) const {
     const std::size_t row = implementation_->row_of(body, "World::state");
-    const Bodies<Real>& b = implementation_->sim.world.bodies;
+    const Bodies<Real>& b = implementation_->sim().world.bodies;
     BodyState state{{b.position_x[row], b.position_y[row]}, 0, {b.velocity_x[row], b.velocity_y[row]}, 0};
     if (b.has_rotation) state.angle = b.angle[row], state.angular_velocity = b.angular_velocity[row];
     return state;
@@ -269,7 +265,7 @@ template <class Real>
 BodyId BasicWorld<Real>::add(const Body& body) {
     validate_body(body, "World::add");
     raise_if("World::add",
-             find_solver_problem({"the body has", "", -1, ""}, body, implementation_->sim.solver));
+             find_solver_problem({"the body has", "", -1, ""}, body, implementation_->sim().solver()));
     if (implementation_->world().walls) validate_inside(body, *implementation_->world().walls, "World::add");
     if (body_count() >= kLargestBodyCount)
         throw Error(ErrorCode::too_large, "World::add: the world has " + std::to_string(body_count()) +
@@ -277,11 +273,11 @@ BodyId BasicWorld<Real>::add(const Body& body) {
     implementation_->call_effects_of(body);
     if (body.angular_velocity != 0 || body.angle != 0) implementation_->turn_rotation_on();
     if (is_disc(body.shape))
-        wake_at(implementation_->sim, body.position, radius_of(body.shape));
+        implementation_->sim().wake_at(body.position, radius_of(body.shape));
     else
-        wake_all(implementation_->sim);
+        implementation_->sim().wake_all();
     const BodyId id = implementation_->world().append(body);
-    implementation_->sim.forget_derived_state();
+    implementation_->sim().forget_derived_state();
     implementation_->undo_if_refused("World::add",
                                      [&] { implementation_->world().remove(body_count() - 1); });
     return id;
@@ -289,14 +285,8 @@ BodyId BasicWorld<Real>::add(const Body& body) {
 
 template <class Real>
 void BasicWorld<Real>::remove(BodyId body) {
-    Simulation<Real>& sim = implementation_->sim;
-    std::size_t row = implementation_->row_of(body, "World::remove");
-    row = implementation_->wake_around(row);
-    sim.soft.graph.trail.follow_removed(row, sim.world.bodies.count - 1);
-    const EdgeStore::Removed edges = sim.world.remove(row);
-    sim.soft.graph.follow_removed_edges(edges);
-    if (edges.count > 0) sim.sleepers.forget_woken();
-    sim.forget_derived_state();
+    const std::size_t row = implementation_->row_of(body, "World::remove");
+    implementation_->sim().remove(implementation_->wake_around(row));
 }
 
 template <class Real>
@@ -305,7 +295,7 @@ void BasicWorld<Real>::set_position(BodyId body, Vec2 position) {
     validate_position(position, "World::set_position");
     Bodies<Real>& b = implementation_->bodies();
     row = implementation_->wake_around(row);
-    wake_at(implementation_->sim, position, b.radius[row]);
+    implementation_->sim().wake_at(position, b.radius[row]);
     row = implementation_->row_of(body, "World::set_position");
     const auto move_to = [&](Real x, Real y) {
         implementation_->change_row(row, [&] { b.position_x[row] = x, b.position_y[row] = y; });
@@ -339,12 +329,12 @@ void BasicWorld<Real>::set_angular_velocity(BodyId body, double angular_velocity
 
 template <class Real>
 double BasicWorld<Real>::time() const noexcept {
-    return implementation_->sim.world.time;
+    return implementation_->sim().world.time;
 }
 
 template <class Real>
 Ledger BasicWorld<Real>::ledger() const {
-    const WorldState<Real>& world = implementation_->sim.world;
+    const WorldState<Real>& world = implementation_->sim().world;
     const Books& books = world.books;
     const Sums now = world.sums(), &start = world.initial;
     Ledger ledger;
@@ -372,46 +362,30 @@ Ledger BasicWorld<Real>::ledger() const {
 
 template <class Real>
 Profile BasicWorld<Real>::profile() const {
-    const Simulation<Real>& sim = implementation_->sim;
-    const ImpulseCounters& counters = sim.impulse.counters;
+    const Simulation<Real>& sim = implementation_->sim();
     Profile profile;
-    for (std::size_t i = 0; i < kStages.size(); ++i) {
-        const StageTimes::Entry& entry = implementation_->times[static_cast<StageName>(i)];
-        if (entry.calls > 0) profile.stages.push_back({kStages[i].name, entry.calls, entry.seconds});
-    }
+    sim.report_stages([&](const StageState& stage) {
+        if (stage.time.calls > 0)
+            profile.stages.push_back({stage.name, stage.time.calls, stage.time.seconds});
+    });
     profile.steps = sim.step_count;
     profile.rebuilds = sim.candidates.rebuild_count();
     profile.candidate_pairs = static_cast<std::int64_t>(sim.candidates.pair_count());
-    const EventCounters& events = sim.events.counters();  // of one of the two there are none
-    profile.pair_tests = events.pair_tests;
-    profile.impacts = counters.impacts + events.impacts;
-    profile.wall_impacts = counters.wall_impacts + events.wall_impacts;
-    profile.simultaneous_impacts = counters.simultaneous_impacts + events.simultaneous_impacts;
-    profile.resting_contacts = counters.resting_contacts;
-    const SoftCounters& soft = sim.soft.counters;
-    profile.contacts = soft.contacts, profile.colours = soft.colours;
-    profile.overflow = soft.overflow, profile.bounces = soft.bounces;
-    const SolveQuality solve = sim.soft.quality();
-    profile.touching = counters.resting_contacts + solve.touching;
-    profile.residual = solve.residual, profile.residual_max = solve.residual_max;
-    profile.overlaps_corrected = counters.overlaps_corrected;
-    profile.unresolved_impacts = counters.unresolved_impacts;
+    sim.report(profile);
     profile.asleep = static_cast<std::int64_t>(sim.world.bodies.asleep);
-    profile.islands_asleep = sim.sleepers.island_count();
-    profile.islands_woken = sim.sleepers.woken_count();
     profile.quarantined = sim.world.quarantined_count;
-    profile.bytes = bytes_of(implementation_->sim);
+    profile.bytes = sim.bytes();
     return profile;
 }
 
 template <class Real>
 Plan BasicWorld<Real>::plan() const {
-    return describe_plan(implementation_->sim, implementation_->called);
+    return describe_plan(implementation_->sim(), implementation_->called);
 }
 
 template <class Real>
 OverlapReport BasicWorld<Real>::overlaps() const {
-    return measure_overlaps(implementation_->sim);
+    return measure_overlaps(implementation_->sim());
 }
 
 template <class Real>
@@ -421,7 +395,7 @@ std::vector<BodyId> BasicWorld<Real>::quarantined() const {
 
 template <class Real>
 std::uint64_t BasicWorld<Real>::state_hash() const {
-    const WorldState<Real>& world = implementation_->sim.world;
+    const WorldState<Real>& world = implementation_->sim().world;
     const Bodies<Real>& b = world.bodies;
     StateHash hash;
     for (std::size_t slot = 0; slot < world.handles.slot_count(); ++slot) {

@@ -1,6 +1,9 @@
 // What contacts of solver `soft` carry, and how well they are solved: read inside the solver.
 #include "isa/select_isa.hpp"
-#include "step/step.hpp"
+#include "scene/call_effects.hpp"
+#include "shapes/walls.hpp"
+#include "solvers/soft/soft_simulation.hpp"
+#include "step/make_simulation.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"
 
@@ -20,14 +23,12 @@ constexpr double kStep = 1.0 / 60, kRadius = 0.5, kGravity = 10;
 /// A world's inside without the world around it.
 template <class Real>
 struct Inside {
-    Simulation<Real> sim;
-    StageTimes times;
+    std::unique_ptr<Simulation<Real>> simulation = make_soft_simulation<Real>();
+    SoftSimulation<Real>& sim = static_cast<SoftSimulation<Real>&>(*simulation);
 
     explicit Inside(const Scene& scene, int substeps = 4) {
         sim.kernels = &select_kernels("auto").of<Real>();
         sim.executor = Executor(1, {});
-        sim.solver = Solver::soft;
-        sim.candidates = Candidates<Real>(MarginRule::own);
         sim.substeps_asked_for = substeps;
         sim.world.effects = call_effects(scene, {}).effects;
         sim.world.gravity = scene.gravity;
@@ -35,7 +36,7 @@ struct Inside {
         for (const Body& body : scene.bodies) sim.world.append(body);
     }
     void run(int steps) {
-        for (int i = 0; i < steps; ++i) step(sim, kStep, times);
+        for (int i = 0; i < steps; ++i) sim.step(kStep);
     }
     /// N, between rows a and b; 0 if they do not touch.
     double force(std::int32_t a, std::int32_t b) const {

@@ -16,7 +16,7 @@ LAYER_OF_FOLDER = {
     "math": 0,
     "simd": 1, "parallel": 1, "shapes": 1,
     "effects": 2,
-    "narrowphase": 2,  # geometry of two shapes: no columns, no physics
+    "narrowphase": 2.5,  # geometry of two shapes: no columns, no physics
     "kernels": 3,
     "state": 3,  # what a snapshot holds
     "isa": 4,
@@ -24,14 +24,15 @@ LAYER_OF_FOLDER = {
     "scene": 5,
     "constraints": 6,  # what acts between two bodies
     "sleeping": 7,
-    "solvers": 8,
-    "step": 9,  # joins the stages of the solvers
+    "solvers/shared": 8,
+    "solvers/impulse": 8.5, "solvers/soft": 8.5, "solvers/event": 8.5,  # nothing of one is in another
+    "step": 9,  # lists the stages of each solver
     "world": 10,  # the public class over all of it
     "reference": 5,  # and see SHARES_NOTHING
 }
 LAYER_OF_FILE = {  # patterns of paths without suffix: files that differ from their folder or have none
     r"version": 0,
-    r"step/stage_(info|times)": 1,
+    r"step/stage(_times)?": 1,
     r"state/edges": 1,
     r"kernels/(\w+_)?arguments": 2,
     r"scene/mass": 2,
@@ -55,7 +56,10 @@ def layer_of(path):
 
 
 def folder_of(path):
-    return path.split("/")[0] if "/" in path else ""
+    """The room a file is in: a folder of engine/ or, of folders that hold rooms, one below."""
+    parts = path.split("/")[:-1]
+    return next((room for room in ("/".join(parts[:2]), "/".join(parts[:1])) if room in LAYER_OF_FOLDER),
+                "/".join(parts[:1]))
 
 
 def resolve(root, includer, bracket, name):

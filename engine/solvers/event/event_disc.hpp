@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "math/vec2_math.hpp"
-#include "solvers/impulse/impact_time.hpp"
+#include "narrowphase/impact_time.hpp"
 
 // What solver `event` keeps of a disc, by how often it is read: a forecast looks at the movers of some ten
 // neighbours, at one or two forecasts, and an impact at two surfaces. Each is one cache line, or half of one.

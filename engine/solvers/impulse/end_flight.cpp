@@ -1,12 +1,12 @@
 #include "effects/fair_rounding.hpp"
-#include "solvers/shared/stages.hpp"
+#include "solvers/impulse/stages.hpp"
 
 namespace carom {
 namespace {
 
 /// Rows whose flight is not the common one: what the kernel wrote for them is put right.
 template <class Real>
-void end_special_flights(Simulation<Real>& sim) {
+void end_special_flights(ImpulseSimulation<Real>& sim) {
     Bodies<Real>& bodies = sim.world.bodies;
     Flights<Real>& flights = sim.impulse.flights;
     const auto real = [](double value) { return static_cast<Real>(value); };
@@ -32,7 +32,7 @@ void end_special_flights(Simulation<Real>& sim) {
 }  // namespace
 
 template <class Real>
-void end_flight(Simulation<Real>& sim) {
+void end_flight(ImpulseSimulation<Real>& sim) {
     Bodies<Real>& bodies = sim.world.bodies;
     const FlightClock& end = sim.impulse.flights.end;
     const Vec2 g = sim.world.gravity;
@@ -63,7 +63,7 @@ void end_flight(Simulation<Real>& sim) {
 }
 
 template <class Real>
-void advance_rotation(Simulation<Real>& sim) {
+void advance_rotation(ImpulseSimulation<Real>& sim) {
     Bodies<Real>& bodies = sim.world.bodies;
     const FlightClock clock = flight_clock_at(sim.flight_dt, sim.world.drag.angular);
     sim.immovable_spins.clear();  // drag does not slow what nothing moves
@@ -80,9 +80,9 @@ void advance_rotation(Simulation<Real>& sim) {
         bodies.angular_velocity[static_cast<std::size_t>(row)] = sim.immovable_spins[n++];
 }
 
-template void end_flight(Simulation<float>&);
-template void end_flight(Simulation<double>&);
-template void advance_rotation(Simulation<float>&);
-template void advance_rotation(Simulation<double>&);
+template void end_flight(ImpulseSimulation<float>&);
+template void end_flight(ImpulseSimulation<double>&);
+template void advance_rotation(ImpulseSimulation<float>&);
+template void advance_rotation(ImpulseSimulation<double>&);
 
 }  // namespace carom

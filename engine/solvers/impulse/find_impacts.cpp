@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "solvers/shared/stages.hpp"
+#include "solvers/impulse/stages.hpp"
 
 namespace carom {
 namespace {
@@ -8,7 +8,7 @@ namespace {
 /// How far different accelerations can bring two paths nearer to each other than the straight lines the
 /// kernel looks at [m]: two bodies' worth of fall, as held and static bodies do not fall.
 template <class Real>
-double slack_of(const Simulation<Real>& sim) {
+double slack_of(const ImpulseSimulation<Real>& sim) {
     const Flights<Real>& flights = sim.impulse.flights;
     if (flights.accelerations.empty()) return 0;
     double largest = length_squared(flights.common_acceleration);
@@ -20,14 +20,14 @@ double slack_of(const Simulation<Real>& sim) {
 /// Separation up to which the solver wants to see a pair that does not approach: overlaps, and with gravity
 /// contacts that may rest. Generous for the smaller of different bodies; the solver looks again.
 template <class Real>
-double near_of(const Simulation<Real>& sim) {
+double near_of(const ImpulseSimulation<Real>& sim) {
     const bool may_rest = length_squared(sim.world.gravity) > 0;
     return may_rest ? kTouchFraction * sim.candidates.largest_radius()
                     : -kSlopFraction * sim.candidates.smallest_radius();
 }
 
 template <class Real>
-void list_wall_meetings(Simulation<Real>& sim, double near) {
+void list_wall_meetings(ImpulseSimulation<Real>& sim, double near) {
     const Flights<Real>& flights = sim.impulse.flights;
     sim.wall_rows.for_each_below(sim.world.bodies.count, [&](std::int32_t row) {
         if (flights.is_immovable(row)) return;
@@ -46,7 +46,7 @@ void list_wall_meetings(Simulation<Real>& sim, double near) {
 
 /// Of pairs [first, last) those that may touch, examined while what the kernel has read is in the cache.
 template <class Real>
-void append_meetings(const Simulation<Real>& sim, const FindImpacts<Real>& all, std::size_t first,
+void append_meetings(const ImpulseSimulation<Real>& sim, const FindImpacts<Real>& all, std::size_t first,
                      std::size_t last, std::vector<FoundMeeting>& meetings) {
     std::int32_t found[kRowsPerChunk + kRowPadding];
     FindImpacts<Real> k = all;
@@ -62,7 +62,7 @@ void append_meetings(const Simulation<Real>& sim, const FindImpacts<Real>& all, 
 }
 
 template <class Real>
-void list_pair_meetings(Simulation<Real>& sim, const FindImpacts<Real>& all) {
+void list_pair_meetings(ImpulseSimulation<Real>& sim, const FindImpacts<Real>& all) {
     const std::size_t pairs = sim.candidates.pair_count();
     const bool is_parallel = sim.executor.is_parallel(pairs);
     const std::size_t chunks = (pairs + kRowsPerChunk - 1) / kRowsPerChunk;
@@ -82,7 +82,7 @@ void list_pair_meetings(Simulation<Real>& sim, const FindImpacts<Real>& all) {
 }  // namespace
 
 template <class Real>
-void find_impacts(Simulation<Real>& sim) {
+void find_impacts(ImpulseSimulation<Real>& sim) {
     const Bodies<Real>& bodies = sim.world.bodies;
     const double near = near_of(sim), slack = slack_of(sim);
     sim.impulse.begin_substep(sim.candidates, slack, *sim.kernels);
@@ -98,7 +98,7 @@ void find_impacts(Simulation<Real>& sim) {
     if (sim.world.walls) list_wall_meetings(sim, std::fmax(near, 0));
 }
 
-template void find_impacts(Simulation<float>&);
-template void find_impacts(Simulation<double>&);
+template void find_impacts(ImpulseSimulation<float>&);
+template void find_impacts(ImpulseSimulation<double>&);
 
 }  // namespace carom

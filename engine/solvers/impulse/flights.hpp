@@ -8,6 +8,7 @@
 
 #include "effects/flight.hpp"
 #include "effects/restitution.hpp"
+#include "effects/touching.hpp"
 #include "shapes/walls.hpp"
 #include "state/bodies.hpp"
 #include "state/books.hpp"
@@ -32,11 +33,6 @@ struct Encounter {
     double separation;       ///< m
     double normal_velocity;  ///< m/s, of B relative to A; negative = approaching
 };
-
-/// Overlap left uncorrected, and the distance within which surfaces count as touching: fractions of the
-/// smaller radius, so that they scale with the scene. Above float's resolution at 1,000 m for radii near 1 m.
-inline constexpr double kSlopFraction = 0.002;
-inline constexpr double kTouchFraction = 0.001;
 
 template <class Real>
 class Flights {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "broadphase/candidates.hpp"
+#include "narrowphase/impact_time.hpp"
 #include "solvers/impulse/flights.hpp"
 #include "solvers/impulse/impact_queue.hpp"
-#include "solvers/impulse/impact_time.hpp"
 #include "solvers/impulse/resting_contacts.hpp"
 #include "solvers/impulse/simultaneous_impacts.hpp"
 #include "solvers/impulse/tiles.hpp"

@@ -1,4 +1,4 @@
-#include "solvers/shared/stages.hpp"
+#include "solvers/impulse/stages.hpp"
 
 namespace carom {
 namespace {
@@ -6,7 +6,7 @@ namespace {
 /// Energy and momentum that drag takes from the flights as they end; what was flown before a deflection was
 /// booked when it happened (Flights::book_drag).
 template <class Real>
-void book_linear_drag(Simulation<Real>& sim) {
+void book_linear_drag(ImpulseSimulation<Real>& sim) {
     const Flights<Real>& flights = sim.impulse.flights;
     Books& books = sim.world.books;
     const FlightClock& end = flights.end;
@@ -25,7 +25,7 @@ void book_linear_drag(Simulation<Real>& sim) {
 
 /// Of the contacts that bodies rest on, until the end of their flights.
 template <class Real>
-void book_supports(Simulation<Real>& sim) {
+void book_supports(ImpulseSimulation<Real>& sim) {
     const Flights<Real>& flights = sim.impulse.flights;
     for (const std::int32_t row : sim.impulse.held_rows())
         sim.world.books.restitution +=
@@ -33,7 +33,7 @@ void book_supports(Simulation<Real>& sim) {
 }
 
 template <class Real>
-void book_angular_drag(Simulation<Real>& sim) {
+void book_angular_drag(ImpulseSimulation<Real>& sim) {
     const Bodies<Real>& bodies = sim.world.bodies;
     const double u = flight_clock_at(sim.flight_dt, sim.world.drag.angular).u;
     for (std::size_t row = 0; row < bodies.count; ++row)
@@ -43,7 +43,7 @@ void book_angular_drag(Simulation<Real>& sim) {
 }  // namespace
 
 template <class Real>
-void keep_books(Simulation<Real>& sim) {
+void keep_books(ImpulseSimulation<Real>& sim) {
     WorldState<Real>& world = sim.world;
     world.books.gravity_momentum += (world.dynamic_mass * sim.flight_dt) * world.gravity;
     book_supports(sim);
@@ -51,7 +51,7 @@ void keep_books(Simulation<Real>& sim) {
     if (world.bodies.has_rotation && world.drag.angular != 0) book_angular_drag(sim);
 }
 
-template void keep_books(Simulation<float>&);
-template void keep_books(Simulation<double>&);
+template void keep_books(ImpulseSimulation<float>&);
+template void keep_books(ImpulseSimulation<double>&);
 
 }  // namespace carom

@@ -2,13 +2,12 @@
 
 #include <vector>
 
+#include "effects/touching.hpp"
 #include "solvers/impulse/flights.hpp"
 
 namespace carom {
 
-/// Bodies that start a step in each other are pushed apart at most this fast: radii of the smaller a second,
-/// so that the cap scales with the scene (3 m/s for discs of half a metre).
-inline constexpr double kPushRadiiPerSecond = 6;
+/// Gauss-Seidel sweeps over the overlaps, at most.
 inline constexpr int kSeparationSweeps = 64;
 
 /// Pushes overlapping pairs apart along their normals, by inverse mass, until only the slop is left or the

@@ -7,10 +7,9 @@ namespace carom {
 namespace {
 
 // docs/decisions/0017-heave.md has the measurements of all of these.
-constexpr std::size_t kFewestLoaded = 1024;  // bodies; in smaller piles a wave is soon through
-constexpr double kBodiesOfCell = 192;        // about: half and four times as many did worse
-constexpr double kSmallestCell = 8;          // largest radii: s is taken to be linear around a body
-constexpr double kLeast = -0.9;              // of s: a contact never pulls, and keeps some load
+constexpr double kBodiesOfCell = 192;  // about: half and four times as many did worse
+constexpr double kSmallestCell = 8;    // largest radii: s is taken to be linear around a body
+constexpr double kLeast = -0.9;        // of s: a contact never pulls, and keeps some load
 constexpr double kMost = 4;
 constexpr int kSweeps = 20;
 // A correction is small if it takes less than either of these; then the pause after it is twice as long.

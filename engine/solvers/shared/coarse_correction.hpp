@@ -38,6 +38,8 @@ namespace carom {
 template <class Real>
 class CoarseCorrection {
   public:
+    static constexpr std::size_t kFewestLoaded = 1024;  // bodies; in smaller piles a wave is soon through
+
     /// To be called once a step: whether a correction is to follow. After one that did little pauses grow.
     /// @param substeps  of this step
     bool is_due(std::size_t bodies, int substeps);

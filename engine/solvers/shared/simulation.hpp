@@ -1,64 +1,101 @@
 #pragma once
 
 #include <carom/accuracy.hpp>
+#include <carom/profile.hpp>
 
 #include <cstdint>
+#include <functional>
+#include <string_view>
 #include <vector>
 
 #include "broadphase/candidates.hpp"
-#include "broadphase/edge_candidates.hpp"
 #include "isa/kernel_table.hpp"
 #include "parallel/executor.hpp"
-#include "sleeping/sleepers.hpp"
-#include "solvers/event/event_dynamics.hpp"
-#include "solvers/impulse/impulse_solver.hpp"
-#include "solvers/soft/soft_solver.hpp"
 #include "state/chunked_list.hpp"
 #include "state/world_state.hpp"
+#include "step/stage.hpp"
 
 namespace carom {
 
-/// All a running world consists of. The stages of this folder work on it, in the order that step.cpp states.
+/// What is told of a stage: its line of the step, whether the next step runs it, how often it ran and how
+/// long it took since the world was made.
+struct StageState {
+    std::string_view name, reads, writes;
+    KernelChoice kernel;
+    bool is_called_for;
+    StageTimes::Entry time;
+};
+using StageVisitor = const std::function<void(const StageState&)>&;
+
+/// A running world: its state, its candidate pairs, and the solver that steps it. Each solver adds what it
+/// alone needs; nothing of one solver is in another. The stages of a solver work on its simulation, in the
+/// order of step/impulse_step.cpp, step/soft_step.cpp or step/event_step.cpp.
 template <class Real>
-struct Simulation {
-    WorldState<Real> world;
-    Candidates<Real> candidates;
-    EdgeCandidates<Real> edge_candidates;  ///< solver `soft`
-    ImpulseSolver<Real> impulse;
-    SoftSolver<Real> soft;
-    Sleepers<Real> sleepers;
-    Executor executor;
-    const KernelTable<Real>* kernels = nullptr;
-    Solver solver = Solver::impulse;       ///< never `automatic`
-    EventDynamics events;                  ///< of solver `event`
-    std::vector<std::int32_t> event_rows;  ///< the world's rows it has; empty: they have changed
-    int substeps_asked_for = 1;            ///< what was asked for; strong drag can make a step take more
+class Simulation {
+  public:
+    virtual ~Simulation() = default;
+    Simulation(const Simulation&) = delete;
+    Simulation& operator=(const Simulation&) = delete;
 
-    // Solver `soft`: a step is one flight for the broadphase, cut into substeps for the contacts.
-    int substep = 0, substep_count = 1;
-    double substep_dt = 0;               ///< s
-    std::int64_t graph_of_rebuild = -1;  ///< which candidate pairs the contact graph was made of
+    virtual Solver solver() const = 0;
+    /// Advances by dt [s], > 0 and within the limits.
+    virtual void step(double dt) = 0;
+    /// Whether a step has loops that are worth several threads.
+    virtual bool has_long_loops() const = 0;
 
-    // Of the present substep (solver `soft`: of the step).
-    double flight_dt = 0;               ///< s
-    double fastest = 0;                 ///< m/s, at the start, of all bodies
-    std::vector<double> chunk_fastest;  ///< m²/s², by chunk
-    std::vector<std::int32_t> displaced, lost;
-    ChunkedList wall_rows, displaced_rows, lost_rows;
-    std::vector<FoundMeeting> meetings;                     ///< that the solver has to look at
-    std::vector<std::vector<FoundMeeting>> chunk_meetings;  ///< where chunks run on several threads
-    std::vector<Real> immovable_spins;                      ///< rad/s, kept over the turn
-
-    std::int64_t step_count = 0;
+    // Between steps.
 
     /// To be called when rows, masses or laws have changed outside of a step.
-    void forget_derived_state() {
-        candidates.invalidate();
-        impulse.forget_contacts();
-        impulse.flights.accelerations.clear();
-        event_rows.clear();
-        soft.forget_rows();
-    }
+    virtual void forget_derived_state() = 0;
+    /// Takes a row out of the world.
+    virtual void remove(std::size_t row);
+    /// What the bodies are now, the solver cannot do. @throws Error, which `where` opens
+    virtual void check_bodies(std::string_view where);
+    /// Wakes the islands of all sleepers that something within `reach` [m] of `place` touches.
+    virtual void wake_at(Vec2 place, double reach);
+    /// Wakes all sleepers: segments and chains may touch anything.
+    virtual void wake_all();
+    /// Wakes the island of a row, if it sleeps. @return the row it has then
+    virtual std::size_t wake_body(std::size_t row);
+
+    // Reports.
+
+    /// Adds what the solver has counted.
+    virtual void report(Profile& profile) const = 0;
+    /// Calls visit for each of its stages, in the order of the step.
+    virtual void report_stages(StageVisitor visit) const = 0;
+    /// Memory that it holds now.
+    virtual std::size_t bytes() const;
+
+    WorldState<Real> world;
+    Candidates<Real> candidates;
+    Executor executor;
+    const KernelTable<Real>* kernels = nullptr;
+    int substeps_asked_for = 1;  ///< strong drag can make a step take more
+    StageTimes times;
+    std::int64_t step_count = 0;
+
+    // Of the present flight: what the broadphase looks ahead. Solver `impulse` takes one a substep, `soft`
+    // one a step.
+    double flight_dt = 0;               ///< s
+    double fastest = 0;                 ///< m/s, at its start, of all bodies
+    std::vector<double> chunk_fastest;  ///< m²/s², by chunk
+    std::vector<std::int32_t> displaced, lost;
+    ChunkedList displaced_rows, lost_rows;
+
+    /// Parts that strong drag needs a step of dt [s] to be cut into, or that were asked for, if those are
+    /// more.
+    int substeps_for_drag(double dt) const;
+    /// Whether anything can move, on its own or because something else does.
+    bool has_anything_to_move() const;
+    /// Whether two things are there that can touch.
+    bool can_meet() const { return world.bodies.rows() > 1 || world.effects.walls; }
+
+  protected:
+    explicit Simulation(MarginRule rule) : candidates(rule) {}
 };
+
+extern template class Simulation<float>;
+extern template class Simulation<double>;
 
 }  // namespace carom

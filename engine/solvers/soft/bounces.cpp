@@ -87,7 +87,7 @@ double SoftSolver<Real>::change_of_bounces(ContactRows<Real>& live) const {
 /// Sweeps over all contacts that touched in this step, until every impact leaves with its speed and nothing
 /// that touches approaches. These impulses are beside the ones that contacts keep: a bounce is no load.
 template <class Real>
-void SoftSolver<Real>::bounce() {
+void SoftSolver<Real>::sweep_bounces() {
     const auto arguments_for = [&](ContactRows<Real>& live) {
         for (Column<Real>* column :
              {&live.bounce_impulse, &live.bounce_friction, &live.bounce_rolling, &live.spare})
@@ -108,17 +108,29 @@ void SoftSolver<Real>::bounce() {
     }
 }
 
+template <class Real>
+void SoftSolver<Real>::bounce(const WorldState<Real>& world, Books& books) {
+    fastest_bounce_ = 0;
+    const bool any_pair = find_bounces(pairs_, world), any_support = find_bounces(supports_, world);
+    if (!any_pair && !any_support) return;
+    if (books.is_open) before_bounce_ = velocity_;
+    sweep_bounces();
+    book_bounces(books);
+}
+
 template double SoftSolver<float>::restitution_of(const ContactRows<float>&, std::size_t,
                                                   const WorldState<float>&) const;
 template double SoftSolver<float>::impact_speed(const ContactRows<float>&, std::size_t) const;
 template bool SoftSolver<float>::find_bounces(ContactRows<float>&, const WorldState<float>&);
 template double SoftSolver<float>::change_of_bounces(ContactRows<float>&) const;
-template void SoftSolver<float>::bounce();
+template void SoftSolver<float>::sweep_bounces();
+template void SoftSolver<float>::bounce(const WorldState<float>&, Books&);
 template double SoftSolver<double>::restitution_of(const ContactRows<double>&, std::size_t,
                                                    const WorldState<double>&) const;
 template double SoftSolver<double>::impact_speed(const ContactRows<double>&, std::size_t) const;
 template bool SoftSolver<double>::find_bounces(ContactRows<double>&, const WorldState<double>&);
 template double SoftSolver<double>::change_of_bounces(ContactRows<double>&) const;
-template void SoftSolver<double>::bounce();
+template void SoftSolver<double>::sweep_bounces();
+template void SoftSolver<double>::bounce(const WorldState<double>&, Books&);
 
 }  // namespace carom

@@ -1,5 +1,5 @@
 #include "shapes/walls.hpp"
-#include "solvers/shared/stages.hpp"
+#include "solvers/soft/stages.hpp"
 
 namespace carom {
 namespace {
@@ -23,7 +23,7 @@ Real put_back(Real& position, Real& velocity, Real min, Real max, Real radius) {
 /// throws at a wall within a step may have none: then this is its contact. It looks at centres, so it acts
 /// on nobody whose contact held.
 template <class Real>
-void clamp_to_walls(Simulation<Real>& sim) {
+void clamp_to_walls(SoftSimulation<Real>& sim) {
     WorldState<Real>& world = sim.world;
     Bodies<Real>& bodies = world.bodies;
     const Enclosure<Real> box(&*world.walls);
@@ -36,7 +36,7 @@ void clamp_to_walls(Simulation<Real>& sim) {
         if (outside == 0) continue;
         for (std::size_t row = first; row < last; ++row) {
             if (!box.is_outside(x[row], y[row]) || bodies.is_immovable(row)) continue;
-            const Real* start = &sim.impulse.flights.motion[4 * row];
+            const Real* start = &sim.motion[4 * row];
             if (box.is_outside(start[0], start[1])) continue;  // somebody has put it there
             const Real radius = bodies.radius[row];
             const Vec2 taken{
@@ -50,7 +50,7 @@ void clamp_to_walls(Simulation<Real>& sim) {
     }
 }
 
-template void clamp_to_walls(Simulation<float>&);
-template void clamp_to_walls(Simulation<double>&);
+template void clamp_to_walls(SoftSimulation<float>&);
+template void clamp_to_walls(SoftSimulation<double>&);
 
 }  // namespace carom

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "constraints/support_surface.hpp"
+#include "effects/touching.hpp"
 #include "narrowphase/disc_edge.hpp"
-#include "solvers/impulse/flights.hpp"
-#include "solvers/impulse/separate_overlaps.hpp"
+#include "shapes/walls.hpp"
 #include "solvers/soft/soft_solver.hpp"
 
 namespace carom {

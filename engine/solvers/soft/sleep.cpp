@@ -1,24 +1,13 @@
-#include "solvers/soft/sleep.hpp"
-
-#include "solvers/shared/stages.hpp"
+#include "solvers/soft/stages.hpp"
 
 namespace carom {
 namespace {
 
 /// Rows have changed places: what was derived from them is made anew.
 template <class Real>
-void rows_changed(Simulation<Real>& sim) {
+void rows_changed(SoftSimulation<Real>& sim) {
     sim.world.list_immovable_rows();
     sim.forget_derived_state();
-}
-
-/// @return whether anybody woke.
-template <class Real>
-bool wake_marked(Simulation<Real>& sim) {
-    Sleepers<Real>::forget_contacts(sim.soft.graph, sim.world);
-    if (sim.sleepers.wake_marked(sim.world) == 0) return false;
-    rows_changed(sim);
-    return true;
 }
 
 /// While segments or chains move nobody sleeps: they may be anywhere.
@@ -37,7 +26,15 @@ bool do_edges_move(const WorldState<Real>& world) {
 }  // namespace
 
 template <class Real>
-void wake_sleepers(Simulation<Real>& sim) {
+bool wake_marked(SoftSimulation<Real>& sim) {
+    Sleepers<Real>::forget_contacts(sim.soft.graph, sim.world);
+    if (sim.sleepers.wake_marked(sim.world) == 0) return false;
+    rows_changed(sim);
+    return true;
+}
+
+template <class Real>
+void wake_sleepers(SoftSimulation<Real>& sim) {
     if (sim.world.bodies.asleep == 0) return;
     if (do_edges_move(sim.world)) {
         sim.sleepers.mark_all(sim.world);
@@ -63,7 +60,7 @@ void wake_sleepers(Simulation<Real>& sim) {
 }
 
 template <class Real>
-void put_to_sleep(Simulation<Real>& sim) {
+void put_to_sleep(SoftSimulation<Real>& sim) {
     WorldState<Real>& world = sim.world;
     bool is_pressed = sim.sleepers.mark_pressed(world, sim.soft.graph, sim.substep_dt);
     if (!sim.lost.empty()) is_pressed = sim.sleepers.mark_all(world);  // what they lay on may be gone
@@ -77,35 +74,11 @@ void put_to_sleep(Simulation<Real>& sim) {
     rows_changed(sim);
 }
 
-template <class Real>
-void wake_at(Simulation<Real>& sim, Vec2 place, double reach) {
-    if (sim.sleepers.mark_near(sim.world, place, reach, *sim.kernels, sim.executor)) wake_marked(sim);
-}
-
-template <class Real>
-void wake_all(Simulation<Real>& sim) {
-    if (sim.sleepers.mark_all(sim.world)) wake_marked(sim);
-}
-
-template <class Real>
-std::size_t wake_body(Simulation<Real>& sim, std::size_t row) {
-    Bodies<Real>& bodies = sim.world.bodies;
-    if (row < bodies.count) return row;
-    const BodyId id = bodies.id[row];
-    sim.sleepers.mark(bodies.island[row]);
-    wake_marked(sim);
-    return sim.world.handles.row_of_slot(id.index);
-}
-
-template void wake_sleepers(Simulation<float>&);
-template void wake_sleepers(Simulation<double>&);
-template void put_to_sleep(Simulation<float>&);
-template void put_to_sleep(Simulation<double>&);
-template void wake_at(Simulation<float>&, Vec2, double);
-template void wake_at(Simulation<double>&, Vec2, double);
-template void wake_all(Simulation<float>&);
-template void wake_all(Simulation<double>&);
-template std::size_t wake_body(Simulation<float>&, std::size_t);
-template std::size_t wake_body(Simulation<double>&, std::size_t);
+template void wake_sleepers(SoftSimulation<float>&);
+template void wake_sleepers(SoftSimulation<double>&);
+template void put_to_sleep(SoftSimulation<float>&);
+template void put_to_sleep(SoftSimulation<double>&);
+template bool wake_marked(SoftSimulation<float>&);
+template bool wake_marked(SoftSimulation<double>&);
 
 }  // namespace carom

@@ -8,7 +8,7 @@
 #include "effects/flight.hpp"
 #include "effects/friction.hpp"
 #include "effects/restitution.hpp"
-#include "solvers/impulse/separate_overlaps.hpp"
+#include "effects/touching.hpp"
 
 namespace carom {
 namespace {
@@ -227,8 +227,8 @@ void SoftSolver<Real>::rescale_impulses(ContactCandidates<Real>& candidates) con
 
 template <class Real>
 void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const Candidates<Real>& candidates,
-                                     const EdgeCandidates<Real>& edges, const Column<Real>& motion,
-                                     double dt) {
+                                     const EdgeCandidates<Real>& edges, Column<Real>& motion, double dt) {
+    motion.resize(4 * padded(count_ + ContactGraph<Real>::padding_rows(graph.groups)));
     dt_ = dt;
     const double smallest = candidates.smallest_radius();
     largest_radius_ = candidates.largest_radius();
@@ -242,12 +242,7 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const Candid
     find_pairs(world.bodies, motion);
     find_supports(world, edges);
     uneven_.begin_step(pairs_, supports_);
-    is_unloaded_ = !graph.lost.empty();
-    if (is_unloaded_) {
-        std::sort(graph.lost.begin(), graph.lost.end());
-        unloading_.balance(graph.lost, pairs_, supports_, world.bodies, uniform_friction_, gravity_change_);
-        graph.lost.clear();
-    }
+    is_unloaded_ = false;
     for (ContactRows<Real>* live : {&pairs_, &supports_})
         if (bounces_)
             for (Column<Real>* column : {&live->largest_impulse, &live->bounce_impulse})
@@ -256,8 +251,20 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const Candid
         std::accumulate(pairs_.live_count.begin(), pairs_.live_count.end(), supports_.contacts()));
     counters.colours = static_cast<std::int64_t>(pairs_.count.size());
     counters.overflow = static_cast<std::int64_t>(pairs_.overflow());
-    const Sweep warm_start{contact_kernels().warm_start_pairs, contact_kernels().warm_start_supports};
-    sweep({&warm_start, 1}, arguments(pairs_), arguments(supports_));
+}
+
+template <class Real>
+void SoftSolver<Real>::rebalance_loads(const Bodies<Real>& bodies) {
+    is_unloaded_ = true;
+    std::sort(graph.lost.begin(), graph.lost.end());
+    unloading_.balance(graph.lost, pairs_, supports_, bodies, uniform_friction_, gravity_change_);
+    graph.lost.clear();
+}
+
+template <class Real>
+void SoftSolver<Real>::warm_start() {
+    const Sweep once{contact_kernels().warm_start_pairs, contact_kernels().warm_start_supports};
+    sweep({&once, 1}, arguments(pairs_), arguments(supports_));
 }
 
 /// One colour after the other. Within a batch no two contacts share a body that moves, so a whole run of
@@ -338,7 +345,12 @@ void SoftSolver<Real>::sweep(std::span<const Sweep> sweeps, const SolveContacts<
 }
 
 template <class Real>
-void SoftSolver<Real>::solve_contacts(int number, bool is_last, const Column<Real>& motion) {
+auto SoftSolver<Real>::next_sweep(typename Sweep::Blocks blocks, int times) const -> Sweep {
+    return {contact_kernels().next_pairs, contact_kernels().next_supports, blocks, times};
+}
+
+template <class Real>
+void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
     elapsed_ = number * substep_dt_;
     const ContactKernels<Real>& kernels = contact_kernels();
     SolveContacts<Real> on_supports = arguments(supports_), on_pairs = arguments(pairs_);
@@ -346,18 +358,17 @@ void SoftSolver<Real>::solve_contacts(int number, bool is_last, const Column<Rea
         on_supports.contacts.largest_impulse = on_pairs.contacts.largest_impulse = nullptr;
     const bool starts_anew = number == 0 && !are_impulses_known_;
     const bool only_restless = !starts_anew && !is_last && !is_unloaded_;
-    const std::array sweeps{
-        Sweep{kernels.first_pairs, kernels.first_supports, Sweep::Blocks::all_and_mark},
-        Sweep{kernels.next_pairs, kernels.next_supports,
-              only_restless ? Sweep::Blocks::restless : Sweep::Blocks::all, starts_anew ? kFirstSweeps : 1}};
-    if (is_last && length_squared(gravity_change_) > 0 && coarse_.is_due(count_, number + 1)) {
-        sweep({&sweeps[0], 1}, on_pairs, on_supports);
-        correct_coarsely(motion);
-        sweep({&sweeps[1], 1}, on_pairs, on_supports);
-    } else {
-        sweep(sweeps, on_pairs, on_supports);
-    }
-    uneven_.solve(on_pairs, on_supports, std::sqrt(length_squared(gravity_change_)));
+    const std::array sweeps{Sweep{kernels.first_pairs, kernels.first_supports, Sweep::Blocks::all_and_mark},
+                            next_sweep(only_restless ? Sweep::Blocks::restless : Sweep::Blocks::all,
+                                       starts_anew ? kFirstSweeps : 1)};
+    is_correction_due_ = is_last && length_squared(gravity_change_) > 0 && coarse_.is_due(count_, number + 1);
+    sweep({sweeps.data(), is_correction_due_ ? std::size_t{1} : sweeps.size()}, on_pairs, on_supports);
+}
+
+template <class Real>
+void SoftSolver<Real>::solve_uneven_contacts() {
+    if (are_masses_uneven_)
+        uneven_.solve(arguments(pairs_), arguments(supports_), std::sqrt(length_squared(gravity_change_)));
 }
 
 template <class Real>
@@ -370,7 +381,8 @@ SolveContacts<Real> SoftSolver<Real>::coarse_arguments(ContactRows<Real>& live) 
 }
 
 template <class Real>
-void SoftSolver<Real>::correct_coarsely(const Column<Real>& motion) {
+void SoftSolver<Real>::correct_loads(const Column<Real>& motion) {
+    if (!is_correction_due_) return;
     const ContactKernels<Real>& kernels = contact_kernels();
     coarse_.begin(velocity_.size() / 4);
     const SolveContacts<Real> on_pairs = coarse_arguments(pairs_), on_supports = coarse_arguments(supports_);
@@ -379,8 +391,9 @@ void SoftSolver<Real>::correct_coarsely(const Column<Real>& motion) {
     sweep({&sum, 1}, on_pairs, on_supports);
     is_corrected_ = coarse_.find_scale(count_, motion.data(), velocity_.data(), largest_radius_,
                                        gravity_change_, *executor_);
-    if (!is_corrected_) return;
-    sweep({&scale, 1}, on_pairs, on_supports);
+    if (is_corrected_) sweep({&scale, 1}, on_pairs, on_supports);
+    const Sweep next = next_sweep(Sweep::Blocks::all);
+    sweep({&next, 1}, arguments(pairs_), arguments(supports_));
 }
 
 /// After the books of the step, which have the impulses as they were.
@@ -408,16 +421,7 @@ void SoftSolver<Real>::advance_bodies(bool is_last) {
 }
 
 template <class Real>
-void SoftSolver<Real>::end_contacts(const WorldState<Real>& world, Books& books) {
-    if (bounces_) {
-        fastest_bounce_ = 0;
-        const bool any_pair = find_bounces(pairs_, world), any_support = find_bounces(supports_, world);
-        if (any_pair || any_support) {
-            if (books.is_open) before_bounce_ = velocity_;
-            bounce();
-            book_bounces(books);
-        }
-    }
+void SoftSolver<Real>::end_contacts() {
     retain_correction();
     pairs_.swap_with(graph.pairs);
     supports_.for_each([&](std::size_t i) {

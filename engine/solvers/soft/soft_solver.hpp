@@ -57,18 +57,34 @@ class SoftSolver {
     void begin_substeps(const WorldState<Real>& world, const Column<Real>& motion, double h,
                         const Vec2 gravity, const KernelTable<Real>& kernels, const Executor& executor);
 
-    /// Contacts that can touch in this step, by colour; gives the bodies last step's impulses.
+    /// Contacts that can touch in this step, by colour.
+    /// @param motion  [rows][4] at the start of the step; gets rows for the padding of groups
     void find_contacts(const WorldState<Real>& world, const Candidates<Real>& candidates,
-                       const EdgeCandidates<Real>& edges, const Column<Real>& motion, double dt);
+                       const EdgeCandidates<Real>& edges, Column<Real>& motion, double dt);
 
-    /// Both sweeps of substep `number`. The second leaves out what is calm, but not in the last substep, in
-    /// which the loads of large piles are corrected between the two.
+    /// Whether bodies are gone on which others rested.
+    bool has_lost_loads() const { return !graph.lost.empty(); }
+    /// Spreads what they carried over other contacts.
+    void rebalance_loads(const Bodies<Real>& bodies);
+
+    /// Gives the bodies last step's impulses.
+    void warm_start();
+
+    /// Both sweeps of substep `number`, or the first alone if correct_loads is due. The second leaves out
+    /// what is calm, but not in the last substep.
+    void solve_contacts(int number, bool is_last);
+    /// Corrects the loads of large piles between the sweeps of the last substep, if that is due, and sweeps
+    /// once more.
     /// @param motion  of the bodies at the start of the step
-    void solve_contacts(int number, bool is_last, const Column<Real>& motion);
+    void correct_loads(const Column<Real>& motion);
+    /// Solves what the sweeps leave where masses are uneven; nothing where they are not.
+    void solve_uneven_contacts();
     /// Moves the bodies through the substep that was solved.
     void advance_bodies(bool is_last);
-    /// Restitution, and the impulses back to the candidates.
-    void end_contacts(const WorldState<Real>& world, Books& books);
+    /// Restitution.
+    void bounce(const WorldState<Real>& world, Books& books);
+    /// The impulses back to the candidates.
+    void end_contacts();
     /// Parts who has ended the step deep in somebody else (project_positions.cpp): by displacement alone.
     /// @param fastest  m/s, of all bodies at the start
     /// Cost: nothing unless somebody moved by four of the smallest radius or started deep in another one.
@@ -166,7 +182,7 @@ class SoftSolver {
     void sweep_pairs(std::size_t group, const Sweep& sweep, const SolveContacts<Real>& on_pairs);
     void sweep_supports(std::size_t group, const Sweep& sweep, const SolveContacts<Real>& on_supports) const;
     SolveContacts<Real> coarse_arguments(ContactRows<Real>& live);
-    void correct_coarsely(const Column<Real>& motion);
+    Sweep next_sweep(typename Sweep::Blocks blocks, int times = 1) const;
     void retain_correction();
     /// Row that the padding of a group of supports names.
     std::int32_t padding_row_of_supports(std::size_t group) const {
@@ -177,7 +193,7 @@ class SoftSolver {
     double restitution_of(const ContactRows<Real>& live, std::size_t contact,
                           const WorldState<Real>& world) const;
     double impact_speed(const ContactRows<Real>& live, std::size_t contact) const;
-    void bounce();
+    void sweep_bounces();
     void book_bounces(Books& books) const;
     struct Impulses;
     template <class From>
@@ -225,10 +241,11 @@ class SoftSolver {
     Rebalance<Real> unloading_;
     LocalSolve<Real> uneven_;
     CoarseCorrection<Real> coarse_;
-    bool is_corrected_ = false;   // in this step
-    double fastest_bounce_ = 0;   // m/s, of this step
-    Column<Real> before_bounce_;  // velocity records; only with the ledger
-    double gravity_work_ = 0;     // J, of this step, on velocities; only with the ledger
+    bool is_correction_due_ = false;  // in this substep
+    bool is_corrected_ = false;       // in this step
+    double fastest_bounce_ = 0;       // m/s, of this step
+    Column<Real> before_bounce_;      // velocity records; only with the ledger
+    double gravity_work_ = 0;         // J, of this step, on velocities; only with the ledger
 };
 
 extern template class SoftSolver<float>;

@@ -1,15 +1,26 @@
-#include "solvers/shared/stages.hpp"
+#include "solvers/soft/stages.hpp"
+
+#include "solvers/shared/candidate_stages.hpp"
 
 namespace carom {
 
 template <class Real>
-void begin_substeps(Simulation<Real>& sim) {
-    sim.soft.begin_substeps(sim.world, sim.impulse.flights.motion, sim.substep_dt, sim.world.gravity,
-                            *sim.kernels, sim.executor);
+void sort_rows(SoftSimulation<Real>& sim) {
+    sort_rows_by_place(sim, [&](const std::int32_t* order) {
+        sim.soft.graph.trail.follow_sorted(order, sim.world.bodies.count);
+        sim.soft.forget_rows();
+    });
 }
 
 template <class Real>
-void update_contacts(Simulation<Real>& sim) {
+void update_candidates(SoftSimulation<Real>& sim) {
+    sim.edge_candidates.place(sim.world, sim.flight_dt);
+    if (sim.edge_candidates.has_left_margin()) sim.candidates.invalidate_pairs();
+    find_candidate_pairs(sim, flight_clock_at(sim.flight_dt, 0));
+}
+
+template <class Real>
+void update_contacts(SoftSimulation<Real>& sim) {
     sim.soft.graph.keeps_rolling = sim.world.effects.rolling_resistance;
     const Walls* walls = sim.world.walls ? &*sim.world.walls : nullptr;
     sim.soft.graph.sleepers = sim.sleepers.pairs();
@@ -28,71 +39,20 @@ void update_contacts(Simulation<Real>& sim) {
 }
 
 template <class Real>
-void find_contacts(Simulation<Real>& sim) {
-    const std::size_t padding_rows = ContactGraph<Real>::padding_rows(sim.soft.graph.groups);
-    sim.impulse.flights.motion.resize(4 * padded(sim.world.bodies.count + padding_rows));
-    sim.soft.find_contacts(sim.world, sim.candidates, sim.edge_candidates, sim.impulse.flights.motion,
-                           sim.flight_dt);
-}
-
-template <class Real>
-void solve_contacts(Simulation<Real>& sim) {
-    sim.soft.solve_contacts(sim.substep, sim.substep + 1 == sim.substep_count, sim.impulse.flights.motion);
-}
-
-template <class Real>
-void book_substep(Simulation<Real>& sim) {
-    sim.soft.book_substep(sim.world, sim.world.books);
-}
-
-template <class Real>
-void book_displacements(Simulation<Real>& sim) {
-    sim.soft.book_displacements(sim.world, sim.impulse.flights.motion, sim.world.books);
-}
-
-template <class Real>
-void advance_bodies(Simulation<Real>& sim) {
-    sim.soft.advance_bodies(sim.substep + 1 == sim.substep_count);
-}
-
-template <class Real>
-void end_contacts(Simulation<Real>& sim) {
-    sim.soft.end_contacts(sim.world, sim.world.books);
-    sim.soft.project_positions(sim.world, sim.edge_candidates, sim.impulse.flights.motion, sim.candidates,
-                               sim.fastest);
-}
-
-template <class Real>
-void end_substeps(Simulation<Real>& sim) {
-    sim.soft.end_substeps(sim.world.bodies, sim.lost);
-    if (!sim.world.edges.empty())
-        sim.soft.undo_tunnelling(sim.world, sim.edge_candidates, sim.impulse.flights.motion, sim.candidates,
-                                 sim.fastest);
-    if (sim.world.walls) clamp_to_walls(sim);
-    if (sim.lost.empty()) return;
+void quarantine_bodies(SoftSimulation<Real>& sim) {
     for (const std::int32_t row : sim.lost)
         if (!sim.world.bodies.is_immovable(static_cast<std::size_t>(row)))
             sim.world.quarantine(static_cast<std::size_t>(row));
     sim.forget_derived_state();
 }
 
-template void begin_substeps(Simulation<float>&);
-template void begin_substeps(Simulation<double>&);
-template void update_contacts(Simulation<float>&);
-template void update_contacts(Simulation<double>&);
-template void find_contacts(Simulation<float>&);
-template void find_contacts(Simulation<double>&);
-template void solve_contacts(Simulation<float>&);
-template void solve_contacts(Simulation<double>&);
-template void advance_bodies(Simulation<float>&);
-template void advance_bodies(Simulation<double>&);
-template void book_substep(Simulation<float>&);
-template void book_substep(Simulation<double>&);
-template void book_displacements(Simulation<float>&);
-template void book_displacements(Simulation<double>&);
-template void end_contacts(Simulation<float>&);
-template void end_contacts(Simulation<double>&);
-template void end_substeps(Simulation<float>&);
-template void end_substeps(Simulation<double>&);
+template void sort_rows(SoftSimulation<float>&);
+template void sort_rows(SoftSimulation<double>&);
+template void update_candidates(SoftSimulation<float>&);
+template void update_candidates(SoftSimulation<double>&);
+template void update_contacts(SoftSimulation<float>&);
+template void update_contacts(SoftSimulation<double>&);
+template void quarantine_bodies(SoftSimulation<float>&);
+template void quarantine_bodies(SoftSimulation<double>&);
 
 }  // namespace carom

@@ -1,4 +1,4 @@
-#include "solvers/impulse/impact_time.hpp"
+#include "narrowphase/impact_time.hpp"
 
 #include <doctest/doctest.h>
 #include <cmath>
@@ -88,7 +88,7 @@ constexpr int kCases = 600;
 
 }  // namespace
 
-TEST_SUITE("solvers/impact_time") {
+TEST_SUITE("narrowphase/impact_time") {
     TEST_CASE("a pair in straight relative motion meets when bisection says") {
         Numbers number;
         int meetings = 0;

@@ -1,8 +1,10 @@
+#include "solvers/event/event_simulation.hpp"
+
 #include <cmath>
 
+#include "effects/touching.hpp"
 #include "scene/wording.hpp"
 #include "shapes/walls.hpp"
-#include "solvers/shared/stages.hpp"
 
 // Between the columns of a world and solver `event`, which keeps discs in an order and a precision of its
 // own.
@@ -43,7 +45,7 @@ std::string label_of(BodyId id) {
 }
 
 template <class Real>
-void refuse_overlap(const Simulation<Real>& sim, std::string_view where) {
+void refuse_overlap(const EventSimulation<Real>& sim, std::string_view where) {
     const auto overlap = sim.events.find_overlap(kSlopFraction);
     if (!overlap) return;
     const auto id_of = [&](std::int32_t row) {
@@ -73,7 +75,7 @@ bool write_row(Bodies<Real>& bodies, std::size_t row, const EventDynamics::State
 }
 
 template <class Real>
-void hand_over(Simulation<Real>& sim) {
+void hand_over(EventSimulation<Real>& sim) {
     std::vector<EventBody> bodies;
     for (std::size_t row = 0; row < sim.world.bodies.count; ++row) {
         if ((sim.world.bodies.flags_of(row) & kDisabled) != 0) continue;
@@ -86,14 +88,14 @@ void hand_over(Simulation<Real>& sim) {
 }  // namespace
 
 template <class Real>
-void load_events(Simulation<Real>& sim, std::string_view where) {
-    if (!sim.event_rows.empty()) return;
-    hand_over(sim);
-    refuse_overlap(sim, where);
+void EventSimulation<Real>::check_bodies(std::string_view where) {
+    if (!event_rows.empty()) return;
+    hand_over(*this);
+    refuse_overlap(*this, where);
 }
 
 template <class Real>
-void run_events(Simulation<Real>& sim) {
+void run_events(EventSimulation<Real>& sim) {
     WorldState<Real>& world = sim.world;
     if (sim.event_rows.empty()) hand_over(sim);
     sim.events.keep_books(&world.books);
@@ -107,13 +109,33 @@ void run_events(Simulation<Real>& sim) {
         world.quarantine(row);
         any_lost = true;
     }
-    sim.candidates.invalidate();  // whoever measures overlaps finds them anew
+    sim.candidates.invalidate();  // no pairs were kept while the bodies moved
     if (any_lost) sim.forget_derived_state();
 }
 
-template void load_events(Simulation<float>&, std::string_view);
-template void load_events(Simulation<double>&, std::string_view);
-template void run_events(Simulation<float>&);
-template void run_events(Simulation<double>&);
+template <class Real>
+void EventSimulation<Real>::forget_derived_state() {
+    this->candidates.invalidate();
+    event_rows.clear();
+}
+
+template <class Real>
+void EventSimulation<Real>::report(Profile& profile) const {
+    const EventCounters& counters = events.counters();
+    profile.pair_tests += counters.pair_tests;
+    profile.impacts += counters.impacts, profile.wall_impacts += counters.wall_impacts;
+    profile.simultaneous_impacts += counters.simultaneous_impacts;
+}
+
+template <class Real>
+std::size_t EventSimulation<Real>::bytes() const {
+    return Simulation<Real>::bytes() + sizeof(*this) + events.bytes() +
+           event_rows.capacity() * sizeof(std::int32_t);
+}
+
+template class EventSimulation<float>;
+template class EventSimulation<double>;
+template void run_events(EventSimulation<float>&);
+template void run_events(EventSimulation<double>&);
 
 }  // namespace carom

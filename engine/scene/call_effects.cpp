@@ -1,0 +1,100 @@
+#include "scene/call_effects.hpp"
+
+#include <string>
+
+#include "math/vec2_math.hpp"
+
+namespace carom {
+namespace {
+
+/// Decides one effect: forced, or called for by `what`, which is empty if nothing calls for it.
+bool decide(std::vector<EffectReport>& reports, const char* name, const std::optional<bool>& forced,
+            const std::string& what, const char* nothing) {
+    const bool called = !what.empty();
+    const bool on = forced.value_or(called);
+    std::string reason = called ? what : nothing;
+    if (forced && *forced && !called) reason = "forced on; " + reason;
+    if (forced && !*forced) reason = "forced off";
+    reports.push_back({name, on, reason});
+    return on;
+}
+
+/// "body 3" or "body 3 ("ball")".
+std::string label(const Scene& scene, std::size_t body) {
+    const std::string& name = scene.bodies[body].name;
+    return "body " + std::to_string(body) + (name.empty() ? "" : " (\"" + name + "\")");
+}
+
+/// The first body for which `calls` holds, as a reason; empty if there is none.
+template <class Calls>
+std::string first_body(const Scene& scene, const Calls& calls, const char* has) {
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+        if (calls(scene.bodies[i])) return label(scene, i) + has;
+    return {};
+}
+
+std::string number(double value) {
+    std::string text = std::to_string(value);
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+    return text;
+}
+
+}  // namespace
+
+CalledEffects call_effects(const Scene& scene, const EffectOverrides& overrides) {
+    CalledEffects called;
+    Effects& on = called.effects;
+    auto& reports = called.reports;
+    const auto either = [](const std::optional<bool>& first, const std::optional<bool>& second) {
+        return first ? first : second;
+    };
+    const EffectOverrides& own = scene.effects;
+    const Vec2 g = scene.gravity;
+    on.gravity = decide(reports, "gravity", either(overrides.gravity, own.gravity),
+                        g == Vec2{} ? "" : "gravity is (" + number(g.x) + ", " + number(g.y) + ") m/s²",
+                        "gravity is zero");
+    const auto drag = either(overrides.drag, own.drag);
+    on.drag = decide(reports, "drag", drag,
+                     scene.drag.linear > 0 ? "linear drag is " + number(scene.drag.linear) + " 1/s" : "",
+                     "linear drag is zero");
+    on.walls =
+        decide(reports, "walls", {}, scene.walls ? "the scene has walls" : "", "the scene has no walls");
+    std::string bounces = first_body(
+        scene, [](const Body& b) { return b.material.restitution > 0; }, " has a restitution above zero");
+    if (bounces.empty() && scene.walls && scene.walls->material.restitution > 0)
+        bounces = "the walls have a restitution above zero";
+    on.restitution = decide(reports, "restitution", either(overrides.restitution, own.restitution), bounces,
+                            "every restitution is zero");
+    std::string rubs = first_body(
+        scene, [](const Body& b) { return b.material.friction > 0; }, " has friction");
+    std::string resists = first_body(
+        scene, [](const Body& b) { return b.material.rolling_resistance > 0; }, " has rolling resistance");
+    if (resists.empty() && scene.walls && scene.walls->material.rolling_resistance > 0)
+        resists = "the walls have rolling resistance";
+    const auto rolling = either(overrides.rolling_resistance, own.rolling_resistance);
+    if (rubs.empty() && (!resists.empty() || rolling == true))
+        rubs = "rolling resistance needs contacts that turn bodies";
+    on.friction = decide(reports, "friction", either(overrides.friction, own.friction), rubs,
+                         "every friction coefficient is zero");
+    on.rolling_resistance =
+        decide(reports, "rolling resistance", rolling, resists, "every rolling resistance is zero");
+    std::string turns = first_body(
+        scene, [](const Body& b) { return b.angular_velocity != 0 || b.angle != 0; },
+        " has an angle or a spin");
+    if (turns.empty() && on.friction) turns = "friction turns bodies";
+    on.rotation = decide(reports, "rotation", either(overrides.rotation, own.rotation), turns,
+                         "no body has an angle or a spin, and nothing can give one");
+    on.angular_drag = decide(reports, "angular drag", {},
+                             on.rotation && scene.drag.angular > 0
+                                 ? "angular drag is " + number(scene.drag.angular) + " 1/s and bodies turn"
+                                 : "",
+                             scene.drag.angular > 0 ? "nothing turns" : "angular drag is zero");
+    decide(reports, "continuous collision", {}, "every solver looks ahead over the whole step", "");
+    on.ledger = decide(reports, "ledger", either(overrides.ledger, own.ledger), "", "not asked for");
+    decide(reports, "joints", {}, "", "the scene has no joints");
+    on.sleeping = decide(reports, "sleeping", either(overrides.sleep, own.sleep), "", "not asked for");
+    return called;
+}
+
+}  // namespace carom

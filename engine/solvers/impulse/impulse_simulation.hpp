@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "solvers/impulse/impulse_solver.hpp"
+#include "solvers/shared/simulation.hpp"
+
+namespace carom {
+
+/// A world that solver `impulse` steps.
+template <class Real>
+class ImpulseSimulation : public Simulation<Real> {
+  public:
+    ImpulseSimulation() : Simulation<Real>(MarginRule::common) {}
+
+    Solver solver() const override { return Solver::impulse; }
+    bool has_long_loops() const override { return this->executor.is_parallel(this->world.bodies.count); }
+    void forget_derived_state() override;
+    void report(Profile& profile) const override;
+    std::size_t bytes() const override;
+
+    ImpulseSolver<Real> impulse;
+    // Of the present substep.
+    ChunkedList wall_rows;
+    std::vector<FoundMeeting> meetings;                     ///< that the solver has to look at
+    std::vector<std::vector<FoundMeeting>> chunk_meetings;  ///< where chunks run on several threads
+    std::vector<Real> immovable_spins;                      ///< rad/s, kept over the turn
+};
+
+extern template class ImpulseSimulation<float>;
+extern template class ImpulseSimulation<double>;
+
+}  // namespace carom

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "broadphase/edge_candidates.hpp"
+#include "sleeping/sleepers.hpp"
+#include "solvers/shared/simulation.hpp"
+#include "solvers/soft/soft_solver.hpp"
+
+namespace carom {
+
+/// A world that solver `soft` steps: a step is one flight for the broadphase, cut into substeps for the
+/// contacts.
+template <class Real>
+class SoftSimulation : public Simulation<Real> {
+  public:
+    SoftSimulation() : Simulation<Real>(MarginRule::own) {}
+
+    Solver solver() const override { return Solver::soft; }
+    bool has_long_loops() const override { return soft.graph.groups.chunks > 1; }
+    void forget_derived_state() override;
+    void remove(std::size_t row) override;
+    void wake_at(Vec2 place, double reach) override;
+    void wake_all() override;
+    std::size_t wake_body(std::size_t row) override;
+    void report(Profile& profile) const override;
+    std::size_t bytes() const override;
+
+    EdgeCandidates<Real> edge_candidates;
+    SoftSolver<Real> soft;
+    Sleepers<Real> sleepers;
+    std::int64_t graph_of_rebuild = -1;  ///< which candidate pairs the contact graph was made of
+    // Of the present step.
+    Column<Real> motion;  ///< [rows][4]: x, y [m], vx, vy [m/s] of each body at its start
+    int substep = 0, substep_count = 1;
+    double substep_dt = 0;  ///< s
+};
+
+extern template class SoftSimulation<float>;
+extern template class SoftSimulation<double>;
+
+}  // namespace carom

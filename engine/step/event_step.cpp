@@ -1,0 +1,45 @@
+#include "solvers/event/event_simulation.hpp"
+#include "step/make_simulation.hpp"
+#include "step/stage.hpp"
+
+// THE STEP of solver `event`: from impact to impact, however long the step. docs/how-a-step-works.md has a
+// paragraph on its one line.
+
+namespace carom {
+namespace {
+
+template <class Real>
+class EventStep final : public EventSimulation<Real> {
+    using Sim = EventSimulation<Real>;
+
+    static constexpr Stage<Sim> kStep[] = {
+        {"run_events", [](Sim& sim) { run_events(sim); }, [](const Sim&) { return true; },
+         KernelChoice::scalar_f64, "all columns", "position, velocity, angle, angular velocity, books"},
+    };
+
+  public:
+    void step(double dt) override {
+        if (this->has_anything_to_move()) {
+            this->flight_dt = dt;
+            this->times.start();
+            run_stages(kStep, 0, static_cast<Sim&>(*this), this->times);
+            this->times.finish();
+        }
+        this->world.time += dt;
+        ++this->step_count;
+    }
+    void report_stages(StageVisitor visit) const override { visit_stages<Sim>(*this, visit, kStep); }
+};
+
+}  // namespace
+
+template <>
+std::unique_ptr<Simulation<float>> make_event_simulation() {
+    return std::make_unique<EventStep<float>>();
+}
+template <>
+std::unique_ptr<Simulation<double>> make_event_simulation() {
+    return std::make_unique<EventStep<double>>();
+}
+
+}  // namespace carom

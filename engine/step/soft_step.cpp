@@ -1,0 +1,169 @@
+#include <algorithm>
+#include <cmath>
+
+#include "solvers/soft/stages.hpp"
+#include "step/make_simulation.hpp"
+#include "step/stage.hpp"
+
+// THE STEP of solver `soft`: contacts are found once, then solved in substeps. docs/how-a-step-works.md has a
+// paragraph on each line.
+
+namespace carom {
+namespace {
+
+/// Substeps are so many that a body falls at most this share of the smallest radius from rest in one, because
+/// contacts are looked at once a substep.
+constexpr double kLargestFall = 0.005;
+
+template <class Real>
+class SoftStep final : public SoftSimulation<Real> {
+    using Sim = SoftSimulation<Real>;
+
+    static constexpr auto always = [](const Sim&) { return true; };
+    static constexpr auto can_meet = [](const Sim& sim) { return sim.can_meet(); };
+    static constexpr auto sleeps = [](const Sim& sim) {
+        return sim.world.effects.sleeping && sim.can_meet();
+    };
+    static constexpr auto bounces = [](const Sim& sim) {
+        return sim.world.effects.restitution && sim.can_meet();
+    };
+    static constexpr auto has_edges = [](const Sim& sim) { return !sim.world.edges.empty(); };
+    static constexpr auto has_walls = [](const Sim& sim) { return sim.world.effects.walls; };
+    static constexpr auto has_ledger = [](const Sim& sim) { return sim.world.effects.ledger; };
+    static constexpr auto has_books = [](const Sim& sim) {
+        return sim.world.effects.ledger || sim.world.effects.walls;
+    };
+    static constexpr auto has_lost_loads = [](const Sim& sim) { return sim.soft.has_lost_loads(); };
+    static constexpr auto may_heave = [](const Sim& sim) {
+        return sim.world.effects.gravity && sim.world.bodies.count >= CoarseCorrection<Real>::kFewestLoaded;
+    };
+    static constexpr auto has_masses = [](const Sim& sim) {
+        return sim.can_meet() && (!sim.world.bodies.mass.is_uniform() || sim.world.bodies.has_flags);
+    };
+    static constexpr auto has_lost_bodies = [](const Sim& sim) { return !sim.lost.empty(); };
+
+    static constexpr Stage<Sim> kBegin[] = {
+        {"sort_rows", [](Sim& sim) { sort_rows(sim); }, can_meet, KernelChoice::none, "position",
+         "rows of all columns"},
+        {"begin_flight", [](Sim& sim) { begin_flight(sim); }, always, KernelChoice::radius,
+         "position, velocity", "motion, rows near walls, rows out of margin"},
+        {"update_candidates", [](Sim& sim) { update_candidates(sim); }, can_meet, KernelChoice::isa,
+         "position, velocity, radius", "candidate pairs"},
+        {"wake_sleepers", [](Sim& sim) { wake_sleepers(sim); }, sleeps, KernelChoice::none,
+         "position, velocity, candidate pairs", "rows of all columns, supports"},
+        {"update_contacts", [](Sim& sim) { update_contacts(sim); }, can_meet, KernelChoice::none,
+         "candidate pairs", "coloured candidates, impulses"},
+        {"begin_substeps",
+         [](Sim& sim) {
+             sim.soft.begin_substeps(sim.world, sim.motion, sim.substep_dt, sim.world.gravity, *sim.kernels,
+                                     sim.executor);
+         },
+         always, KernelChoice::isa, "motion, angular velocity, mass, radius", "velocity records"},
+        {"find_contacts",
+         [](Sim& sim) {
+             sim.soft.find_contacts(sim.world, sim.candidates, sim.edge_candidates, sim.motion,
+                                    sim.flight_dt);
+         },
+         can_meet, KernelChoice::contacts, "motion, coloured candidates, impulses", "contacts"},
+        {"rebalance_loads", [](Sim& sim) { sim.soft.rebalance_loads(sim.world.bodies); }, has_lost_loads,
+         KernelChoice::none, "contacts, contacts of removed bodies", "impulses"},
+        {"warm_start", [](Sim& sim) { sim.soft.warm_start(); }, can_meet, KernelChoice::contacts,
+         "contacts, impulses", "velocity records"},
+    };
+    static constexpr Stage<Sim> kSubstep[] = {
+        {"solve_contacts",
+         [](Sim& sim) { sim.soft.solve_contacts(sim.substep, sim.substep + 1 == sim.substep_count); },
+         can_meet, KernelChoice::contacts, "contacts, velocity records",
+         "impulses, velocity records, displacements"},
+        {"correct_loads", [](Sim& sim) { sim.soft.correct_loads(sim.motion); }, may_heave,
+         KernelChoice::contacts, "motion, contacts, velocity records", "impulses, velocity records"},
+        {"solve_uneven_contacts", [](Sim& sim) { sim.soft.solve_uneven_contacts(); }, has_masses,
+         KernelChoice::scalar_f64, "contacts, velocity records", "impulses, velocity records"},
+        {"book_substep", [](Sim& sim) { sim.soft.book_substep(sim.world, sim.world.books); }, has_books,
+         KernelChoice::none, "contacts, velocity records", "books"},
+        {"advance_bodies", [](Sim& sim) { sim.soft.advance_bodies(sim.substep + 1 == sim.substep_count); },
+         always, KernelChoice::isa, "velocity records", "velocity records, displacements"},
+    };
+    static constexpr Stage<Sim> kEnd[] = {
+        {"bounce", [](Sim& sim) { sim.soft.bounce(sim.world, sim.world.books); }, bounces, KernelChoice::none,
+         "contacts, velocity records", "velocity records, books"},
+        {"end_contacts", [](Sim& sim) { sim.soft.end_contacts(); }, can_meet, KernelChoice::none, "contacts",
+         "impulses"},
+        {"project_positions",
+         [](Sim& sim) {
+             sim.soft.project_positions(sim.world, sim.edge_candidates, sim.motion, sim.candidates,
+                                        sim.fastest);
+         },
+         can_meet, KernelChoice::none, "motion, candidate pairs, displacements", "displacements"},
+        {"end_substeps", [](Sim& sim) { sim.soft.end_substeps(sim.world.bodies, sim.lost); }, always,
+         KernelChoice::isa, "velocity records, displacements", "position, velocity, angle, angular velocity"},
+        {"undo_tunnelling",
+         [](Sim& sim) {
+             sim.soft.undo_tunnelling(sim.world, sim.edge_candidates, sim.motion, sim.candidates,
+                                      sim.fastest);
+         },
+         has_edges, KernelChoice::none, "motion, position, edges", "position, velocity, books"},
+        {"clamp_to_walls", [](Sim& sim) { clamp_to_walls(sim); }, has_walls, KernelChoice::none,
+         "motion, position", "position, velocity, books"},
+        {"quarantine_bodies", [](Sim& sim) { quarantine_bodies(sim); }, has_lost_bodies, KernelChoice::none,
+         "rows out of the limits", "velocity, angular velocity, flags"},
+        {"book_displacements",
+         [](Sim& sim) { sim.soft.book_displacements(sim.world, sim.motion, sim.world.books); }, has_ledger,
+         KernelChoice::none, "motion, position", "books"},
+        {"put_to_sleep", [](Sim& sim) { put_to_sleep(sim); }, sleeps, KernelChoice::none,
+         "velocity, angular velocity, coloured candidates, impulses",
+         "rows of all columns, velocity, angular velocity, books"},
+    };
+    static constexpr std::size_t kFirstOfSubstep = std::size(kBegin),
+                                 kFirstOfEnd = kFirstOfSubstep + std::size(kSubstep);
+    static_assert(kFirstOfEnd + std::size(kEnd) <= StageTimes::kMostStages);
+
+    int substeps_against_gravity(double dt) const {
+        const Bodies<Real>& bodies = this->world.bodies;
+        double smallest = this->candidates.smallest_radius();
+        if (!(smallest > 0)) {
+            smallest = bodies.radius[0];
+            for (std::size_t row = 1; row < bodies.count && !bodies.radius.is_uniform(); ++row)
+                smallest = std::fmin(smallest, bodies.radius[row]);
+        }
+        const double gravity = std::sqrt(length_squared(this->world.gravity));
+        return static_cast<int>(std::ceil(dt * std::sqrt(0.5 * gravity / (kLargestFall * smallest))));
+    }
+
+  public:
+    void step(double dt) override {
+        if (this->has_anything_to_move()) {
+            this->flight_dt = dt;
+            this->substep_count = std::max(this->substeps_for_drag(dt), substeps_against_gravity(dt));
+            this->substep_dt = dt / this->substep_count;
+            Sim& sim = *this;
+            StageTimes& times = this->times;
+            times.start();
+            run_stages(kBegin, 0, sim, times);
+            for (this->substep = 0; this->substep < this->substep_count; ++this->substep)
+                run_stages(kSubstep, kFirstOfSubstep, sim, times);
+            run_stages(kEnd, kFirstOfEnd, sim, times);
+            times.finish();
+        }
+        this->world.time += dt;
+        ++this->step_count;
+    }
+    void report_stages(StageVisitor visit) const override {
+        visit_stages<Sim>(*this, visit, kBegin);
+        visit_stages<Sim>(*this, visit, kSubstep, kFirstOfSubstep);
+        visit_stages<Sim>(*this, visit, kEnd, kFirstOfEnd);
+    }
+};
+
+}  // namespace
+
+template <>
+std::unique_ptr<Simulation<float>> make_soft_simulation() {
+    return std::make_unique<SoftStep<float>>();
+}
+template <>
+std::unique_ptr<Simulation<double>> make_soft_simulation() {
+    return std::make_unique<SoftStep<double>>();
+}
+
+}  // namespace carom

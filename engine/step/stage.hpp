@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "step/stage_times.hpp"
+
+namespace carom {
+
+/// What the code of a stage was chosen by, for `carom explain`.
+enum class KernelChoice : std::uint8_t {
+    none,        ///< there is one text
+    isa,         ///< the instruction set
+    radius,      ///< the instruction set; one radius for all or one a body
+    contacts,    ///< the same, and the effects that act in contacts
+    scalar_f64,  ///< scalar, in double precision whatever the columns have
+};
+
+/// A line of the step: what runs, when a scene calls for it, and what it touches. The step, `explain`, the
+/// stopwatch and docs/how-a-step-works.md read the same lists, one a solver: step/*_step.cpp.
+template <class Sim>
+struct Stage {
+    std::string_view name;
+    void (*run)(Sim&);
+    bool (*is_called_for)(const Sim&);
+    KernelChoice kernel;
+    std::string_view reads, writes;
+};
+
+/// Runs those of `stages` that are called for, in order. `first` is the number of the first among all stages
+/// of the solver, for the stopwatch.
+template <class Sim, std::size_t kCount>
+void run_stages(const Stage<Sim> (&stages)[kCount], std::size_t first, Sim& sim, StageTimes& times) {
+    for (std::size_t i = 0; i < kCount; ++i) {
+        if (!stages[i].is_called_for(sim)) continue;
+        stages[i].run(sim);
+        times.lap(first + i);
+    }
+}
+
+}  // namespace carom
