@@ -1,7 +1,5 @@
 #include "scene/choose_solver.hpp"
 
-#include <algorithm>
-
 #include "scene/event_limits.hpp"
 #include "scene/mass.hpp"
 
@@ -16,50 +14,18 @@ bool is_rough(const Material& material) {
     return material.friction > 0 || material.rolling_resistance > 0;
 }
 
-std::string_view roughness_of(const Material& material) {
-    return material.friction > 0 ? "friction" : "rolling resistance";
+bool is_dull(const Body& body) {
+    return body.type == BodyType::dynamic_body && body.material.restitution < kBouncy;
 }
 
-/// What in the scene is rough, in words; empty if nothing is.
-std::string what_is_rough(const Scene& scene) {
-    if (scene.walls && is_rough(scene.walls->material))
-        return join("the walls have ", roughness_of(scene.walls->material));
-    const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(),
-                                   [](const Body& b) { return is_rough(b.material); });
-    if (body == scene.bodies.end()) return {};
-    return join("body ", body - scene.bodies.begin(), " has ", roughness_of(body->material));
+std::string_view roughness_of(const Material& material) {
+    return material.friction > 0 ? "friction" : "rolling resistance";
 }
 
 std::string_view name_of(const Shape& shape) {
     return std::holds_alternative<Segment>(shape) ? "segment"
            : std::holds_alternative<Chain>(shape) ? "chain"
                                                   : "disc";
-}
-
-SolverChoice choose(const Scene& scene) {
-    const auto lines = std::find_if(scene.bodies.begin(), scene.bodies.end(),
-                                    [](const Body& body) { return !is_disc(body.shape); });
-    if (lines != scene.bodies.end())
-        return {Solver::soft, join("body ", lines - scene.bodies.begin(), " is a ", name_of(lines->shape))};
-    if (const std::string rough = what_is_rough(scene); !rough.empty()) return {Solver::soft, rough};
-    if (scene.effects.friction == true) return {Solver::soft, "friction is forced on"};
-    if (scene.effects.rolling_resistance == true) return {Solver::soft, "rolling resistance is forced on"};
-    if (scene.effects.sleep == true) return {Solver::soft, "sleeping is asked for"};
-    if (scene.bodies.size() <= 1 && !scene.walls)
-        return {Solver::impulse, "there is nothing to touch: free flight is exact"};
-    if (scene.gravity == Vec2{})
-        return {Solver::impulse,
-                "nothing has friction and without gravity nothing rests: each impact is "
-                "resolved at its own time"};
-    const auto dull = std::find_if(scene.bodies.begin(), scene.bodies.end(), [](const Body& b) {
-        return b.type == BodyType::dynamic_body && b.material.restitution < kBouncy;
-    });
-    if (dull == scene.bodies.end())
-        return {Solver::impulse, join("nothing has friction and every body bounces (restitution >= ", kBouncy,
-                                      "): each impact is resolved at its own time")};
-    return {Solver::soft,
-            join("gravity brings bodies to rest on each other: body ", dull - scene.bodies.begin(),
-                 " has restitution ", dull->material.restitution, ", below ", kBouncy)};
 }
 
 std::optional<Problem> find_roughness_problem(const Item& item, const Material& material, Solver solver) {
@@ -77,8 +43,55 @@ std::optional<Problem> find_roughness_problem(const Item& item, const Material& 
 
 }  // namespace
 
+bool SolverFacts::would_change(const Body& body) const {
+    return (lines.empty() && !is_disc(body.shape)) || (rough.empty() && is_rough(body.material)) ||
+           (dull.empty() && is_dull(body));
+}
+
+void SolverFacts::add(const Body& body, std::string_view label) {
+    ++bodies;
+    if (lines.empty() && !is_disc(body.shape)) lines = join(label, " is a ", name_of(body.shape));
+    if (rough.empty() && is_rough(body.material)) rough = join(label, " has ", roughness_of(body.material));
+    if (dull.empty() && is_dull(body))
+        dull = join(label, " has restitution ", body.material.restitution, ", below ", kBouncy);
+}
+
+SolverFacts facts_of(const Scene& scene) {
+    SolverFacts facts;
+    facts.has_walls = scene.walls.has_value();
+    facts.has_gravity = scene.gravity != Vec2{};
+    if (scene.walls && is_rough(scene.walls->material))
+        facts.rough = join("the walls have ", roughness_of(scene.walls->material));
+    if (scene.effects.friction == true)
+        facts.forced = "friction is forced on";
+    else if (scene.effects.rolling_resistance == true)
+        facts.forced = "rolling resistance is forced on";
+    else if (scene.effects.sleep == true)
+        facts.forced = "sleeping is asked for";
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+        const bool is_news = facts.would_change(scene.bodies[i]);
+        facts.add(scene.bodies[i], is_news ? join("body ", i) : "");
+    }
+    return facts;
+}
+
+SolverChoice choose_solver(const SolverFacts& facts) {
+    for (const std::string* reason : {&facts.lines, &facts.rough, &facts.forced})
+        if (!reason->empty()) return {Solver::soft, *reason};
+    if (facts.bodies <= 1 && !facts.has_walls)
+        return {Solver::impulse, "there is nothing to touch: free flight is exact"};
+    if (!facts.has_gravity)
+        return {Solver::impulse,
+                "nothing has friction and without gravity nothing rests: each impact is "
+                "resolved at its own time"};
+    if (facts.dull.empty())
+        return {Solver::impulse, join("nothing has friction and every body bounces (restitution >= ", kBouncy,
+                                      "): each impact is resolved at its own time")};
+    return {Solver::soft, join("gravity brings bodies to rest on each other: ", facts.dull)};
+}
+
 SolverChoice choose_solver(const Scene& scene, Solver asked_for) {
-    if (asked_for == Solver::automatic) return choose(scene);
+    if (asked_for == Solver::automatic) return choose_solver(facts_of(scene));
     return {asked_for, "asked for"};
 }
 

@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace carom {
 
@@ -14,6 +15,25 @@ struct SolverChoice {
     Solver solver = Solver::impulse;
     std::string reason;
 };
+
+/// What bears on the solver that suits bodies: why something calls for one, in words; empty if nothing does.
+struct SolverFacts {
+    std::size_t bodies = 0;
+    bool has_walls = false, has_gravity = false;
+    std::string lines;   ///< of a segment or chain
+    std::string rough;   ///< of what has friction or rolling resistance
+    std::string forced;  ///< of an effect that was asked for
+    std::string dull;    ///< of a body that hardly bounces
+
+    /// Whether a body brings a reason that there is not yet.
+    bool would_change(const Body& body) const;
+    /// @param label  how reasons name the body, if it brings one
+    void add(const Body& body, std::string_view label);
+};
+SolverFacts facts_of(const Scene& scene);
+
+/// The solver that suits them. It grows from `impulse` to `soft` as bodies are added, never back.
+SolverChoice choose_solver(const SolverFacts& facts);
 
 /// The solver asked for; for `automatic` the one that suits the scene. Cost: O(bodies) then.
 SolverChoice choose_solver(const Scene& scene, Solver asked_for);

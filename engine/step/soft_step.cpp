@@ -137,13 +137,13 @@ class SoftStep final : public SoftSimulation<Real> {
             this->substep_count = std::max(this->substeps_for_drag(dt), substeps_against_gravity(dt));
             this->substep_dt = dt / this->substep_count;
             Sim& sim = *this;
-            StageTimes& times = this->times;
-            times.start();
-            run_stages(kBegin, 0, sim, times);
+            StageTimes& watch = this->times;
+            watch.start();
+            run_stages(kBegin, 0, sim, watch);
             for (this->substep = 0; this->substep < this->substep_count; ++this->substep)
-                run_stages(kSubstep, kFirstOfSubstep, sim, times);
-            run_stages(kEnd, kFirstOfEnd, sim, times);
-            times.finish();
+                run_stages(kSubstep, kFirstOfSubstep, sim, watch);
+            run_stages(kEnd, kFirstOfEnd, sim, watch);
+            watch.finish();
         }
         this->world.time += dt;
         ++this->step_count;

@@ -1,5 +1,6 @@
 #include <carom/world.hpp>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <string>
@@ -75,6 +76,10 @@ struct BasicWorld<Real>::Implementation {
     CalledEffects called;
     EffectOverrides overrides;  // of the scene and of the options
     double angular_drag = 0;    // 1/s, of the scene; in force once something turns
+    Solver asked_for = Solver::automatic;
+    SolverFacts facts;            // of all bodies there ever were
+    std::optional<int> substeps;  // that were asked for
+    Profile of_earlier_solvers;   // what they counted
 
     Simulation<Real>& sim() { return *simulation; }
     const Simulation<Real>& sim() const { return *simulation; }
@@ -102,15 +107,65 @@ struct BasicWorld<Real>::Implementation {
             if (report.name == effect) report.on = true, report.reason = reason;
     }
 
+    /// The bodies as a scene, as far as solvers ask.
+    Scene as_scene() const {
+        const WorldState<Real>& state = simulation->world;
+        const Bodies<Real>& b = state.bodies;
+        Scene scene;
+        scene.gravity = state.gravity, scene.drag = state.drag, scene.walls = state.walls;
+        scene.effects = overrides;
+        if (state.effects.sleeping) scene.effects.sleep = true;
+        for (std::size_t row = 0; row < b.rows(); ++row) {
+            Body body;
+            if (b.flags_of(row) & kEdges) body.shape = Segment{};
+            if (b.is_immovable(row)) body.type = BodyType::static_body;
+            body.material = {.friction = b.friction[row],
+                             .restitution = b.restitution[row],
+                             .rolling_resistance = b.rolling_resistance[row]};
+            scene.bodies.push_back(std::move(body));
+        }
+        return scene;
+    }
+
+    /// Goes on with another solver: the state stays, what was derived from it is made anew.
+    void change_solver(Solver solver, const std::string& reason) {
+        Simulation<Real>& old = sim();
+        called.solver_reason = reason;
+        if (solver == old.solver()) return;
+        old.wake_all();  // the others know no sleep
+        add_counts(old, of_earlier_solvers);
+        std::unique_ptr<Simulation<Real>> next = make_simulation<Real>(solver);
+        next->kernels = old.kernels, next->executor = std::move(old.executor);
+        next->step_count = old.step_count;
+        next->substeps_asked_for = substeps.value_or(default_substeps(solver));
+        next->world = std::move(old.world);
+        simulation = std::move(next);
+    }
+
+    /// Adds what a simulation has counted to a report.
+    static void add_counts(const Simulation<Real>& sim, Profile& profile) {
+        sim.report_stages([&](const StageState& stage) {
+            if (stage.time.calls == 0) return;
+            const auto known = std::find_if(profile.stages.begin(), profile.stages.end(),
+                                            [&](const StageTime& time) { return time.name == stage.name; });
+            StageTime& time = known != profile.stages.end()
+                                  ? *known
+                                  : profile.stages.emplace_back(StageTime{stage.name, 0, 0});
+            time.calls += stage.time.calls, time.seconds += stage.time.seconds;
+        });
+        profile.rebuilds += sim.candidates.rebuild_count();
+        sim.report(profile);
+    }
+
     /// Turns on what a body to be added calls for and no other body has.
-    void call_effects_of(const Body& body) {
+    void call_effects_of(const Body& body, Solver solver) {
         Effects& on = world().effects;
         const bool bounces = body.material.restitution > 0 && !on.restitution;
         const bool resists = body.material.rolling_resistance > 0 && !on.rolling_resistance;
         const bool rubs = (body.material.friction > 0 || resists) && !on.friction;
         if (!bounces && !resists && !rubs) return;
         Scene alone;  // what is forced off cannot be called for
-        alone.accuracy.solver = sim().solver();
+        alone.accuracy.solver = solver;
         alone.add(body);
         validate_effects(alone, overrides, "World::add");
         const auto turn_on = [&](bool is_called, bool& effect, std::string_view name, const char* reason) {
@@ -192,8 +247,10 @@ BasicWorld<Real>::BasicWorld(const Scene& scene, const WorldOptions& options) {
     overrides.rolling_resistance =
         either(options.effects.rolling_resistance, scene.effects.rolling_resistance);
     implementation_->angular_drag = scene.drag.angular;
-    implementation_->called.solver_reason =
-        choose_solver(scene, options.solver.value_or(scene.accuracy.solver)).reason;
+    implementation_->asked_for = options.solver.value_or(scene.accuracy.solver);
+    implementation_->substeps = accuracy.substeps;
+    implementation_->called.solver_reason = choose_solver(scene, implementation_->asked_for).reason;
+    implementation_->facts = facts_of(scene);
 
     WorldState<Real>& world = sim.world;
     world.effects = implementation_->called.effects;
@@ -264,13 +321,19 @@ BodyState BasicWorld<Real>::state(BodyId body) const {
 template <class Real>
 BodyId BasicWorld<Real>::add(const Body& body) {
     validate_body(body, "World::add");
-    raise_if("World::add",
-             find_solver_problem({"the body has", "", -1, ""}, body, implementation_->sim().solver()));
+    SolverFacts facts = implementation_->facts;
+    facts.add(body, "a body that was added");
+    SolverChoice choice{implementation_->sim().solver(), implementation_->called.solver_reason};
+    if (implementation_->asked_for == Solver::automatic && choice.solver != Solver::soft)
+        choice = choose_solver(facts);
+    raise_if("World::add", find_solver_problem({"the body has", "", -1, ""}, body, choice.solver));
     if (implementation_->world().walls) validate_inside(body, *implementation_->world().walls, "World::add");
     if (body_count() >= kLargestBodyCount)
         throw Error(ErrorCode::too_large, "World::add: the world has " + std::to_string(body_count()) +
                                               " bodies, which is the limit. Remove some first.");
-    implementation_->call_effects_of(body);
+    implementation_->call_effects_of(body, choice.solver);
+    implementation_->facts = std::move(facts);
+    implementation_->change_solver(choice.solver, choice.reason);
     if (body.angular_velocity != 0 || body.angle != 0) implementation_->turn_rotation_on();
     if (is_disc(body.shape))
         implementation_->sim().wake_at(body.position, radius_of(body.shape));
@@ -281,6 +344,24 @@ BodyId BasicWorld<Real>::add(const Body& body) {
     implementation_->undo_if_refused("World::add",
                                      [&] { implementation_->world().remove(body_count() - 1); });
     return id;
+}
+
+template <class Real>
+void BasicWorld<Real>::set_solver(Solver solver) {
+    Simulation<Real>& sim = implementation_->sim();
+    if (solver == Solver::pairwise || solver == Solver::rigid || solver == Solver::rattle)
+        throw Error(ErrorCode::inconsistent,
+                    "World::set_solver: solver \"" + std::string(name_of(solver)) +
+                        "\" steps no World. Use \"auto\", \"impulse\", \"soft\" or \"event\".");
+    const Solver before = sim.solver();
+    const std::string reason_before = implementation_->called.solver_reason;
+    SolverChoice choice{solver, "asked for"};
+    if (solver == Solver::automatic) choice = choose_solver(implementation_->facts);
+    raise_if("World::set_solver", find_solver_problem(implementation_->as_scene(), choice.solver));
+    implementation_->change_solver(choice.solver, choice.reason);
+    implementation_->undo_if_refused("World::set_solver",
+                                     [&] { implementation_->change_solver(before, reason_before); });
+    implementation_->asked_for = solver;
 }
 
 template <class Real>
@@ -363,15 +444,10 @@ Ledger BasicWorld<Real>::ledger() const {
 template <class Real>
 Profile BasicWorld<Real>::profile() const {
     const Simulation<Real>& sim = implementation_->sim();
-    Profile profile;
-    sim.report_stages([&](const StageState& stage) {
-        if (stage.time.calls > 0)
-            profile.stages.push_back({stage.name, stage.time.calls, stage.time.seconds});
-    });
+    Profile profile = implementation_->of_earlier_solvers;
+    Implementation::add_counts(sim, profile);
     profile.steps = sim.step_count;
-    profile.rebuilds = sim.candidates.rebuild_count();
     profile.candidate_pairs = static_cast<std::int64_t>(sim.candidates.pair_count());
-    sim.report(profile);
     profile.asleep = static_cast<std::int64_t>(sim.world.bodies.asleep);
     profile.quarantined = sim.world.quarantined_count;
     profile.bytes = sim.bytes();

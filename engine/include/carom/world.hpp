@@ -97,6 +97,13 @@ class BasicWorld {
     void set_velocity(BodyId body, Vec2 velocity);
     void set_angular_velocity(BodyId body, double angular_velocity);
 
+    /// Goes on with another solver from the next step on. Positions, velocities and energy stay; forces of
+    /// contacts are found anew; bodies that sleep wake. `plan()` says what runs. A world of `automatic` does
+    /// so by itself when a body is added that calls for another solver.
+    /// @throws Error (inconsistent) if that solver cannot do what the world has, or steps no World; the world
+    /// is then unchanged, but for bodies that woke.
+    void set_solver(Solver solver);
+
     double time() const noexcept;  ///< s, sum of all steps
     /// Energy and momentum now; by cause if the ledger effect is on. Cost: O(bodies).
     Ledger ledger() const;
