@@ -11,7 +11,7 @@
 #include "measure/text.hpp"
 #include "scenes/scenes.hpp"
 
-// The hard cases B6, B7 and B16 of tests/hard_cases, from their start to their end, beside a pile of as many
+// B6, B7 and B16 of docs/hard-cases.md, from their start to their end, beside a pile of as many
 // bodies of nearly one size that has come to rest:
 //     crowds/<case>/<float|double>
 // `mean` and `worst` are times of a step over the mean step of that pile; for B6, rain and heap, over the

@@ -1,4 +1,4 @@
-// B28 of the design notes: the same scene gives the same bits on rerun, for every instruction set and any
+// B28 of docs/hard-cases.md: the same scene gives the same bits on rerun, for every instruction set and any
 // number of threads, in every build. The hashes below hold for gcc and clang, release and debug; those in
 // tests/embed/main.cpp are also checked with gcc and no optimisation. To print new ones after a change that
 // is meant to change them:

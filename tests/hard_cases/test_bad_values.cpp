@@ -1,6 +1,6 @@
-// B21 of the design notes, at the door of a running world: what is out of range is refused with a message
-// that says where and what, and the world goes on as if nothing had been asked. (What scenes refuse:
-// unit/scene.)
+// B21 and B19 of docs/hard-cases.md, at the door of a running world: what is out of range, a restitution
+// above 1 among it, is refused with a message that says where and what, and the world goes on as if nothing
+// had been asked. (What scenes refuse: unit/scene.)
 #include "support/scenes.hpp"
 
 #include <doctest/doctest.h>

@@ -1,4 +1,4 @@
-// B16 of the design notes: crowds.
+// B16 of docs/hard-cases.md: crowds.
 #include "support/effort.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"

@@ -1,4 +1,4 @@
-// B9 of the design notes, for discs and edges: discs of 1 cm at 1000 m/s, 1,600 radii a step.
+// B9 of docs/hard-cases.md, for discs and edges: discs of 1 cm at 1000 m/s, 1,600 radii a step.
 #include "support/effort.hpp"
 
 #include <carom/carom.hpp>

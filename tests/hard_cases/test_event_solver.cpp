@@ -1,4 +1,4 @@
-// B18 and B26 of the design notes with solver `event`, overlapping starts, and what it has to refuse.
+// B18 and B26 of docs/hard-cases.md with solver `event`, overlapping starts, and what it has to refuse.
 #include "support/report.hpp"
 #include "support/scenes.hpp"
 

@@ -1,4 +1,4 @@
-// B4 of the design notes, with discs: a heavy disc on a light one.
+// B4 of docs/hard-cases.md, with discs: a heavy disc on a light one.
 #include "support/passive_run.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"

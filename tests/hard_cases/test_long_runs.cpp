@@ -1,4 +1,4 @@
-// B22 of the design notes: a million steps.
+// B22 of docs/hard-cases.md: a million steps.
 #include "support/effort.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"

@@ -1,5 +1,5 @@
-// B7 and B8 of the design notes: bodies that start inside each other come apart, no faster than the cap, and
-// their velocities learn nothing of it. What it costs against gravity is booked as correction.
+// B7 and B8 of docs/hard-cases.md: bodies that start inside each other come apart, no faster than the cap,
+// and their velocities learn nothing of it. What it costs against gravity is booked as correction.
 #include "support/effort.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"

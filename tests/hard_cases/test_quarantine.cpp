@@ -1,4 +1,4 @@
-// B21 of the design notes, what no check at the door can see: a body whose state leaves the limits while it
+// B21 of docs/hard-cases.md, what no check at the door can see: a body whose state leaves the limits while it
 // runs is disabled where it was, is reported, and its neighbours never know.
 #include "support/scenes.hpp"
 

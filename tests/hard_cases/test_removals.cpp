@@ -1,4 +1,4 @@
-// B24 of the design notes: what is left when a weight or a support is taken out of a pile that is awake.
+// B24 of docs/hard-cases.md: what is left when a weight or a support is taken out of a pile that is awake.
 #include "support/effort.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"

@@ -1,4 +1,4 @@
-// B17 of the design notes and its surroundings: discs at rest under gravity stay at rest, whatever their
+// B17 of docs/hard-cases.md and its surroundings: discs at rest under gravity stay at rest, whatever their
 // restitution.
 #include "support/effort.hpp"
 #include "support/report.hpp"

@@ -1,4 +1,4 @@
-// B6 and B20 of the design notes: very large beside very small.
+// B6 and B20 of docs/hard-cases.md: very large beside very small.
 #include "support/effort.hpp"
 #include "support/passive_run.hpp"
 #include "support/report.hpp"

@@ -1,4 +1,4 @@
-// Sleeping by islands, and B24 of the design notes: bodies that come and go while part of a pile sleeps.
+// Sleeping by islands, and B24 of docs/hard-cases.md: bodies that come and go while part of a pile sleeps.
 #include "support/effort.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"

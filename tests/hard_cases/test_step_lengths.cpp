@@ -1,4 +1,4 @@
-// B10 of the design notes: no step, tiny steps, one huge step, steps of changing length.
+// B10 of docs/hard-cases.md: no step, tiny steps, one huge step, steps of changing length.
 #include "support/report.hpp"
 #include "support/scenes.hpp"
 #include "support/trial.hpp"

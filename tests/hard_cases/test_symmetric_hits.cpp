@@ -1,5 +1,5 @@
-// B18 of the design notes: elastic hits at one instant. Momentum to 1e-14, energy to 1e-3 (it is far better),
-// and the result has the symmetry of the scene.
+// B18 of docs/hard-cases.md with solver `impulse`: elastic hits at one instant. Momentum to 1e-14, energy to
+// 1e-12, and the result has the symmetry of the scene.
 #include "support/report.hpp"
 #include "support/scenes.hpp"
 #include "support/trial.hpp"

@@ -1,7 +1,7 @@
-// B27 of the design notes: nothing in the engine prefers a side, a direction or an order of the bodies, nor,
-// without losses, a direction of time. A gas is chaotic: an error e grows to e exp(L t), so these are only
-// comparable while round-off is still small. Here the discs meet twice each within the 100 steps; how far
-// errors have grown by then is measured, and checked, on the gas itself.
+// B27 of docs/hard-cases.md: nothing in the engine prefers a side, a direction or an order of the bodies,
+// nor, without losses, a direction of time. A gas is chaotic: an error e grows to e exp(L t), so these are
+// only comparable while round-off is still small. Here the discs meet twice each within the 100 steps; how
+// far errors have grown by then is measured, and checked, on the gas itself.
 #include "support/report.hpp"
 #include "support/scenes.hpp"
 #include "support/trial.hpp"

@@ -1,4 +1,4 @@
-// B23 of the design notes: worlds with nothing to do work, and do nothing.
+// B23 of docs/hard-cases.md: worlds with nothing to do work, and do nothing.
 #include "support/scenes.hpp"
 #include "support/trial.hpp"
 

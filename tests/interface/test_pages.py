@@ -89,6 +89,74 @@ class NamesTest(unittest.TestCase):
             self.assertTrue(name in known, f"{page}: {name}")
 
 
+CODE = re.compile(r"\b[AB]\d{1,2}\b")
+LISTS_OF_CASES = ("hard-cases.md", "exact-cases.md")
+
+
+def names_of_tests(source):
+    """Of a C++ text, with the pieces of a name joined."""
+    found = re.findall(r'TEST_CASE(?:_TEMPLATE)?\(\s*((?:"(?:[^"\\]|\\.)*"\s*)+)', source)
+    return ["".join(re.findall(r'"((?:[^"\\]|\\.)*)"', pieces)) for pieces in found]
+
+
+class CasesTest(unittest.TestCase):
+    """docs/hard-cases.md and docs/exact-cases.md against tests, benchmarks and `carom accuracy`, both ways."""
+
+    @classmethod
+    def setUpClass(cls):
+        rows = [(page, row) for page in LISTS_OF_CASES
+                for row in re.findall(r"^\| [AB]\d.*\|$", text_of("docs/" + page), re.MULTILINE)]
+        cls.rows = {row.split(" | ")[0].strip("| "): (page, row) for page, row in rows}
+        cls.repeated = len(rows) - len(cls.rows)
+        files = [path for folder in ("engine", "tests", "bench", "tools") for path in sorted((SOURCE / folder).rglob("*"))
+                 if path.is_file() and path.suffix in ("", ".cpp", ".hpp", ".js", ".py")]
+        cls.codes = {path.relative_to(SOURCE).as_posix(): set(CODE.findall(path.read_text())) for path in files}
+        cls.codes["tests/interface/test_command_line.py"].discard("A" "99")  # which it asks for as there is none
+
+    def links(self, code):
+        """(file from the top of the project, names in quotes behind it) of a row."""
+        page, row = self.rows[code]
+        for piece in re.split(r"(?=\[[^\]]*\]\()", row)[1:]:
+            target = (DOCS / page).parent / LINK.search(piece).group(1)
+            yield os.path.relpath(target.resolve(), SOURCE.resolve()), re.findall(r'"([^"]+)"', piece)
+
+    def test_every_code_that_is_named_has_one_row(self):
+        self.assertEqual(self.repeated, 0)
+        self.assertGreater(sum(map(bool, self.codes.values())), 30)
+        for file, codes in self.codes.items():
+            self.assertLessEqual(codes, self.rows.keys(), file)
+        for page in pages():
+            self.assertLessEqual(set(CODE.findall(text_of("docs/" + page))), self.rows.keys(), page)
+
+    def test_rows_name_files_that_name_the_code_and_tests_that_are_in_them(self):
+        for code in self.rows:
+            for file, names in self.links(code):
+                if file.startswith("docs/"):
+                    continue
+                self.assertIn(code, self.codes.get(file, ()), f"{code}: {file}")
+                tests = names_of_tests(text_of(file)) if names else []
+                for name in names:
+                    self.assertTrue(any(test.endswith(name) for test in tests), f"{code}: {file}: {name}")
+
+    def test_what_has_no_test_is_said_to_have_none_and_nothing_else_is(self):
+        for code, (_, row) in self.rows.items():
+            tested = {file for file, codes in self.codes.items() if code in codes and file.startswith("tests/")}
+            listed = {file for file, _ in self.links(code) if file.startswith("tests/")}
+            is_tested = any(path.endswith(".cpp") for path in tested)
+            self.assertEqual(is_tested, bool(listed), f"{code}: {tested or 'no test'}")
+            cell = re.search(r"\| (not (?:built|tested) yet[^|]*|`carom accuracy` alone) \|", row)
+            self.assertEqual(bool(cell), not is_tested, row)
+
+    def test_the_row_of_an_exact_case_has_the_names_it_has_in_carom_accuracy(self):
+        measured = set()
+        for file in self.codes:
+            if file.startswith("tools/accuracy/cases/"):
+                measured |= set(re.findall(r'"(A\d+(?:-\w+)?)"', text_of(file)))
+        self.assertGreater(len(measured), 15)
+        shown = [name for _, row in self.rows.values() for name in re.findall(r"`(A\d+(?:-\w+)?)`", row.split(" | ")[-1])]
+        self.assertEqual(sorted(shown), sorted(measured))
+
+
 class LayersTest(unittest.TestCase):
     """The table of docs/architecture.md against tools/checks/check_layers.py, both ways."""
 

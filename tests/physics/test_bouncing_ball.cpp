@@ -1,5 +1,5 @@
-// A4 and A5 of the design notes: balls dropped onto a floor. Until a ball comes to rest every bounce happens
-// at its exact time, whatever the step; it comes to rest about a step off the exact time.
+// A4 and A5 of docs/exact-cases.md: balls dropped onto a floor. Until a ball comes to rest every bounce
+// happens at its exact time, whatever the step; it comes to rest about a step off the exact time.
 #include "support/convergence.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"

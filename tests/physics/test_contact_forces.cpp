@@ -1,4 +1,5 @@
-// What contacts of solver `soft` carry, and how well they are solved: read inside the solver.
+// What contacts of solver `soft` carry (A26 of docs/exact-cases.md), and how well they are solved: read
+// inside the solver.
 #include "isa/select_isa.hpp"
 #include "scene/call_effects.hpp"
 #include "shapes/walls.hpp"

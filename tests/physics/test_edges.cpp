@@ -1,5 +1,5 @@
-// Segments and chains under solver `soft`: A10 on a line that is tilted itself, B29, conveyors, joints of
-// chains.
+// Segments and chains under solver `soft`: A10 of docs/exact-cases.md on a line that is tilted itself, B29 of
+// docs/hard-cases.md, conveyors, joints of chains.
 #include "support/report.hpp"
 #include "support/scenes.hpp"
 #include "support/trial.hpp"

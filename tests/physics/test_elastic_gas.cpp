@@ -1,4 +1,4 @@
-// A19 of the design notes: an elastic gas keeps its energy, the walls account for its momentum, and its
+// A19 of docs/exact-cases.md: an elastic gas keeps its energy, the walls account for its momentum, and its
 // speeds take Maxwell's distribution.
 #include "support/books.hpp"
 #include "support/effort.hpp"

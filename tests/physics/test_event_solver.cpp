@@ -1,5 +1,5 @@
-// Solver `event` through World and World64: A13 to A19 and A21 of the design notes to round-off, reversal of
-// time.
+// Solver `event` through World and World64: A13, A14, A16, A17, A18, A19 and A21 of docs/exact-cases.md to
+// round-off, reversal of time.
 #include "support/effort.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"

@@ -1,5 +1,6 @@
-// A1 and A2 of the design notes: flight under gravity and linear drag. The engine solves it exactly, so there
-// is no order of convergence to observe: the error must be round-off at every step length.
+// A1, A2 and, for 600 steps, A36 of docs/exact-cases.md: flight under gravity and linear drag, and free spin.
+// The engine solves it exactly, so there is no order of convergence to observe: the error must be round-off
+// at every step length.
 #include "support/scenes.hpp"
 #include "support/trial.hpp"
 

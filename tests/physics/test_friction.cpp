@@ -1,5 +1,5 @@
-// A10, A11, A12 and A13 of the design notes, for discs under solver `soft`: rolling, sliding, and impacts
-// with friction. A slope is a level floor under tilted gravity.
+// A9, A10, A11, A12 and A13 of docs/exact-cases.md, for discs under solver `soft`: sticking, rolling,
+// sliding, and impacts with friction. A slope is a level floor under tilted gravity.
 #include "support/report.hpp"
 #include "support/scenes.hpp"
 #include "support/trial.hpp"

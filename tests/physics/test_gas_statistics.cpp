@@ -1,4 +1,4 @@
-// A20 of the design notes: pressure and collision rate of hard discs at steps of 1/60 s. These are what an
+// A20 of docs/exact-cases.md: pressure and collision rate of hard discs at steps of 1/60 s. These are what an
 // engine gets wrong that lets discs overlap before it reacts, while its energy looks perfect.
 //
 // Pressure: Henderson's equation of state (Henderson 1975), good to 0.2 % below a packing fraction of 0.3.

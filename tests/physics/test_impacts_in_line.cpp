@@ -1,4 +1,4 @@
-// A15 to A18 of the design notes: impacts along a line, with answers in closed form.
+// A15, A16, A17 and A18 of docs/exact-cases.md: impacts along a line, with answers in closed form.
 #include "support/event_simulation.hpp"
 #include "support/scenes.hpp"
 #include "support/trial.hpp"

@@ -1,4 +1,4 @@
-// A13 and A14 of the design notes without friction: two discs meet off-centre. Compared with the impulse
+// A13 and A14 of docs/exact-cases.md without friction: two discs meet off-centre. Compared with the impulse
 // formula, worked out here in long double from the state that the world holds.
 #include "support/report.hpp"
 #include "support/scenes.hpp"

@@ -1,4 +1,4 @@
-// A19 of the design notes with rough discs. Coulomb friction takes energy in every impact, so there is no
+// A19 of docs/exact-cases.md with rough discs. Coulomb friction takes energy in every impact, so there is no
 // equilibrium of translation and rotation; what is known exactly is what the impacts of a gas that does not
 // turn yet do, and what solver `event` makes of them later.
 #include "support/effort.hpp"
