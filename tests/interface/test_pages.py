@@ -63,10 +63,24 @@ class ConstantsTest(unittest.TestCase):
             self.assertRegex(sources, rf"\b{name}\b", name)
 
 
+class LinksTest(unittest.TestCase):
+    def test_links_of_pages_lead_to_files_and_headings_that_are_there(self):
+        for page in ("README.md", "docs/README.md", "docs/decisions/README.md", *("docs/" + page for page in pages())):
+            for target, heading in re.findall(r"\]\(([^)#\s]*)(?:#([^)]*))?\)", text_of(page)):
+                if target.startswith("http"):
+                    continue
+                file = (SOURCE / page).parent / target if target else SOURCE / page
+                self.assertTrue(file.exists(), f"{page}: {target}")
+                if heading:
+                    headings = re.findall(r"^#+ (.*)$", file.read_text(), re.MULTILINE)
+                    anchors = [re.sub(r"[^\w\- ]", "", text.lower()).replace(" ", "-") for text in headings]
+                    self.assertIn(heading, anchors, f"{page}: {target}")
+
+
 class NamesTest(unittest.TestCase):
     """What pages name exists, but for what the worked example adds."""
 
-    PAGES = ("how-a-step-works.md", "architecture.md", "add-an-effect.md")
+    PAGES = ("how-a-step-works.md", "life-of-a-contact.md", "architecture.md", "add-an-effect.md")
 
     def names(self, pattern):
         for page in self.PAGES:
