@@ -96,7 +96,8 @@ class Candidates {
         return std::sqrt(x * x + y * y) + static_cast<double>(reach_[row] - first_reach_[row]);
     }
     /// How far places, built_x and built_y, may go with the mean flow of the bodies before the pairs are void
-    /// [m]. Who lists what a body reaches besides other bodies has to look farther by that.
+    /// [m]. Lists of what a body reaches besides other bodies, as walls and edges, have to look farther by
+    /// that.
     double largest_drift() const { return rule_ == MarginRule::own ? kLargestDrift * smallest_radius_ : 0; }
 
     /// Rule `own`: moves the places with the mean flow. To be called first in every step of length dt [s].
@@ -129,12 +130,14 @@ class Candidates {
     std::size_t bytes() const;
 
   private:
-    static constexpr double kRoundingUp = 1 + 1e-6;  // reach and place are rounded to Real
-    static constexpr double kLargestDrift = 6;       // of the smallest radius
+    static constexpr double kRoundingUp =
+        1 + 1e-6;                               // factor on a reach: it and the place are rounded to Real
+    static constexpr double kLargestDrift = 6;  // smallest radii that a place may drift by
+    /// Rule `own`: pairs are found anew when one body in this many has got a new margin.
     static constexpr std::size_t kBodiesPerRenewal = 8;
-    static constexpr double kLargestOwnMargin = 1;  // of the largest radius, unless 1.25 steps are more
+    /// A body's own margin is at most this many of the largest radius, unless 1.25 steps of it are more.
+    static constexpr double kLargestOwnMargin = 1;
 
-    /// Rule own: pairs are found anew when one body in kBodiesPerRenewal has got a new margin.
     bool may_renew(std::size_t strays, std::size_t count) const {
         return (renewed_count_ + strays) * kBodiesPerRenewal <= count;
     }
@@ -168,20 +171,21 @@ class Candidates {
     ChunkedList stray_rows_;
     double overshoot_ = 0;
     Column<Real> reach_;
-    // Rule `own`, since the pairs were found anew.
+    // The columns of rule `own` hold what has happened since the pairs were found anew.
     Column<Real> own_x_, own_y_, first_reach_;  // m
-    Column<Real> drift_x_, drift_y_;            // m, that places have gone before they followed this flow
+    Column<Real> drift_x_, drift_y_;            // m, way of a place up to where it began to follow this flow
     Column<Real> flow_x_, flow_y_, rate_;       // m/s, velocity of a place; 1/s, share of reach it loses
     std::vector<Pair> new_pairs_, added_pairs_, spare_pairs_;
     std::size_t renewed_count_ = 0;
-    double farthest_ = 0;       // m, that a renewed margin reaches beyond the first one, drift aside
-    double steepness_ = 0;      // no unit: what drifts differ by, as a share of the distance
-    double drift_left_ = 0;     // m
-    double largest_reach_ = 0;  // m, of those that are renewed, and of all when the flow was followed last
+    double farthest_ = 0;    // m, most that a renewed margin reaches beyond the first one, drift aside
+    double steepness_ = 0;   // no unit: difference of the drifts of two places over their distance, at most
+    double drift_left_ = 0;  // m, way that places may still drift before the pairs are void
+    double largest_reach_ = 0;  // m, of renewed margins, and of all when the flow was followed last
     MeanFlow flow_;
-    double since_flow_ = 0;  // s, that places have followed it
+    double since_flow_ = 0;  // s, time for which places have followed this flow
     bool may_flow_ = false, flows_ = false, flow_is_local_ = true;
-    int failed_follows_ = 0, follows_left_out_ = 0;  // one after the other
+    // Attempts to follow the flow that failed in a row, and occasions left out since the last attempt.
+    int failed_follows_ = 0, follows_left_out_ = 0;
     Column<std::int32_t> near_;
     double largest_radius_ = 0, smallest_radius_ = 0;
     bool is_valid_ = false;

@@ -10,17 +10,18 @@ namespace {
 // Up to so many cells a body the grid covers the occupied box as it is; docs/decisions/0001-broadphase.md.
 constexpr double kBoxCellsPerBody = 4;
 constexpr double kFewCells = 64;  // never worth folding
-// Else the plane is folded onto so many cells a body.
+// A plane with too many cells for that is folded onto this many cells a body.
 constexpr double kFoldedCellsPerBody = 2;
 constexpr double kMostFoldedCells = (1 << 26) - 1;  // keeps the numbering's products exact in double
-// Where the bodies form no one cluster, rows of the folded plane start that fraction of all cells apart. With
-// the golden section no short vector leads from a cell to one of the same number: bodies spread over the
-// cells.
+// Rows of the folded plane start this fraction of all cells apart if the bodies form more than one cluster.
+// With the golden section no short vector leads from a cell to one of the same number: bodies spread over
+// the cells.
 constexpr double kGoldenSection = 0.38196601125010515;
 
 constexpr std::size_t kSamples = 256;
 
-/// Whole cell coordinate of the lower and upper end; one cell if there is no number between them.
+/// Whole cell coordinates of the lower and the upper end of the bodies; both are one cell's if no number
+/// lies between.
 struct Extent {
     double low, high;
 };

@@ -11,7 +11,7 @@
 
 namespace carom {
 
-/// Where a body is at the start and at the end of a step.
+/// Place and turn of a body at the start and at the end of a step.
 struct EdgePose {
     Vec2 position, end_position;  // m
     Rotation turn, end_turn;
@@ -53,7 +53,7 @@ class EdgeCandidates {
     /// Adds what discs reach with new margins that they got in this step. Cost: O(strays), and O(edges) for
     /// each that has got far.
     void add_strays(const WorldState<Real>& world, const Candidates<Real>& candidates);
-    /// What the last call of add_strays added.
+    /// The pairs that the last call of add_strays added.
     std::span<const EdgePair> new_pairs() const { return new_pairs_; }
 
     /// How much farther than its first reach a disc was looked for [m].

@@ -5,8 +5,11 @@
 namespace carom {
 namespace {
 
-constexpr double kBodiesPerCell = 16;  // about: fewer make the mean noisy, more make it coarse
-constexpr double kHalfWidth = 2;       // root mean squares; evenly spread bodies end at 1.73
+/// A cell holds about this many bodies: fewer make the mean noisy, more make it coarse.
+constexpr double kBodiesPerCell = 16;
+/// The cells reach this many root mean squares of the bodies' distances to each side of their mean; evenly
+/// spread bodies end at 1.73.
+constexpr double kHalfWidth = 2;
 
 }  // namespace
 
@@ -62,7 +65,7 @@ void MeanFlow::fill_gaps() {
 }
 
 /// Within four centres the derivatives along x lie between those along the two edges, likewise along y. A
-/// turn brings nobody nearer: what does is the symmetric part of the gradient, by no more than its lowest
+/// turn brings no two bodies nearer: only the symmetric part of the gradient does, by no more than its lowest
 /// eigenvalue, which is no lower than its lower diagonal element less the other one.
 MeanFlow::Change MeanFlow::change_of(Vec2 Cell::*field, std::size_t low) const {
     const std::size_t high = low + width_;

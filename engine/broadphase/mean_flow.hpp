@@ -11,7 +11,7 @@ namespace carom {
 /// How the bodies of a region move on the whole: a field of jumps and one of velocities, each the mean of
 /// what was added to a square cell, bilinear between the centres of cells and constant beyond the outermost.
 ///
-/// Where bodies move together, what they do relative to this field is little, however far they go. Two
+/// Bodies that move together do little relative to this field, however far they go. Two
 /// points at a distance d that jump by the field and then follow it for a time t come nearer to each other by
 /// no more than d (stretch + t rate), with the `stretch` and `rate` of either, if d is no more than a cell.
 ///
@@ -19,8 +19,8 @@ namespace carom {
 /// instruction set.
 class MeanFlow {
   public:
-    /// Lays cells over the middle of the bodies: two root mean squares to each side. Whoever is outside
-    /// follows the nearest cell.
+    /// Lays cells over the middle of the bodies: two root mean squares to each side. A body outside follows
+    /// the nearest cell.
     /// @param smallest_cell  m, > 0
     /// Cost: O(bodies), about 1 ns each.
     template <class Real>

@@ -1,6 +1,6 @@
 // Places that move with the mean flow (MarginRule::own): a pile that heaves or turns carries its bodies out
-// of their margins together, without changing who is near whom. So a body's place moves at the velocity of
-// the bodies around it, its margin is for what it does beside that, and pairs last longer.
+// of their margins together, and the same bodies stay near each other. So a body's place moves at the
+// velocity of the bodies around it, its margin is for what it does beside that, and pairs last longer.
 //
 // Let two bodies be at places p and reach R each, and be no candidates: |p_j - p_i| >= R_i + R_j. If both
 // places follow a field that brings points nearer by less than a share c of their distance, the same holds
@@ -21,20 +21,22 @@ constexpr double kCellInReaches = 4;
 /// A field that takes more of a distance is not followed: bodies farther from each other than those must not
 /// meet.
 constexpr double kLargestStretch = 0.25;
-/// A flow is none if it carries nobody farther than this share of the smallest radius in a step.
+/// A flow that carries no body farther than this share of the smallest radius in a step is not followed.
 constexpr double kStill = 0.005;
-/// Where more bodies than one in so many stand still, there is no flow.
+/// No flow is followed if more than one body in this many is immovable.
 constexpr std::size_t kBodiesPerImmovable = 32;
-/// Of where a place was before: with a stretch of 0.02 the last is off by 1e-10 of a margin.
+/// Steps of the iteration that finds where a place was before it jumped. Each one's error is the stretch
+/// times the last one's: with a stretch of 0.02 the place found is off by 1e-10 of a margin.
 constexpr int kGuesses = 5;
-/// Of so many times that following the flow could save finding the pairs anew, one is used at least.
+/// After n attempts to follow the flow that failed in a row, only one occasion in n is used, and n is at most
+/// this.
 constexpr int kMostLeftOut = 8;
 
-// What rounding of a place and a reach to Real can take, as a share of both, in a step.
+// Rounding a place and a reach to Real takes at most this share of both from a margin in a step.
 template <class Real>
 constexpr double kRounding = sizeof(Real) == sizeof(float) ? 2.4e-7 : 5e-16;
 
-// A body, on one thread: for the executor.
+// ns a body on one thread, for the executor.
 constexpr double kNanosecondsToMove = 1, kNanosecondsToFollow = 15, kNanosecondsToBegin = 10;
 
 bool takes_part(std::uint8_t flags) {
@@ -76,8 +78,8 @@ void Candidates<Real>::set_velocity(std::size_t row, const MeanFlow::At& flow) {
     rate_[row] = static_cast<Real>(flow_is_local_ ? flow.rate : flow_.most().rate);
 }
 
-/// What is known of the flow around a body says nothing of who is farther away than a cell: then all reaches
-/// shrink as where the flow closes most.
+/// The flow around a body says nothing of bodies farther away than a cell. If a reach is as large as that,
+/// all reaches shrink at the rate of the place where the flow closes fastest.
 template <class Real>
 void Candidates<Real>::note_reach(double reach) {
     largest_reach_ = std::max(largest_reach_, reach);
@@ -131,7 +133,7 @@ void Candidates<Real>::move_places(const Bodies<Real>& bodies, double dt, const 
 template <class Real>
 bool Candidates<Real>::follow_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
                                    const Executor& executor) {
-    // Where bodies whirl, each on its own, it is no use to try.
+    // After failures most occasions are left out: bodies that whirl, each on its own, have no flow.
     if (!may_flow_ || ++follows_left_out_ < std::min(failed_follows_, kMostLeftOut)) return false;
     follows_left_out_ = 0, ++failed_follows_;
     measure_flow(bodies, end, gravity, false);
@@ -178,7 +180,7 @@ bool Candidates<Real>::follow_flow(const Bodies<Real>& bodies, const FlightClock
     return true;
 }
 
-/// Of pairs that are to be found anew.
+/// Measures the flow for pairs that are to be found anew, and sets the places to drift with it from now on.
 template <class Real>
 void Candidates<Real>::begin_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
                                   const Executor& executor) {
@@ -191,7 +193,7 @@ void Candidates<Real>::begin_flow(const Bodies<Real>& bodies, const FlightClock&
     if (bodies.count == 0) return;
     measure_flow(bodies, end, gravity, true);
     const MeanFlow::Most& most = flow_.most();
-    // What stands still is a stray in any flow.
+    // An immovable body is a stray in any flow.
     std::size_t immovable = 0;
     for (std::size_t row = 0; row < bodies.count && bodies.has_flags; ++row)
         immovable += takes_part(bodies.flags_of(row)) && bodies.is_immovable(row);

@@ -11,23 +11,24 @@ namespace carom {
 namespace {
 
 // docs/decisions/0012-threads-of-soft.md has the measurements.
-constexpr double kOwnSteps = 5;          // of a body, at its speed
-constexpr double kSmallestMargin = 0.1;  // of the smallest radius
-constexpr double kLargestSize = 4;       // of its own radius
-constexpr double kFewestSteps = 1.25;    // whatever the largest margin is
-constexpr double kFlowSteps = 0.7;       // of the flow around it, which changes
+constexpr double kOwnSteps = 5;          // steps at the body's own speed that a margin is to last
+constexpr double kSmallestMargin = 0.1;  // smallest radii that every margin has
+constexpr double kLargestSize = 4;       // own radii that count as a body's size beside much larger ones
+constexpr double kFewestSteps = 1.25;    // steps that a margin lasts, even above the largest margin
+constexpr double kFlowSteps = 0.7;       // steps of the flow around the body, because the flow changes
 
-constexpr double kNanosecondsToChoose = 4;  // a body, on one thread: for the executor
+constexpr double kNanosecondsToChoose = 4;  // ns a body on one thread, for the executor
 
-/// Of bodies that are near now, how much farther from each other they can have been when they drifted.
+/// Bodies that are near each other now were at most this many times as far apart when they drifted.
 constexpr double kSteepnessThen = 1.5;
-// Drifts are sums, rounded to Real a few times.
+// Relative error of a drifted place: drifts are sums, rounded to Real a few times.
 template <class Real>
 constexpr double kRoundingOfPlace = sizeof(Real) == sizeof(float) ? 1e-6 : 4e-15;
 
 }  // namespace
 
-/// A margin is for what a body does beside the flow around it, and for what that will change.
+/// Radius plus margin of a body [m]: the margin is for what the body does beside the flow around it, and for
+/// what that flow will change.
 template <class Real>
 Real Candidates<Real>::own_reach(const Bodies<Real>& bodies, std::size_t row, const FlightClock& end,
                                  double fall) const {
@@ -58,7 +59,8 @@ void Candidates<Real>::choose_own_margins(const Bodies<Real>& bodies, const Flig
     renewed_count_ = 0, farthest_ = 0;
 }
 
-/// As the grid decides, when the pairs were found anew. (A body's first place is the grid's.)
+/// Whether a and b were a pair when the pairs were found anew, as the grid decided then. (A body's first
+/// place is the grid's.)
 template <class Real>
 bool Candidates<Real>::was_pair(std::size_t a, std::size_t b) const {
     const Real dx = grid_.built_x()[b] - grid_.built_x()[a], dy = grid_.built_y()[b] - grid_.built_y()[a];

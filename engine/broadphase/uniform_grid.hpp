@@ -14,7 +14,7 @@
 
 namespace carom {
 
-/// What the grid is built from. Columns are padded and 64-byte aligned.
+/// The columns that the grid is built from. They are padded and 64-byte aligned.
 template <class Real>
 struct GridInput {
     std::size_t count = 0;
@@ -55,11 +55,11 @@ class UniformGrid {
     /// Rows in sorted order, [count]: by level, then by cell; disabled bodies last.
     std::span<const std::int32_t> order() const noexcept { return order_.span(); }
 
-    /// Where the bodies were when the grid was built, by row, [padded(count)].
+    /// Places of the bodies when the grid was built [m], by row, [padded(count)].
     const Column<Real>& built_x() const noexcept { return built_x_; }
     const Column<Real>& built_y() const noexcept { return built_y_; }
 
-    /// Square blocks of cells of the finest level, counted from its lowest occupied cell: for who wants to
+    /// Square blocks of cells of the finest level, counted from its lowest occupied cell, for callers that
     /// work through the plane piece by piece. Positions outside the grid belong to the blocks at its border.
     struct Block {
         std::size_t u, v;

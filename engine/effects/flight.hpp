@@ -21,7 +21,7 @@ namespace carom {
 inline constexpr double kLargestDragTimesStep = 0.5;  // no unit
 inline constexpr int kSeriesTerms = 24;               // .5^24 / 24! and .2^24: far below 2^-53
 
-/// Where a flight stands on its clock.
+/// A moment of a flight: its time t and the clock s that goes with it, with drag and without.
 struct FlightClock {
     double t = 0;     ///< s, since the start of the substep
     double s = 0;     ///< s

@@ -4,8 +4,8 @@
 
 namespace carom {
 
-/// A pair's Coulomb coefficient: the geometric mean of the two materials'. kernels/find_contacts.hpp has it
-/// for lanes.
+/// A pair's Coulomb coefficient: the geometric mean of the two materials'. For pairs of rows solver `soft`
+/// computes it in the world's precision (solvers/soft/soft_solver.cpp).
 inline double pair_friction(double a, double b) {
     return std::sqrt(a * b);
 }

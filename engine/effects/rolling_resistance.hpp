@@ -23,14 +23,14 @@
 
 namespace carom {
 
-/// A pair's coefficient: the larger of the two materials', for it is enough if one of them yields.
-/// kernels/find_contacts.hpp has it for lanes.
+/// A pair's coefficient: the larger of the two materials', for it is enough if one of them yields. For pairs
+/// of rows solver `soft` computes it in the world's precision (solvers/soft/soft_solver.cpp).
 inline double pair_rolling_resistance(double a, double b) {
     return std::fmax(a, b);
 }
 
-/// s above: the weight of body a's rim speed in the rolling velocity. kernels/find_contacts.hpp has it for
-/// lanes.
+/// The share s above: the weight of body a's rim speed in the rolling velocity. For pairs of rows solver
+/// `soft` computes it in the world's precision (solvers/soft/soft_solver.cpp).
 constexpr double rolling_share(double radius_a, double radius_b) {
     return radius_b / (radius_a + radius_b);
 }

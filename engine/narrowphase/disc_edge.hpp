@@ -70,8 +70,8 @@ inline double time_of_meeting(Vec2 p0, Vec2 way, Vec2 a, Vec2 b, double radius) 
     const double meeting = std::min({time_at_side(p0, way, a, b, radius), time_at_corner(p0, way, a, radius),
                                      time_at_corner(p0, way, b, radius)});
     if (meeting <= 1) return meeting;
-    // Where the distance is least, or where that place begins if the way is parallel to the edge: at one of
-    // its ends, or beside a corner.
+    // The distance is least, or begins to be least if the way is parallel to the edge, at one of the way's
+    // ends or beside a corner.
     double time = 0;
     const auto try_at = [&](double t) {
         t = std::clamp(t, 0.0, 1.0);

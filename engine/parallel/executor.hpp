@@ -12,9 +12,10 @@
 namespace carom {
 
 inline constexpr std::size_t kRowsPerChunk = 2048;  // 8 KiB a float column
-// From here on the cheapest loop of a step gains by a second thread: docs/decisions/0007-when-threads-pay.md.
+// Rows from which on the cheapest loop of a step gains by a second thread
+// (docs/decisions/0007-when-threads-pay.md).
 inline constexpr std::size_t kSmallestParallelRows = 16384;
-// ns: likewise, for loops that say how long they take.
+// ns from which on a loop that says how long it takes gains by a second thread.
 inline constexpr double kShortestParallelLoop = 4000;
 
 /// Runs chunks of rows, on several threads if there are any and the rows are many. Chunks depend on the rows
@@ -55,7 +56,7 @@ class Executor {
         run(tasks, {&fn, [](const void* call, std::size_t task) { (*static_cast<const Fn*>(call))(task); }});
     }
 
-    /// As for_each_chunk, for loops that are dearer than the cheapest.
+    /// Does what the other for_each_chunk does, for loops that are dearer than the cheapest.
     /// @param nanoseconds  about what a row takes on one thread
     template <class Fn>
     void for_each_chunk(std::size_t rows, std::size_t rows_per_chunk, double nanoseconds,

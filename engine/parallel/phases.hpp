@@ -18,13 +18,13 @@ enum class PhaseKind : std::uint8_t {
 
 /// How far threads are that work through phases of tasks. Each thread has a run of neighbouring tasks, the
 /// same in every phase, and waits for the threads beside it alone; the tasks that these wait for come first.
-/// So nobody waits because another thread has a little more to do in one phase and less in the next.
+/// So no thread waits because another one has a little more to do in one phase and less in the next.
 class Phases {
   public:
     /// To be called before the threads start. Allocates if there have never been so many of them.
     void begin(std::size_t threads, std::span<const PhaseKind> kinds);
 
-    /// What thread `thread` of `threads` does: calls task(phase, t) for its tasks of every phase.
+    /// Does the work of thread `thread` of `threads`: calls task(phase, t) for its tasks of every phase.
     /// @param tasks  >= threads, of each phase that is side by side
     template <class Task>
     void work(std::size_t thread, std::size_t threads, std::size_t tasks, const Task& task);
@@ -81,7 +81,7 @@ void Phases::work_through(const Run& run, std::size_t thread, const Task& task) 
         set(own.first, after), set(own.last, after);
         return;
     }
-    // What another thread waits for comes first.
+    // Tasks that another thread waits for come first.
     bool is_begun = !run.has_below, is_ended = !run.has_above;
     std::size_t inner = is_begun ? run.first : run.first + 1;
     const std::size_t inner_end = is_ended ? run.last + 1 : run.last;

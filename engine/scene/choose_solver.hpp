@@ -40,9 +40,9 @@ SolverChoice choose_solver(const Scene& scene, Solver asked_for);
 
 /// The first thing in the scene that `solver`, as chosen, cannot do. Cost: O(bodies).
 std::optional<Problem> find_solver_problem(const Scene& scene, Solver solver);
-/// Of effects that are forced on.
+/// The first effect that is forced on and that `solver` does not have.
 std::optional<Problem> find_solver_problem(const EffectOverrides& effects, Solver solver);
-/// The same of one body, for whoever adds it later.
+/// The first thing about one body that `solver` cannot do, for a body that is added to a running world.
 std::optional<Problem> find_solver_problem(const Item& item, const Body& body, Solver solver);
 
 /// Parts a step is cut into unless a scene says otherwise.

@@ -10,30 +10,31 @@
 
 namespace carom {
 
-// Checks of single values, for whoever takes them one by one. `where` opens the message: "World::add".
+// Checks of single values, for calls that take them one by one. `where` opens the message: "World::add".
 
-/// Everything but the name's uniqueness and the walls. @throws Error
+/// Checks everything of a body but the name's uniqueness and the walls. @throws Error
 void validate_body(const Body& body, std::string_view where);
-/// That a dynamic body starts between the closed walls, and fits there. @throws Error
+/// Checks that a dynamic body starts between the closed walls, and fits there. @throws Error
 void validate_inside(const Body& body, const Walls& walls, std::string_view where);
 void validate_position(Vec2 position, std::string_view where);
 void validate_velocity(Vec2 velocity, std::string_view where);
 void validate_angular_velocity(double angular_velocity, std::string_view where);
-/// A step: 0, or kSmallestStep ... kLargestStep. @throws Error
+/// Checks a step's length [s]: 0, or kSmallestStep ... kLargestStep. @throws Error
 void validate_dt(double dt, std::string_view where);
-/// Solver (`pairwise` passes), substeps, iterations. @throws Error
+/// Checks solver (`pairwise` passes), substeps, iterations. @throws Error
 void validate_accuracy(const Accuracy& accuracy, std::string_view where);
-/// That nothing is forced off which the scene needs, nor on which is not built. `effects`: the ones in force,
-/// in place of the scene's own. Cost: O(bodies) if rotation or restitution is forced off. @throws Error
+/// Checks that no effect is forced off which the scene needs, and none on which is not built. `effects`:
+/// those in force, in place of the scene's own. Cost: O(bodies) if rotation or restitution is forced off.
+/// @throws Error
 void validate_effects(const Scene& scene, const EffectOverrides& effects, std::string_view where);
 
-// The same as problems, for Scene::find_problem and the generators.
+// These find the same faults without throwing, for Scene::find_problem and the generators.
 
 std::optional<Problem> find_body_problem(const Item& item, const Body& body);
 std::optional<Problem> find_inside_problem(const Item& item, const Body& body, const Walls& walls);
 std::optional<Problem> find_material_problem(const Item& item, std::string_view tail,
                                              const Material& material);
-/// Gravity, drag, walls, step, record, accuracy.
+/// Looks at gravity, drag, walls, step, record and accuracy.
 std::optional<Problem> find_settings_problem(const Scene& scene);
 std::optional<Problem> find_accuracy_problem(const Accuracy& accuracy);
 std::optional<Problem> find_effects_problem(const Scene& scene, const EffectOverrides& effects);

@@ -11,8 +11,8 @@
 
 namespace carom {
 
-/// Whose value a check looks at: says it in words and as a JSON pointer. Built for every body, so it owns
-/// nothing.
+/// The item whose value a check looks at, in words and as a JSON pointer. One is built for every body, so it
+/// owns nothing.
 struct Item {
     std::string_view words;     ///< "the walls have", or the kind of a numbered item: "body"
     std::string_view pointer;   ///< "/walls", "/bodies"

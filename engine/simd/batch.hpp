@@ -74,7 +74,7 @@ bool all(xsimd::batch_bool<Real, Isa> mask) {
     return xsimd::all(mask);
 }
 
-/// What all x86 batches share; the instruction sets add their own below.
+/// The operations that all x86 batches share; the instruction sets add their own below.
 template <class Real, class Isa>
 struct BatchLanes {
     using Batch = simd::Batch<Real, Isa>;

@@ -31,7 +31,7 @@ inline float abs(float value) {
 inline double abs(double value) {
     return __builtin_fabs(value);
 }
-// As MINPS and MAXPS: the second operand if either is NaN or both are zeros.
+// These give what MINPS and MAXPS give: the second operand if either is NaN or both are zeros.
 inline float min(float a, float b) {
     return a < b ? a : b;
 }

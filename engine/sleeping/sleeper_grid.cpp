@@ -1,4 +1,4 @@
-// Where the sleepers are, and who comes near them.
+// The grid of the sleepers, and the bodies that come near them.
 #include "sleeping/sleepers.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ Vec2 velocity_of(const Bodies<Real>& bodies, std::size_t row) {
     return {bodies.velocity_x[row], bodies.velocity_y[row]};
 }
 
-/// What does not move on its own cannot come near a sleeper.
+/// Whether a body can come near a sleeper: one that does not move on its own cannot.
 template <class Real>
 bool can_come(const Bodies<Real>& bodies, std::size_t row) {
     const std::uint8_t flags = bodies.flags_of(row);
@@ -53,8 +53,8 @@ void Sleepers<Real>::build_grid(const WorldState<Real>& world, const KernelTable
     is_grid_old_ = false;
 }
 
-/// Rows of the sleepers whose reach overlaps that of a place. Those that have woken since the grid was built
-/// are still in it.
+/// Rows of the sleepers whose reach overlaps that of a place. Sleepers that have woken since the grid was
+/// built are still in it.
 template <class Real>
 std::span<const std::int32_t> Sleepers<Real>::find_near(const WorldState<Real>& world, Vec2 place,
                                                         double reach) {
@@ -117,11 +117,11 @@ bool Sleepers<Real>::mark_hit(const WorldState<Real>& world, double dt, double s
         const double speed = std::sqrt(length_squared(v));
         const double slow = falls ? still_speed(gravity, substep, smaller) : 0;
         if (speed <= slow && (falls || rim == 0)) continue;  // if it presses, its impulse wakes
-        // What an impact would give the sleeper at most; a kinematic body gives its own speed.
+        // Speed that an impact would give the sleeper at most; a kinematic body gives its own.
         const double mass = bodies.mass[row], other = bodies.mass[sleeper];
         const double given = falls ? 2 * speed * mass / (mass + other) : speed;
         if (falls && given <= kWakingShare * still_speed(gravity, substep, bodies.radius[sleeper])) continue;
-        // Where it comes nearest, flying on as it does now; gravity can bring it as far again.
+        // Time at which it comes nearest, flying on as it does now; gravity can bring it as far again.
         const double squared = speed * speed;
         const double t = squared > 0 ? std::fmin(std::fmax(dot(d, v) / squared, 0), dt) : 0;
         const double reach = radius + static_cast<double>(bodies.radius[sleeper]) + kTouchingShare * smaller +

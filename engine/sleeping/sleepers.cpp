@@ -10,7 +10,7 @@
 namespace carom {
 namespace {
 
-/// Islands are looked for so often while somebody has been still for long enough.
+/// Islands are looked for at this interval while any body has been still for long enough.
 constexpr double kLookInterval = kTimeToSleep / 8;  // s
 
 /// Calls fn(i) for every contact that carries an impulse.
@@ -34,7 +34,7 @@ bool is_steady(const WorldState<Real>& world, std::int32_t support) {
 
 }  // namespace
 
-/// @return whether anybody has been still for long enough.
+/// Counts for how long each body has been still. @return whether any has been so for long enough.
 template <class Real>
 bool Sleepers<Real>::note_still(WorldState<Real>& world, double dt, double substep) const {
     Bodies<Real>& bodies = world.bodies;
@@ -52,7 +52,8 @@ bool Sleepers<Real>::note_still(WorldState<Real>& world, double dt, double subst
     return any;
 }
 
-/// Islands of the contacts that carry an impulse; which of them stay awake; which lean on sleepers.
+/// Finds the islands of the contacts that carry an impulse, which of them stay awake and which lean on
+/// sleepers.
 template <class Real>
 void Sleepers<Real>::connect(const WorldState<Real>& world, const ContactGraph<Real>& graph) {
     const Bodies<Real>& bodies = world.bodies;
@@ -223,7 +224,7 @@ std::size_t Sleepers<Real>::wake_marked(WorldState<Real>& world) {
     return bodies.count - before;
 }
 
-/// What a contact is filed under among those that have woken.
+/// A contact that has woken, as it is sorted: by its rows, with its place in `woken_`.
 struct Woken {
     std::int32_t a, b;
     std::size_t kept;

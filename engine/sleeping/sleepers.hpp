@@ -40,7 +40,8 @@ class Sleepers {
 
     /// Marks the islands that something presses on. @return whether there are any.
     bool mark_pressed(const WorldState<Real>& world, const ContactGraph<Real>& graph, double substep);
-    /// Takes note of who is still, and puts islands to sleep that have been so for long enough.
+    /// Counts for how long each body has been still, and puts islands to sleep all of whose bodies have been
+    /// so for long enough.
     /// @return whether rows have changed.
     bool put_to_sleep(WorldState<Real>& world, ContactGraph<Real>& graph, double dt, double substep);
 
@@ -94,7 +95,7 @@ class Sleepers {
     std::int64_t island_count_ = 0, woken_count_ = 0;
     double since_look_ = 0;  // s
 
-    // The grid: of those who slept when it was built.
+    // The grid of the bodies that slept when it was built.
     UniformGrid<Real> grid_;
     Column<Real> x_, y_, reach_;  // m
     std::vector<BodyId> ids_;
@@ -103,12 +104,12 @@ class Sleepers {
     Column<std::int32_t> places_;
     std::vector<std::int32_t> near_;
 
-    // Of a look at the islands.
+    // Scratch of `connect` and `put_to_sleep`.
     Islands islands_;
-    std::vector<std::uint8_t> stays_awake_;  // by row: of its island, at its smallest row
-    std::vector<std::int32_t> label_;        // by row: the island it sleeps in, at its smallest row
+    std::vector<std::uint8_t> stays_awake_;  // by row: whether an island does, at its smallest row
+    std::vector<std::int32_t> label_;  // by row: number of an island that falls asleep, at its smallest row
     std::vector<Held> leaning_;
-    std::vector<std::int32_t> order_;  // old rows, as they are exchanged
+    std::vector<std::int32_t> order_;  // row before the exchanges, of each row
 };
 
 extern template class Sleepers<float>;

@@ -4,7 +4,7 @@
 
 namespace carom {
 
-/// What a row is to the pipeline: bits of the flags column, which exists only if some row has one set.
+/// Bits of the flags column: how the stages treat a row. The column exists only if some row has a bit set.
 enum BodyFlag : std::uint8_t {
     kImmovable =
         1,  ///< static or kinematic: nothing changes its velocity; pairs of two such are no candidates

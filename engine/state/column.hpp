@@ -58,7 +58,7 @@ class Column {
         size_ = rows;
     }
 
-    /// As `resize`, but nothing is kept and rows [0, rows) are indeterminate; the padding is zero.
+    /// Does what `resize` does, but keeps nothing: rows [0, rows) are indeterminate; the padding is zero.
     void resize_for_overwrite(std::size_t rows) {
         grow(rows, 0);
         std::fill(rows_ + rows, rows_ + held(rows), T{});

@@ -2,7 +2,7 @@
 
 #include <new>
 
-// Elsewhere than on Linux nobody can be asked, and the address sanitizer should see each column by itself.
+// Only Linux has huge pages to ask for, and the address sanitizer should see each column by itself.
 #if defined(__SANITIZE_ADDRESS__)
 #define CAROM_HAS_SLABS 0
 #elif defined(__has_feature)

@@ -11,7 +11,7 @@
 
 namespace carom {
 
-/// What is not a body's row in the `b` of a contact: walls are -1 ... -4 (WallSide), edges lie beyond them.
+/// Numbers in the `b` of a contact that are no body's row: walls are -1 ... -4 (WallSide), edges lie beyond.
 inline constexpr std::int32_t kFirstEdgeSupport = -5;
 constexpr bool is_edge_support(std::int32_t b) {
     return b <= kFirstEdgeSupport;

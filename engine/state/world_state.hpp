@@ -38,7 +38,8 @@ struct Sums {
 Sums operator+(const Sums& a, const Sums& b);
 Sums operator-(const Sums& a, const Sums& b);
 
-/// The columns and the laws: everything that a snapshot would have to hold.
+/// The columns, the laws and the books. A snapshot would have to hold more: solvers keep impulses, margins
+/// and sleeping contacts from step to step, each in an object of its own.
 template <class Real>
 struct WorldState {
     Bodies<Real> bodies;
@@ -52,13 +53,13 @@ struct WorldState {
     std::uint64_t falls = 0;  ///< flights so far: says how speeds are rounded in the next one
     Books books;
     Sums initial;                              ///< of the bodies there are, at the moment each joined
-    double dynamic_mass = 0;                   ///< kg, of those awake
+    double dynamic_mass = 0;                   ///< kg, of the dynamic bodies that are awake
     std::vector<std::int32_t> immovable_rows;  ///< static, kinematic and disabled ones
     std::int64_t quarantined_count = 0;
 
     std::size_t bytes() const;
 
-    /// What one row adds to the sums; nothing if it is not dynamic.
+    /// Energy and momentum of one row; zero if it is not dynamic.
     Sums sums_of(std::size_t row) const;
     Sums sums() const;
 

@@ -26,7 +26,7 @@ class EventCells {
     /// Moves a disc to the next cell on a side: left, right, bottom, top.
     void move(std::span<EventMover> movers, std::int32_t disc, std::uint8_t side);
 
-    /// Calls visit(disc) for everybody registered in the nine cells around one.
+    /// Calls visit(disc) for every disc that is registered in a cell or in one of the eight around it.
     template <class Visit>
     void for_each_around(std::span<const EventMover> movers, std::int32_t x, std::int32_t y,
                          const Visit& visit) const {

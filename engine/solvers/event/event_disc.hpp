@@ -5,8 +5,9 @@
 #include "math/vec2_math.hpp"
 #include "narrowphase/impact_time.hpp"
 
-// What solver `event` keeps of a disc, by how often it is read: a forecast looks at the movers of some ten
-// neighbours, at one or two forecasts, and an impact at two surfaces. Each is one cache line, or half of one.
+// The data of a disc under solver `event`, apart by how often they are read: a forecast looks at the movers
+// of some ten neighbours and at one or two forecasts, an impact at two surfaces. Each is one cache line, or
+// half of one.
 
 namespace carom {
 
@@ -28,7 +29,7 @@ struct EventForecast {
     double impact_time = kNever;        ///< s
     double exit_time = kNever;          ///< s, when it leaves its cell
     std::int32_t partner = kNobody;     ///< a disc, or -1 - side of the walls
-    std::uint32_t partner_impacts = 0;  ///< of the partner when this was foreseen: more now, and it is void
+    std::uint32_t partner_impacts = 0;  ///< the partner's when this was foreseen: if more now, it is void
     std::uint32_t impacts = 0;          ///< of this disc so far
     std::uint8_t exit_side = 0;         ///< as the walls' sides
     bool is_tied = false;               ///< another impact of this disc is due at the same instant
@@ -37,7 +38,7 @@ struct EventForecast {
 };
 static_assert(sizeof(EventForecast) == 32);
 
-/// What an impact needs: one cache line.
+/// The data of a disc that only impacts need: one cache line.
 struct alignas(64) EventSurface {
     double inverse_mass = 0;     ///< 1/kg, 0 for what nothing moves
     double inverse_inertia = 0;  ///< 1/(kg m²), 0 for what nothing turns

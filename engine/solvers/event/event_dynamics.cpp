@@ -155,7 +155,7 @@ bool EventDynamics::is_still_apart(const EventContact& c, double now) const {
 void EventDynamics::impact(std::size_t disc, double now) {
     const EventForecast& f = store_.forecasts[disc];
     queue_.set(disc, kNever);
-    if (f.partner >= 0) {  // who mostly has foreseen the same
+    if (f.partner >= 0) {  // a disc, which mostly has foreseen the same impact
         const EventForecast& of_partner = store_.forecasts[static_cast<std::size_t>(f.partner)];
         const bool is_same = of_partner.partner == static_cast<std::int32_t>(disc) &&
                              of_partner.impact_time <= now + same_instant_;
@@ -195,7 +195,8 @@ void EventDynamics::add_contact(std::size_t disc, std::int32_t partner, double n
     contacts_.push_back(contact);
 }
 
-/// All impacts of this instant, and all that those who take part in them have at it.
+/// Carries out the impacts of this instant together: the disc's own, and all others that the discs involved
+/// have at it.
 void EventDynamics::impact_together(std::size_t disc, double now) {
     contacts_.clear(), involved_.clear();
     add_contact(disc, store_.forecasts[disc].partner, now);

@@ -17,16 +17,16 @@ namespace carom {
 ///
 /// Every disc has a clock of its own: its path is stated where its last impact was and touched again only at
 /// the next. It foresees one event, the earlier of an impact and of leaving its cell of a grid, and one queue
-/// says whose comes first. What it foresees with a partner that has been deflected since is void; it then
-/// looks anew. All arithmetic is in double precision.
+/// says whose comes first. An impact foreseen with a partner that has been deflected since is void; the disc
+/// then looks anew. All arithmetic is in double precision.
 ///
 /// The rule against inelastic collapse (`kCollapseFraction`): a disc that is hit again within the contact
 /// time bounces elastically, and leaves what it falls back on fast enough to stay away for that long. So
-/// every disc has a bounded number of dissipating impacts a second, and what should rest shivers by g t_c²/8
-/// instead: 1e-9 of a radius.
+/// every disc has a bounded number of dissipating impacts a second, and a disc that should rest shivers by
+/// g t_c²/8 instead: 1e-9 of a radius.
 ///
-/// Cost: O(log discs) an impact, in practice constant until the discs outgrow the caches. 204 bytes a disc
-/// (docs/decisions/0004-event-solver.md).
+/// Cost: O(log discs) an impact, in practice constant until the discs outgrow the caches. 184 to 192 bytes
+/// a disc (docs/decisions/0005-event-solver.md).
 /// Source: Lubachevsky, "How to simulate billiards and similar systems", J. Comput. Phys. 94 (1991): one
 /// event a disc, delayed states; Alder & Wainwright (1959).
 class EventDynamics {
@@ -51,7 +51,7 @@ class EventDynamics {
         Vec2 position, velocity;
         double angle, spin;
     };
-    /// Where a body is now.
+    /// State of a body at the present time of the clock.
     State state(std::size_t row) const;
 
     const EventCounters& counters() const { return counters_; }

@@ -14,7 +14,7 @@ constexpr double kSameInstant = 1e-11;      // of that time: impacts this near a
 constexpr double kSlowest = 1e-14;          // of a typical speed: round-off
 constexpr double kLongestClock = 1024;  // of that time: then the clock begins anew, to keep its resolution
 constexpr double kDiscsACell = 1;       // on average, if discs are not so large that cells must be larger
-constexpr std::size_t kFewDiscs = 16;   // up to here everybody is everybody's neighbour
+constexpr std::size_t kFewDiscs = 16;   // up to this number all discs are neighbours
 constexpr double kBoundless = 1e12;     // m, size of the cells then
 constexpr std::size_t kMostLarge = 32;  // discs that are kept out of the cells
 constexpr std::int64_t kImpactsBetweenSorts = 40;  // a disc, on average: it has moved some cells by then
@@ -97,7 +97,7 @@ double EventDynamics::find_cell_radius(Vec2 box) const {
     return chosen;
 }
 
-/// Sorts the discs, registers them in their cells, and looks for everybody's next event.
+/// Sorts the discs, registers them in their cells, and foresees each one's next event.
 void EventDynamics::arrange() {
     const std::size_t count = store_.count();
     Box box;

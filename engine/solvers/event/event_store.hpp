@@ -17,7 +17,7 @@ struct EventWall {
     double offset = 0;  ///< m
 };
 
-/// What acts on all discs.
+/// Gravity and walls, which act on all discs.
 struct EventLaws {
     Vec2 gravity;                      ///< m/s², on everything that has a mass
     std::array<EventWall, 4> walls{};  ///< left, right, bottom, top

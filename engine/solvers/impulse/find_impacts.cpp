@@ -44,7 +44,8 @@ void list_wall_meetings(ImpulseSimulation<Real>& sim, double near) {
     });
 }
 
-/// Of pairs [first, last) those that may touch, examined while what the kernel has read is in the cache.
+/// Appends those of the pairs [first, last) that may touch, examined while what the kernel has read is in the
+/// cache.
 template <class Real>
 void append_meetings(const ImpulseSimulation<Real>& sim, const FindImpacts<Real>& all, std::size_t first,
                      std::size_t last, std::vector<FoundMeeting>& meetings) {

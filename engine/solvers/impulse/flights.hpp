@@ -90,7 +90,7 @@ class Flights {
         return inverse_mass(m.a) + (m.with_wall() ? 0 : inverse_mass(m.b));
     }
 
-    /// What a meeting looks like at clock s.
+    /// Separation, normal and velocities of a meeting at clock s.
     Encounter encounter(Meeting m, double s) const {
         const double q = flight_q(s, drag());
         const Flight fa = flight(m.a);

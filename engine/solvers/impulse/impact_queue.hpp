@@ -156,8 +156,8 @@ class ImpactQueue {
         std::uint32_t next;  // of the same tile
     };
 
-    /// What was foreseen before the first impact, counted and placed by tile, so that a tile reads its own in
-    /// one go.
+    /// Counts and places by tile the impacts that were foreseen before the first one, so that a tile reads
+    /// its own in one go.
     void sort_by_tile() {
         first_crossing_.assign(tiles_, kNone);
         tile_begin_.assign(tiles_ + 2, 0);

@@ -20,7 +20,7 @@ class ImpulseSimulation : public Simulation<Real> {
     std::size_t bytes() const override;
 
     ImpulseSolver<Real> impulse;
-    // Of the present substep.
+    // The lists below are those of the present substep.
     ChunkedList wall_rows;
     std::vector<FoundMeeting> meetings;                     ///< that the solver has to look at
     std::vector<std::vector<FoundMeeting>> chunk_meetings;  ///< where chunks run on several threads

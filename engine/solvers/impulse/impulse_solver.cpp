@@ -66,7 +66,8 @@ void ImpulseSolver<Real>::settle_contacts(std::span<const FoundMeeting> found, c
     for (const std::int32_t row : candidates_->strays()) foresee_near(row, 0);
 }
 
-/// Where nothing can rest, meetings were examined when their motion was in the cache.
+/// Takes over meetings that were examined when their motion was in the cache, which is done where nothing can
+/// rest.
 template <class Real>
 void ImpulseSolver<Real>::take_examined(std::span<const FoundMeeting> found) {
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -84,7 +85,7 @@ void ImpulseSolver<Real>::take_examined(std::span<const FoundMeeting> found) {
     foresee_pushed();
 }
 
-/// What was foreseen for bodies that were pushed apart since is void.
+/// Foresees anew for bodies that were pushed apart: their impacts foreseen before are void.
 template <class Real>
 void ImpulseSolver<Real>::foresee_pushed() {
     moved_.clear();
@@ -171,7 +172,7 @@ void ImpulseSolver<Real>::collect_persisting(const Handles& handles) {
         if (m.with_wall() && !flights.has_wall(m.b)) continue;
         const Encounter e = flights.encounter(m, 0);
         const bool touches = e.separation <= kTouchFraction * flights.smaller_radius(m);
-        // Also if it moves apart just now: stopping its neighbours can press it together again.
+        // A contact that opens just now is held, too: stopping its neighbours can press it together again.
         if (!touches || std::fabs(e.normal_velocity) > fastest) continue;
         at_rest_.push_back({m, c.force});
     }

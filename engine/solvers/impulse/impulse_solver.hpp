@@ -15,7 +15,7 @@
 
 namespace carom {
 
-/// What the impulse solver counts (the docstrings of Profile say what each means).
+/// Counters of the impulse solver (the docstrings of Profile say what each means).
 struct ImpulseCounters {
     std::int64_t impacts = 0;
     std::int64_t wall_impacts = 0;

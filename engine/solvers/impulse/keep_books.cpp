@@ -23,7 +23,7 @@ void book_linear_drag(ImpulseSimulation<Real>& sim) {
     books.drag_momentum -= momentum;
 }
 
-/// Of the contacts that bodies rest on, until the end of their flights.
+/// Books the work of the contacts that bodies rest on, until the end of their flights.
 template <class Real>
 void book_supports(ImpulseSimulation<Real>& sim) {
     const Flights<Real>& flights = sim.impulse.flights;

@@ -61,7 +61,7 @@ void RestingContacts<Real>::carry(Flights<Real>& flights, std::vector<PressedMee
     }
 }
 
-/// What walls and immovable bodies give to those they carry.
+/// Books the momentum and the work that walls and immovable bodies give to the bodies they carry.
 template <class Real>
 void RestingContacts<Real>::book(Flights<Real>& flights, const std::vector<PressedMeeting>& contacts) {
     Books& books = *flights.books;

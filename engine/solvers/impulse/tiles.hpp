@@ -7,8 +7,8 @@
 
 namespace carom {
 
-// What the impacts of a tile touch, some 40 bytes a body, is to fit into a second-level cache of 1 MiB beside
-// what else is in it. The side is in cells of the grid, which hold one to two bodies in a gas.
+// The memory that the impacts of a tile touch, some 40 bytes a body, is to fit into a second-level cache of
+// 1 MiB beside what else is in it. The side is in cells of the grid, which hold one to two bodies in a gas.
 inline constexpr std::size_t kBodiesOfOneTile = 16384;
 inline constexpr std::size_t kTileCells = 80;
 

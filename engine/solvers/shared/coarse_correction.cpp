@@ -9,18 +9,22 @@ namespace {
 // docs/decisions/0017-heave.md has the measurements of all of these.
 constexpr double kBodiesOfCell = 192;  // about: half and four times as many did worse
 constexpr double kSmallestCell = 8;    // largest radii: s is taken to be linear around a body
-constexpr double kLeast = -0.9;        // of s: a contact never pulls, and keeps some load
-constexpr double kMost = 4;
-constexpr int kSweeps = 20;
+constexpr double kLeast = -0.9;        // least s: a contact never pulls, and keeps some load
+constexpr double kMost = 4;            // largest s
+constexpr int kSweeps = 20;            // over the nodes
 // A correction is small if it takes less than either of these; then the pause after it is twice as long.
 constexpr double kSmallDrop = 0.1;     // of the energy that gravity gives to the pile in a substep from rest
 constexpr double kSmallShare = 0.006;  // of the kinetic energy around the centre of mass: a drum that turns
 constexpr int kLongestPause = 64;      // substeps
-/// Of what deadbeat would leave. In a longer pause the shortest waves swing back, and would be driven.
+/// After a pause longer than the shortest, contacts keep this share of the 1/n that deadbeat would leave
+/// them: in so many substeps the shortest waves swing back, and all of it would drive them.
 constexpr double kKeptAfterLong = 0.25;
-constexpr double kHalfWidth = 2;  // root mean squares: evenly spread bodies end at 1.73
+/// The grid reaches this many root mean squares of the bodies' distances to each side of their mean; evenly
+/// spread bodies end at 1.73.
+constexpr double kHalfWidth = 2;
 
-constexpr double kNanosecondsToMeasure = 2, kNanosecondsToAdd = 20, kNanosecondsToScale = 4;  // a body
+// ns a body on one thread, for the executor.
+constexpr double kNanosecondsToMeasure = 2, kNanosecondsToAdd = 20, kNanosecondsToScale = 4;
 
 // Nodes of a cell: low left, low right, high left, high right.
 constexpr std::array<std::array<std::size_t, 2>, 10> kPairsOfNodes{
@@ -52,7 +56,7 @@ void CoarseCorrection<Real>::for_each_part(std::size_t count, double nanoseconds
     });
 }
 
-/// Cells over the middle of the loaded bodies; whoever is outside has the s of the nearest node or edge.
+/// Lays cells over the middle of the loaded bodies; a body outside has the s of the nearest node or edge.
 template <class Real>
 void CoarseCorrection<Real>::lay_out(std::size_t count, const Real* motion, const Real* velocity,
                                      double largest_radius, const Executor& executor) {
@@ -113,7 +117,7 @@ void CoarseCorrection<Real>::Cell::add(double f, double g, Vec2 p, Vec2 x, Vec2 
     const auto add_product = [&](std::size_t pair, std::size_t of, std::size_t with) {
         product[pair] += inverse_mass * dot(momentum[of], momentum[with]);
     };
-    // In the order of kPairsOfNodes, one by one: a loop over that takes twice as long.
+    // The calls are in the order of kPairsOfNodes: a loop over that takes twice as long.
     add_product(0, 0, 0), add_product(1, 0, 1), add_product(2, 0, 2), add_product(3, 0, 3);
     add_product(4, 1, 1), add_product(5, 1, 2), add_product(6, 1, 3);
     add_product(7, 2, 2), add_product(8, 2, 3), add_product(9, 3, 3);

@@ -14,12 +14,12 @@ namespace carom {
 
 /// Stops the motion of a pile as a whole, which sweeps over contacts do not see.
 ///
-/// A sweep tells a body what its neighbours do. What hundreds of them do together it makes into a wave, which
-/// takes as many substeps as the pile has rows: a pile that is dropped bounces, as if it was elastic. Here
-/// the impulses of all contacts, the loads, are multiplied by 1 + s, with one s for each node of a coarse
-/// grid and bilinear between them, the s of a contact being the mean of those of its bodies. Loads nearly
-/// balance gravity, body by body, so with a smooth s what they change is smooth as well: whole regions are
-/// stopped. The s are those that leave the least kinetic energy E relative to what the contacts allow,
+/// A sweep tells a body what its neighbours do. A motion of hundreds of them together it makes into a wave,
+/// which takes as many substeps as the pile has rows: a pile that is dropped bounces, as if it was elastic.
+/// Here the impulses of all contacts, the loads, are multiplied by 1 + s, with one s for each node of a
+/// coarse grid and bilinear between them, the s of a contact being the mean of those of its bodies. Loads
+/// nearly balance gravity, body by body, so with a smooth s what they change is smooth as well: whole regions
+/// are stopped. The s are those that leave the least kinetic energy E relative to what the contacts allow,
 ///
 ///     E(s) = E(0) + r·s + s·A s / 2,    s >= kLeast
 ///
@@ -30,11 +30,10 @@ namespace carom {
 /// Impulses act on both bodies of a contact, so momentum is kept; they push, and friction stays within its
 /// limit. E cannot grow, unless A is off by more than a factor of two.
 ///
-/// Loads last from substep to substep. What stops in one substep a motion that took n to come about would
-/// turn it back in the next ones, so the contacts are left a share of 1/n of it.
-/// Numbers: docs/decisions/0017-heave.md.
-/// Source: smoothed aggregation multigrid (Vanek, Mandel & Brezina 1996), whose coarse space is made of the
-/// vectors that sweeps leave over.
+/// Loads last from substep to substep. Loads that stop in one substep a motion that took n to come about
+/// would turn it back in the next ones, so the contacts keep 1/n of the change. Numbers:
+/// docs/decisions/0017-heave.md. Source: smoothed aggregation multigrid (Vanek, Mandel & Brezina 1996), whose
+/// coarse space is made of the vectors that sweeps leave over.
 template <class Real>
 class CoarseCorrection {
   public:
@@ -47,7 +46,7 @@ class CoarseCorrection {
     /// Makes room for the sums over contacts (kernels/coarse_correction.hpp) and clears them.
     void begin(std::size_t rows);
 
-    /// From the sums to s, a row.
+    /// Finds s of each row from the sums.
     /// @param motion  [rows][4], places of the bodies in the first two
     /// @param velocity  [rows][4], inverse masses in the last
     /// @param gain  m/s, what gravity adds in a substep
@@ -65,12 +64,12 @@ class CoarseCorrection {
 
   private:
     static constexpr int kShortestPause = 8;  // substeps
-    static constexpr std::size_t kParts = 8;  // rows are shared out by these, whatever the threads
+    static constexpr std::size_t kParts = 8;  // parts that rows are cut into, for any number of threads
     /// Sums over loaded bodies.
     struct Extent {
         double count = 0, mass = 0, px = 0, py = 0, energy = 0, x = 0, y = 0, xx = 0, yy = 0;
     };
-    /// What the bodies of a cell add to its four nodes, and to the ten pairs of them.
+    /// Sums over the bodies of a cell for its four nodes, and for the ten pairs of them.
     struct Cell {
         std::array<double, 4> rate;
         std::array<double, 10> product;
@@ -80,7 +79,7 @@ class CoarseCorrection {
         double s, rate;
         std::array<double, 9> product;  // with the nodes around it, line by line; itself in the middle
     };
-    /// Where a body is on the grid.
+    /// Place of a body on the grid.
     struct At {
         std::size_t i, j;  // cell along x and y
         double f, g;       // from its low left node to the next ones, 0 ... 1

@@ -6,10 +6,13 @@
 namespace carom {
 namespace {
 
-/// Who touches a squeezed body is looked at, too; then who touches him, while these contacts are so few.
+/// The contacts of a squeezed body are solved with it, then those of the bodies they touch, ring by ring,
+/// while there are fewer contacts than this.
 constexpr std::size_t kFewContacts = 128;
+/// Rings at most.
 constexpr int kMostRings = 64;
-/// Solved when no contact's velocity changes by more, as a share of what gravity adds in a substep.
+/// The system is solved when no contact's velocity changes by more than this share of what gravity adds to a
+/// velocity in a substep.
 constexpr double kAccuracy = 1e-3;
 /// Contacts solved in a substep at most, 20 ns each.
 constexpr std::size_t kMostSolves = 8192;
@@ -45,7 +48,7 @@ void LocalSolve<Real>::find(const ContactRows<Real>& pairs, const Column<Real>& 
             const bool reaches_a = b > 0 && b <= ring, reaches_b = a > 0 && a <= ring;
             if (!reaches_a && !reaches_b) return;
             pairs_.push_back(static_cast<std::uint32_t>(i));
-            // Whoever is much heavier than the body he touches stands still for it.
+            // A body much heavier than the one it touches stands still for that one.
             const double of_a = inverse(pairs.a[i]), of_b = inverse(pairs.b[i]);
             if (a == 0 && kUneven * of_a >= of_b) a = static_cast<std::uint8_t>(ring + 1);
             if (b == 0 && kUneven * of_b >= of_a) b = static_cast<std::uint8_t>(ring + 1);

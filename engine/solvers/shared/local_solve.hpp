@@ -12,12 +12,12 @@ namespace carom {
 /// Contacts of bodies of very different masses, and those around the lighter ones, solved to convergence.
 ///
 /// A sweep takes from a heavy body what its light neighbours can stop: their share of its mass. Between a
-/// floor and a body a million times heavier it would take a million sweeps. So what is squeezed by somebody
-/// more than kUneven times as heavy is solved on its own after the sweeps, as a small system in double
-/// precision, by sweeps that a conjugate gradient makes faster: of many contacts under one heavy body nearly
-/// all behave alike, and what is alike takes one step. Scenes of like masses have none of it.
-/// Numbers: docs/decisions/0014-mass-ratios.md.
-/// Source: nonsmooth nonlinear conjugate gradients (Silcowitz-Hansen, Niebe & Erleben 2010).
+/// floor and a body a million times heavier it would take a million sweeps. So the contacts of a body that is
+/// squeezed by one more than kUneven times as heavy are solved on their own after the sweeps, as a small
+/// system in double precision, by sweeps that a conjugate gradient makes faster: many contacts under one
+/// heavy body behave nearly alike, and all that is alike takes one step. Scenes of like masses have none of
+/// it. Numbers: docs/decisions/0014-mass-ratios.md. Source: nonsmooth nonlinear conjugate gradients
+/// (Silcowitz-Hansen, Niebe & Erleben 2010).
 template <class Real>
 class LocalSolve {
   public:

@@ -8,7 +8,7 @@
 
 namespace carom {
 
-/// What begin_flight needs of a world, but for its walls and the motion it writes.
+/// Arguments of the kernel begin_flight, but for the walls and the motion it writes.
 /// @param end  the clock of the flight at its end
 template <class Real>
 BeginFlight<Real> flight_arguments(const Simulation<Real>& sim, const FlightClock& end) {

@@ -9,7 +9,7 @@ constexpr int kSweeps = 32;
 /// A push of less than this share of what a pair may overlap is not worth another sweep.
 constexpr double kCloseEnough = 0.1;
 
-/// For centres that coincide: one of eight directions, by the rows alone.
+/// Normal for centres that coincide: one of eight directions, by the rows alone.
 Vec2 any_normal(std::int32_t a, std::int32_t b) {
     constexpr Vec2 kNormals[] = {{1, 0},  {0.6, 0.8},   {0, 1},  {-0.8, 0.6},
                                  {-1, 0}, {-0.6, -0.8}, {0, -1}, {0.8, -0.6}};

@@ -20,7 +20,7 @@ class PositionProjection {
         double least;             // m, separation that is to be reached, below zero
         double share_a, share_b;  // of a push; they add up to one
     };
-    /// What is flat and does not give way.
+    /// A wall or an edge that keeps a body on one side: flat, and it does not give way.
     struct Plane {
         std::int32_t a;
         Vec2 normal;         // into it
@@ -28,16 +28,16 @@ class PositionProjection {
     };
 
     std::vector<Vec2> place;              ///< m, of each row
-    std::vector<std::uint8_t> is_marked;  ///< of each row: whose neighbours are looked at
+    std::vector<std::uint8_t> is_marked;  ///< of each row: its neighbours are looked at
     std::vector<std::uint8_t> is_moved;   ///< of each row: pushed by `part`
     std::vector<Pair> pairs;
     std::vector<Plane> planes;
 
     /// Pushes until no pair lacks more than a tenth of what it may overlap, or as often as is of use.
-    /// @return whether anybody was pushed.
+    /// @return whether any body was pushed.
     /// Cost: O(pairs + planes) a sweep.
     bool part();
-    /// @return whether somebody was deep in one.
+    /// Pushes bodies out of the planes. @return whether any was deep in one.
     bool push_from_planes();
 
     std::size_t bytes() const {

@@ -8,14 +8,17 @@
 namespace carom {
 namespace {
 
-/// What a body may get too much, in impulses of its own weight and as a share of what presses on it.
+/// A body may keep this much impulse too much: this many times that of its own weight in a substep, plus this
+/// share of the impulses that press on it.
 constexpr double kAllowedWeights = 0.5, kAllowedShare = 0.002;
-/// Of a contact along its tangent, as a share of that along its normal: as masses are for a disc.
+/// Stiffness of a contact along its tangent over that along its normal: the ratio of a disc's effective
+/// masses.
 constexpr double kTangentStiffness = 1.0 / 3;
-/// Of the stiffness of one contact: so that a body with a single contact is held sideways, too.
+/// Stiffness, in that of one contact, which is added in every direction: a body with a single contact is then
+/// held sideways, too.
 constexpr double kLeastStiffness = 1e-3;
 constexpr double kOverRelaxation = 1.5;
-/// Bodies are looked at so often at most, 0.1 us each: what is still uneven then is left to the sweeps.
+/// At most this many looks at a body, 0.1 us each; the sweeps are left the unevenness that remains.
 constexpr std::size_t kMostLooks = 20000;
 
 Vec2 tangent_of(Vec2 normal) {
@@ -66,7 +69,8 @@ void Rebalance<Real>::sort_by_body() {
     }
 }
 
-/// What neither rest nor free fall explains: a body may go without any part of what its weight asks for.
+/// The part of a body's excess impulse that neither rest nor free fall explains: a body may go without any
+/// part of what its weight asks for.
 template <class Real>
 Vec2 Rebalance<Real>::excess_of(const Load& load) const {
     const double w2 = length_squared(load.weight);
@@ -85,12 +89,12 @@ void Rebalance<Real>::queue_if_uneven(std::int32_t row) {
     queue_.push_back(row);
 }
 
-/// What was the weight of the body that is gone: what it pressed on others with, less what pressed on it.
-/// That load flows off; the rest finds another way.
+/// The weight of a body that is gone is what it pressed on others with, less what pressed on it. That load
+/// flows off; the rest finds another way.
 template <class Real>
 void Rebalance<Real>::begin_flows(std::span<const LostContact> lost) {
     for (std::size_t first = 0, last = 0; first < lost.size(); first = last) {
-        double up = 0, down = 0;  // times the weight of who was pressed
+        double up = 0, down = 0;  // N s, along the weight of the bodies that were pressed
         for (; last < lost.size() && lost[last].gone == lost[first].gone; ++last) {
             const Load& load = loads_[static_cast<std::size_t>(lost[last].row)];
             const double along = dot(load.excess, load.weight) / std::sqrt(length_squared(load.weight));
@@ -177,7 +181,7 @@ void Rebalance<Real>::relax_body(std::int32_t row) {
     }
 }
 
-/// First come, first served; who is in the queue may bring others into it.
+/// Deals with the bodies of the queue, first come, first served; dealing with one may bring others into it.
 template <class Real>
 void Rebalance<Real>::drain_queue(void (Rebalance::*deal_with)(std::int32_t)) {
     for (std::size_t i = 0; i < queue_.size(); ++i) {

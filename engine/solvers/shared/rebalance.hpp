@@ -17,13 +17,13 @@ namespace carom {
 /// Contacts begin a step with the impulses of the step before. Beside a body that is gone these are far from
 /// what they should be, and sweeps take long to find out: each contact of a chain is in balance with the
 /// next, only the body at its end feels what is wrong, and is thrown. Two things are done about it before the
-/// step. What was the weight of the body itself is gone: it is taken from the contacts that carried it, body
-/// by body, down to the walls. What it carried for others has to find another way: what a body gets too much
-/// is shared out among its contacts, as if they were springs and its neighbours stood still; then these have
-/// it, and so on, until nobody has much more than one who falls. Impulses act on both bodies of a contact, so
-/// momentum is kept; they push, and friction stays within its limit.
-/// Numbers: docs/decisions/0013-removed-loads.md.
-/// Source: relaxation where the residual is largest (Southwell 1940), here in the order in which it appears.
+/// step. The weight of the body itself is gone: it is taken from the contacts that carried it, body by body,
+/// down to the walls. The load it carried for others has to find another way: the impulse that a body gets
+/// too much is shared out among its contacts, as if they were springs and its neighbours stood still; then
+/// these have it, and so on, until no body has much more than one that falls. Impulses act on both bodies of
+/// a contact, so momentum is kept; they push, and friction stays within its limit. Numbers:
+/// docs/decisions/0013-removed-loads.md. Source: relaxation where the residual is largest (Southwell 1940),
+/// here in the order in which it appears.
 template <class Real>
 class Rebalance {
   public:
