@@ -10,8 +10,8 @@ namespace {
 // The common margin of a body: this many steps of the fastest body, between fractions of the largest and
 // smallest radius. docs/decisions/0002 has the measurements.
 constexpr double kStepsOfFastest = 2;
-constexpr double kSmallestMargin = 0.05;  // of the smallest radius
-constexpr double kLargestMargin = 1;      // of the largest radius
+constexpr double kSmallestMargin = 0.05;  // least margin, in smallest radii
+constexpr double kLargestMargin = 1;      // largest margin, in largest radii
 // A body that crosses more than the common margin in one step gets its own path, and this much more for
 // deflections.
 constexpr double kOwnMargin = 1.25;

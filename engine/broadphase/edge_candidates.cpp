@@ -14,7 +14,7 @@ namespace {
 // layers of discs are looked at instead of one.
 constexpr double kStepsOfEdge = 6;
 constexpr double kLargestEdgeMargin = 4;
-constexpr double kOwnEdgeMargin = 1.25;  // of one step's way
+constexpr double kOwnEdgeMargin = 1.25;  // ways of one step that the margin of a fast edge is
 
 // Discs that leave their margins get new ones where they are. Pairs are found as if every reach was larger by
 // this share of the smallest radius, so that most of these discs need not be looked at again.

@@ -8,7 +8,7 @@
 namespace carom {
 namespace {
 
-constexpr double kPackedFraction = 0.9;  // of the plane that discs of mixed sizes fill at most
+constexpr double kPackedFraction = 0.9;  // share of the plane that discs of mixed sizes fill at most
 
 template <class Real>
 bool is_within_ratio(Real smallest, Real largest) {

@@ -6,9 +6,10 @@
 namespace carom {
 namespace {
 
-constexpr double kMargin = 0.01;            // of a cell: how far a disc goes on before it is registered anew
-constexpr std::size_t kFewestCells = 4;     // a side, so that three neighbours are three buckets
-constexpr std::size_t kBucketsADisc = 4;    // at most: memory is O(discs) wherever they are
+/// A disc goes on by this share of a cell's size beyond it before it is registered anew.
+constexpr double kMargin = 0.01;
+constexpr std::size_t kFewestCells = 4;     // cells along a side, so that three neighbours are three buckets
+constexpr std::size_t kBucketsADisc = 4;    // buckets a disc at most: memory is O(discs) wherever they are
 constexpr double kOutermostCell = 1 << 30;  // the cells there have no outer edge, so numbers stay 32-bit
 
 }  // namespace

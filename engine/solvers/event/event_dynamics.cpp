@@ -8,10 +8,13 @@
 namespace carom {
 namespace {
 
-constexpr double kFarAhead = 1e15;          // s: where the search for a curved path's impact ends
-constexpr double kContactRoundOff = 1e-13;  // of the reach: how exactly that search finds it
-constexpr double kStillApart = 1e-9;        // of the reach: it gave up before they touched
-constexpr double kRoundOff = 1e-14;         // of the coordinates
+constexpr double kFarAhead = 1e15;  // s, at which the search for a curved path's impact ends
+/// That search finds a contact to this share of the reach (the sum of the radii).
+constexpr double kContactRoundOff = 1e-13;
+/// It gave up before the two touched if they are farther apart than this share of the reach, and than
+/// round-off: the share below of the coordinates.
+constexpr double kStillApart = 1e-9;
+constexpr double kRoundOff = 1e-14;
 
 }  // namespace
 

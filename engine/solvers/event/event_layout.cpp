@@ -9,15 +9,17 @@
 namespace carom {
 namespace {
 
-constexpr double kCollapseFraction = 1e-4;  // of the time a typical disc takes for its radius: contact time
-constexpr double kSameInstant = 1e-11;      // of that time: impacts this near are one instant
-constexpr double kSlowest = 1e-14;          // of a typical speed: round-off
-constexpr double kLongestClock = 1024;  // of that time: then the clock begins anew, to keep its resolution
-constexpr double kDiscsACell = 1;       // on average, if discs are not so large that cells must be larger
-constexpr std::size_t kFewDiscs = 16;   // up to this number all discs are neighbours
-constexpr double kBoundless = 1e12;     // m, size of the cells then
-constexpr std::size_t kMostLarge = 32;  // discs that are kept out of the cells
-constexpr std::int64_t kImpactsBetweenSorts = 40;  // a disc, on average: it has moved some cells by then
+// The typical time is that in which the smallest disc flies its radius at a typical speed.
+constexpr double kCollapseFraction = 1e-4;  // typical times: contact time of the rule against collapse
+constexpr double kSameInstant = 1e-11;      // typical times: impacts this near are at one instant
+constexpr double kSlowest = 1e-14;          // typical speeds: discs leave an impact no slower; round-off
+constexpr double kLongestClock = 1024;      // typical times: the clock begins anew then, for its resolution
+constexpr double kDiscsACell = 1;           // discs a cell on average, unless their size makes cells larger
+constexpr std::size_t kFewDiscs = 16;       // up to this number all discs are neighbours
+constexpr double kBoundless = 1e12;         // m, size of a cell for so few: one holds all
+constexpr std::size_t kMostLarge = 32;      // discs that are kept out of the cells
+/// Discs are sorted anew after this many impacts a disc on average: it has moved by some cells by then.
+constexpr std::int64_t kImpactsBetweenSorts = 40;
 
 struct Box {
     Vec2 min{kNever, kNever}, max{-kNever, -kNever};

@@ -9,7 +9,7 @@ namespace {
 // Gauss-Seidel ends when a sweep changes nothing by more than this fraction of the largest value, or here: a
 // stack of n needs some 10 n² sweeps. Contacts persist from step to step and start from their last forces, so
 // a pile that is too deep for that converges over several steps.
-constexpr std::size_t kMostUpdates = 1000000;  // of one contact: some 10 ms
+constexpr std::size_t kMostUpdates = 1000000;  // updates of single contacts: some 10 ms
 constexpr std::size_t kFewestSweeps = 200;
 constexpr double kConverged = 1e-13;
 

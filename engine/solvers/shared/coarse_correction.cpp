@@ -7,15 +7,17 @@ namespace carom {
 namespace {
 
 // docs/decisions/0017-heave.md has the measurements of all of these.
-constexpr double kBodiesOfCell = 192;  // about: half and four times as many did worse
+constexpr double kBodiesOfCell = 192;  // bodies a cell, about: half and four times as many did worse
 constexpr double kSmallestCell = 8;    // largest radii: s is taken to be linear around a body
 constexpr double kLeast = -0.9;        // least s: a contact never pulls, and keeps some load
 constexpr double kMost = 4;            // largest s
 constexpr int kSweeps = 20;            // over the nodes
 // A correction is small if it takes less than either of these; then the pause after it is twice as long.
-constexpr double kSmallDrop = 0.1;     // of the energy that gravity gives to the pile in a substep from rest
-constexpr double kSmallShare = 0.006;  // of the kinetic energy around the centre of mass: a drum that turns
-constexpr int kLongestPause = 64;      // substeps
+/// Share of the energy that gravity gives to the pile in a substep from rest.
+constexpr double kSmallDrop = 0.1;
+/// Share of the kinetic energy around the centre of mass, which matters for a drum that turns.
+constexpr double kSmallShare = 0.006;
+constexpr int kLongestPause = 64;  // substeps
 /// After a pause longer than the shortest, contacts keep this share of the 1/n that deadbeat would leave
 /// them: in so many substeps the shortest waves swing back, and all of it would drive them.
 constexpr double kKeptAfterLong = 0.25;
