@@ -36,7 +36,7 @@ template <class Real>
 void ContactGraph<Real>::rename_rows() {
     const std::vector<std::int32_t>& now = trail.new_rows();
     lost.clear();
-    for (ContactCandidates<Real>* contacts : {&pairs, &supports})
+    for (ContactRows<Real>* contacts : {&pairs, &supports})
         contacts->for_each([&](std::size_t i) {
             std::int32_t &a = contacts->a[i], &b = contacts->b[i];
             const std::int32_t old_a = a, old_b = b;
@@ -282,7 +282,7 @@ void ContactGraph<Real>::colour_supports(std::size_t rows) {
 
 /// Fills what is no contact in the colours [first, last).
 template <class Real>
-void pad_colours(ContactCandidates<Real>& sorted, std::size_t first, std::size_t last, std::int32_t row) {
+void pad_colours(ContactRows<Real>& sorted, std::size_t first, std::size_t last, std::int32_t row) {
     for (std::size_t c = first; c < last; ++c) {
         const std::size_t stride = sorted.stride(c), used = stride * sorted.count[c];
         for (std::size_t k = stride > 1 ? 0 : used; k < padded(used); ++k) {
@@ -296,7 +296,7 @@ void pad_colours(ContactCandidates<Real>& sorted, std::size_t first, std::size_t
 /// Places of all colours, and their padding.
 /// @param first_padding_row  of the first group; the others' follow
 template <class Real>
-void ContactGraph<Real>::lay_out_colours(const Found& found, ContactCandidates<Real>& sorted,
+void ContactGraph<Real>::lay_out_colours(const Found& found, ContactRows<Real>& sorted,
                                          std::size_t first_padding_row) {
     const std::size_t group_count = found.begin.size() - 1;
     sorted.begin.clear(), sorted.count.clear(), sorted.first_colour.clear();
@@ -327,7 +327,7 @@ void ContactGraph<Real>::lay_out_colours(const Found& found, ContactCandidates<R
 
 /// Stable, so that bodies near each other stay near each other within a colour.
 template <class Real>
-void ContactGraph<Real>::sort_by_colour(const Found& found, ContactCandidates<Real>& sorted,
+void ContactGraph<Real>::sort_by_colour(const Found& found, ContactRows<Real>& sorted,
                                         std::size_t first_padding_row, const Executor& executor) {
     lay_out_colours(found, sorted, first_padding_row);
     const double work = kNanosecondsToSort * static_cast<double>(found.a.size());
@@ -382,7 +382,7 @@ void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const EdgeCan
 
 /// Lays the last group of `sorted` out anew, with what is in late_ besides.
 template <class Real>
-void ContactGraph<Real>::add_late(ContactCandidates<Real>& sorted, std::int32_t padding_row, bool both_move) {
+void ContactGraph<Real>::add_late(ContactRows<Real>& sorted, std::int32_t padding_row, bool both_move) {
     const std::size_t group = sorted.groups() - 1, first = sorted.first_colour[group];
     std::size_t place = first < sorted.colours() ? sorted.begin[first] : sorted.a.size();
     sorted.for_each(group, group + 1, [&](std::size_t i) {
@@ -461,7 +461,7 @@ void ContactGraph<Real>::add(const Candidates<Real>& candidates, const EdgeCandi
     }
     for (const EdgePair pair : edges.new_pairs())
         new_supports_.push_back({pair.row, support_of_edge(pair.edge), 0, 0, 0});
-    const auto add_to = [&](ContactCandidates<Real>& contacts, const std::vector<Late>& added,
+    const auto add_to = [&](ContactRows<Real>& contacts, const std::vector<Late>& added,
                             RollingMemory<Real>& rolling, std::size_t padding_row) {
         if (added.empty()) return;
         if (keeps_rolling) rolling.file(contacts, bodies.count);

@@ -7,7 +7,7 @@
 
 #include "broadphase/candidates.hpp"
 #include "broadphase/edge_candidates.hpp"
-#include "constraints/contact_candidates.hpp"
+#include "constraints/contact_rows.hpp"
 #include "constraints/impulse_memory.hpp"
 #include "constraints/rolling_memory.hpp"
 #include "constraints/row_renaming.hpp"
@@ -58,9 +58,9 @@ class ContactGraph {
     RowRenaming trail;                      ///< to be told of rows that change between renewals
     std::vector<LostContact> lost;          ///< that pushed, until they are dealt with
     TaskGroups groups;                      ///< of the last renewal
-    ContactCandidates<Real> pairs;          ///< of two bodies that move, a < b
+    ContactRows<Real> pairs;                ///< of two bodies that move, a < b
     /// Of a body that moves and what nothing moves: walls, immovable bodies.
-    ContactCandidates<Real> supports;
+    ContactRows<Real> supports;
 
     /// Rows that padding names: each group has its own beyond the bodies, so that no two threads write to
     /// one.
@@ -112,10 +112,10 @@ class ContactGraph {
     void colour_pairs(std::size_t rows, const Executor& executor);
     void colour_supports(std::size_t rows);
     void colour_group(Found& found, std::size_t group, std::uint64_t* of_a, std::uint64_t* of_b);
-    void sort_by_colour(const Found& found, ContactCandidates<Real>& sorted, std::size_t first_padding_row,
+    void sort_by_colour(const Found& found, ContactRows<Real>& sorted, std::size_t first_padding_row,
                         const Executor& executor);
-    void add_late(ContactCandidates<Real>& sorted, std::int32_t padding_row, bool both_move);
-    void lay_out_colours(const Found& found, ContactCandidates<Real>& sorted, std::size_t first_padding_row);
+    void add_late(ContactRows<Real>& sorted, std::int32_t padding_row, bool both_move);
+    void lay_out_colours(const Found& found, ContactRows<Real>& sorted, std::size_t first_padding_row);
 
     Found found_pairs_, found_supports_;
     std::vector<std::int32_t> listed_a_, listed_b_;  // supports as they are found

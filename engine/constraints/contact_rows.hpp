@@ -1,83 +1,165 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
-#include "constraints/contact_candidates.hpp"
 #include "kernels/contact_arguments.hpp"
+#include "state/column.hpp"
 
 namespace carom {
 
-/// Contacts of one step as the kernels stream them, with what is used once beside them. Each group begins
-/// where it does among the candidates, so that groups can be written side by side.
+/// The effects that ask for columns of contacts.
+struct ContactEffects {
+    bool friction = false, restitution = false, rolling = false;
+    /// Whether contacts differ in it, so that one number does not serve all.
+    bool friction_varies = false, rolling_varies = false, radius_varies = false;
+
+    /// Supports have other materials and radii than bodies have, so they have all columns of an effect.
+    ContactEffects of_supports() const {
+        return {friction, restitution, rolling, friction, rolling, rolling};
+    }
+};
+
+/// What a column of contacts is for: the one thing to state of a new one.
+struct ColumnUse {
+    enum class Of { pairs, supports, all } of;
+    enum class Holds {
+        from_step_to_step,   // part of the world's state, sized by ContactGraph
+        until_pairs_change,  // described once; of supports, in each step
+        in_a_step,
+    } holds;
+    /// Those of ContactEffects that must all be on; null: none.
+    std::array<bool ContactEffects::*, 2> needs = {};
+
+    bool is_needed(const ContactEffects& effects) const {
+        for (const auto need : needs)
+            if (need && !(effects.*need)) return false;
+        return true;
+    }
+};
+
+/// Contacts of one kind, by group (task_groups.hpp) and in each group by colour: no body that moves is in two
+/// contacts of a colour, so all of a colour can be solved at once, by lanes, with the same bits. Each keeps
+/// its impulses from step to step while its pair lives.
+///
+/// The contact graph has all that may come to touch until the broadphase finds pairs anew. Pairs are solved
+/// where they stand there, and leave out blocks of which no contact can touch in a step. Supports are
+/// solved in a second store, closer together: in a step few of them can touch.
 template <class Real>
 struct ContactRows {
-    Column<std::int32_t> a, b;
-    Column<Real> normal_x, normal_y, separation, mass, normal_impulse, friction_impulse, friction, floor;
-    Column<Real> largest_impulse, surface_normal, surface_tangent;
-    Column<Real> reach;              // m, sum of the radii; only of pairs
-    Column<std::int32_t> candidate;  // number among the candidates; only of supports
+    // Lengths are padded to kRowPadding.
+    Column<std::int32_t> a;  // row
+    /// Row; b < 0 is a wall (WallSide) or an edge (state/edges.hpp). Padding: a row beyond the bodies.
+    Column<std::int32_t> b;
+    Column<Real> normal_impulse;    // N s, of a substep
+    Column<Real> friction_impulse;  // N s
+    Column<Real> rolling_impulse;   // N s
+
+    // What the kernels stream besides: kernels/contact_arguments.hpp.
+    Column<Real> normal_x, normal_y, separation, mass, friction, floor, largest_impulse;
+    Column<Real> surface_normal, surface_tangent, rolling, rolling_share, surface_rolling;
+    // Once a step, or a step with restitution.
+    Column<Real> reach;              // m, sum of the radii
+    Column<std::int32_t> candidate;  // place in the contact graph
     Column<Real> approach;           // m/s, relative normal velocity at the start of the step
-    Column<Real> bounce_impulse, bounce_friction, spare;
-    Column<Real> rolling_impulse, rolling, rolling_share, surface_rolling, bounce_rolling;
-    std::vector<std::size_t> begin, count;  // of each colour
+    Column<Real> bounce_impulse, bounce_friction, bounce_rolling;  // N s, of restitution alone
+    Column<Real> spare;                                            // N s, bounce_impulse one sweep ago
+
+    /// Every column of a number a contact: calls fn(column, use). Sizes, padding, moving and bytes follow.
+    template <class Rows, class Fn>
+    static void for_each_column(Rows& rows, const Fn& fn) {
+        using E = ContactEffects;
+        constexpr auto kAll = ColumnUse::Of::all, kPairs = ColumnUse::Of::pairs,
+                       kSupports = ColumnUse::Of::supports;
+        constexpr auto kLasts = ColumnUse::Holds::from_step_to_step,
+                       kDescribed = ColumnUse::Holds::until_pairs_change, kStep = ColumnUse::Holds::in_a_step;
+        fn(rows.a, ColumnUse{kAll, kLasts});
+        fn(rows.b, ColumnUse{kPairs, kLasts});
+        fn(rows.normal_impulse, ColumnUse{kAll, kLasts});
+        fn(rows.friction_impulse, ColumnUse{kAll, kLasts, {&E::friction}});
+        fn(rows.rolling_impulse, ColumnUse{kAll, kLasts, {&E::rolling}});
+        fn(rows.normal_x, ColumnUse{kAll, kStep});
+        fn(rows.normal_y, ColumnUse{kAll, kStep});
+        fn(rows.separation, ColumnUse{kAll, kStep});
+        fn(rows.mass, ColumnUse{kAll, kDescribed});
+        fn(rows.friction, ColumnUse{kAll, kDescribed, {&E::friction, &E::friction_varies}});
+        fn(rows.floor, ColumnUse{kAll, kStep});
+        fn(rows.largest_impulse, ColumnUse{kAll, kStep, {&E::restitution}});
+        fn(rows.surface_normal, ColumnUse{kSupports, kStep});
+        fn(rows.surface_tangent, ColumnUse{kSupports, kStep});
+        fn(rows.rolling, ColumnUse{kAll, kDescribed, {&E::rolling, &E::rolling_varies}});
+        fn(rows.rolling_share, ColumnUse{kAll, kDescribed, {&E::rolling, &E::radius_varies}});
+        fn(rows.surface_rolling, ColumnUse{kSupports, kStep, {&E::rolling}});
+        fn(rows.reach, ColumnUse{kPairs, kDescribed});
+        fn(rows.candidate, ColumnUse{kSupports, kStep});
+        fn(rows.approach, ColumnUse{kAll, kStep, {&E::restitution}});
+        fn(rows.bounce_impulse, ColumnUse{kAll, kStep, {&E::restitution}});
+        fn(rows.bounce_friction, ColumnUse{kAll, kStep, {&E::restitution, &E::friction}});
+        fn(rows.bounce_rolling, ColumnUse{kAll, kStep, {&E::restitution, &E::rolling}});
+        fn(rows.spare, ColumnUse{kAll, kStep, {&E::restitution}});
+    }
+
+    /// Colour c is [begin[c], begin[c] + count[c]); begin[c] is a multiple of kRowPadding.
+    std::vector<std::size_t> begin, count;
+    /// Group g has the colours [first_colour[g], first_colour[g + 1]).
+    std::vector<std::size_t> first_colour;
+    /// The last colour of the last group takes what found no other: its contacts may share bodies and are
+    /// solved one by one. They stand `overflow_stride` apart, with padding between.
+    bool has_overflow = false;
+    std::size_t overflow_stride = 1;
 
     /// Blocks of kContactBlock contacts [first, last) of which each has some that can touch.
     struct Run {
         std::uint32_t first, last;
     };
-    // Only of pairs.
-    Column<std::uint8_t> is_live;                    // a block
-    Column<std::uint8_t> needs_second_sweep;         // a block: kernels/contact_arguments.hpp
+    // Of pairs alone.
+    Column<std::uint8_t> is_live;                    // a block: kernels/contact_arguments.hpp
+    Column<std::uint8_t> needs_second_sweep;         // a block: likewise
     Column<Run> run;                                 // those of a group begin at its first block
     std::vector<std::size_t> run_count, live_count;  // a group: runs, contacts that can touch
-    std::vector<std::size_t> group_begin;            // place of each group, and the end
-    std::size_t first_place(std::size_t group) const { return group_begin[group]; }
 
-    /// Room for supports, which are compressed: candidates that cannot touch in this step are left out.
-    void resize(const ContactCandidates<Real>& candidates, bool is_rough, bool bounces);
-    /// Room for pairs, which stand where they stand among the candidates. What is described once, masses,
-    /// reaches and coefficients, is kept.
-    void resize_in_place(const ContactCandidates<Real>& candidates, bool friction_varies, bool bounces);
-    /// The columns of rolling resistance; none of them without it. After the others. Keeps the same.
-    void resize_rolling(std::size_t contacts, bool is_support, bool is_rolling, bool coefficient_varies,
-                        bool radius_varies);
-    /// Takes the columns that pairs share with their candidates, or gives them back.
-    void swap_with(ContactCandidates<Real>& candidates);
+    std::size_t colours() const { return begin.size(); }
+    std::size_t groups() const { return first_colour.empty() ? 0 : first_colour.size() - 1; }
+    std::size_t overflow() const { return has_overflow ? count.back() : 0; }
+    std::size_t contacts() const;  // without padding
+    std::size_t stride(std::size_t colour) const {
+        return has_overflow && colour + 1 == colours() ? overflow_stride : 1;
+    }
+    /// Contacts the kernels run over in a colour. The rest of the last batch is padding.
+    std::size_t length(std::size_t colour) const { return stride(colour) * count[colour]; }
+    /// Where the contacts of a group begin; of the group after the last: where they end.
+    std::size_t first_place(std::size_t group) const {
+        return first_colour[group] < colours() ? begin[first_colour[group]] : a.size();
+    }
 
-    ContactColumns<Real> columns();
-    std::size_t bytes() const;
+    /// Calls fn(i) for every contact of the groups [first, last), or of all, that is no padding.
+    template <class Fn>
+    void for_each(std::size_t first, std::size_t last, const Fn& fn) const {
+        for (std::size_t c = first_colour[first]; c < first_colour[last]; ++c)
+            for (std::size_t n = 0, i = begin[c]; n < count[c]; ++n, i += stride(c)) fn(i);
+    }
+    template <class Fn>
+    void for_each(const Fn& fn) const {
+        if (groups() > 0) for_each(0, groups(), fn);
+    }
 
+    /// Room for the columns of a step beside those that last. What is described once is kept.
+    void resize_for_step(const ContactEffects& effects);
+    /// Room for what can touch in a step of `candidates`, to be closed up colour by colour. Supports alone.
+    void resize_for_some_of(const ContactRows& candidates, const ContactEffects& effects);
     /// Closes colour number `colour`, whose contacts stand one behind the other from `first` on: fills
     /// its last batch with contacts of row `dummy` that push nothing. The overflow's contacts may share
     /// bodies, so each of them gets a batch of its own.
     /// @return the place of the next colour of the group.
     std::size_t close_colour(std::size_t colour, std::size_t first, std::size_t contacts, std::int32_t dummy);
 
-    /// Contacts the kernels run over in a colour. The rest of the last batch is padding.
-    std::size_t length(std::size_t colour) const {
-        return is_serial(colour) ? kRowPadding * count[colour] : count[colour];
-    }
-    std::size_t contacts() const;
-    std::size_t overflow() const { return has_overflow_ ? count.back() : 0; }
-
-    /// Calls fn(contact) for every contact that is no padding, of all colours or of some.
-    template <class Fn>
-    void for_each(const Fn& fn) const {
-        for_each(0, begin.size(), fn);
-    }
-    template <class Fn>
-    void for_each(std::size_t first_colour, std::size_t last_colour, const Fn& fn) const {
-        for (std::size_t c = first_colour; c < last_colour; ++c)
-            for (std::size_t n = 0; n < count[c]; ++n) fn(begin[c] + n * (is_serial(c) ? kRowPadding : 1));
-    }
+    ContactColumns<Real> columns();
+    std::size_t bytes() const;
 
   private:
-    bool is_serial(std::size_t colour) const { return has_overflow_ && colour + 1 == count.size(); }
-    void fit_bounces(std::size_t contacts, bool bounces, bool is_rough);
     void pad(std::size_t first, std::size_t count, std::int32_t dummy);
-
-    bool has_overflow_ = false;
 };
 
 extern template struct ContactRows<float>;

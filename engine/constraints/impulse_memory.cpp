@@ -15,7 +15,7 @@ void ImpulseMemory<Real>::file_rows(File& file, std::size_t first, std::size_t l
                                     const Each& each) {
     Range* of_row = file.of_row.data();
     std::fill(of_row + first, of_row + last, Range{0, 0});
-    each([&](const ContactCandidates<Real>& contacts, std::size_t i) {
+    each([&](const ContactRows<Real>& contacts, std::size_t i) {
         if (contacts.normal_impulse[i] > 0) ++of_row[static_cast<std::size_t>(contacts.a[i])].end;
     });
     for (std::size_t row = first; row < last; ++row) {
@@ -23,7 +23,7 @@ void ImpulseMemory<Real>::file_rows(File& file, std::size_t first, std::size_t l
         of_row[row] = {place, place};
         place += count;
     }
-    each([&](const ContactCandidates<Real>& contacts, std::size_t i) {
+    each([&](const ContactRows<Real>& contacts, std::size_t i) {
         if (!(contacts.normal_impulse[i] > 0)) return;
         Range& range = of_row[static_cast<std::size_t>(contacts.a[i])];
         const Real friction = contacts.friction_impulse.empty() ? Real(0) : contacts.friction_impulse[i];
@@ -32,7 +32,7 @@ void ImpulseMemory<Real>::file_rows(File& file, std::size_t first, std::size_t l
 }
 
 template <class Real>
-void ImpulseMemory<Real>::file(const ContactCandidates<Real>& pairs, const ContactCandidates<Real>& supports,
+void ImpulseMemory<Real>::file(const ContactRows<Real>& pairs, const ContactRows<Real>& supports,
                                std::size_t rows, const TaskGroups* groups, const Executor& executor) {
     grouped_.is_empty = groups == nullptr;
     if (groups) {

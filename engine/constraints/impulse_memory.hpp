@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "constraints/contact_candidates.hpp"
+#include "constraints/contact_rows.hpp"
 #include "constraints/task_groups.hpp"
 #include "parallel/executor.hpp"
 
@@ -20,7 +20,7 @@ class ImpulseMemory {
     /// Files contacts of rows below `rows`.
     /// @param groups  of `pairs`, if the rows are still those that `pairs` was grouped by; else null
     /// Cost: O(rows + contacts), shared among threads if there are groups.
-    void file(const ContactCandidates<Real>& pairs, const ContactCandidates<Real>& supports, std::size_t rows,
+    void file(const ContactRows<Real>& pairs, const ContactRows<Real>& supports, std::size_t rows,
               const TaskGroups* groups, const Executor& executor);
 
     /// What the pair (a, b) had; nothing if it was none.

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "constraints/contact_candidates.hpp"
+#include "constraints/contact_rows.hpp"
 
 namespace carom {
 
@@ -13,7 +13,7 @@ template <class Real>
 class RollingMemory {
   public:
     /// Files contacts of rows below `rows`. Cost: O(rows + contacts).
-    void file(const ContactCandidates<Real>& contacts, std::size_t rows) {
+    void file(const ContactRows<Real>& contacts, std::size_t rows) {
         first_of_.assign(rows + 2, 0);
         contacts.for_each([&](std::size_t i) {
             if (is_filed(contacts, i)) ++first_of_[static_cast<std::size_t>(contacts.a[i]) + 2];
@@ -28,7 +28,7 @@ class RollingMemory {
     }
 
     /// Gives the contacts, in their new order, what they had.
-    void recall(ContactCandidates<Real>& contacts) const {
+    void recall(ContactRows<Real>& contacts) const {
         contacts.rolling_impulse.resize(0), contacts.rolling_impulse.resize(contacts.a.size());
         contacts.for_each([&](std::size_t i) {
             const auto row = static_cast<std::size_t>(contacts.a[i]);
@@ -46,7 +46,7 @@ class RollingMemory {
         std::int32_t b;
         Real impulse;  // N s
     };
-    static bool is_filed(const ContactCandidates<Real>& contacts, std::size_t i) {
+    static bool is_filed(const ContactRows<Real>& contacts, std::size_t i) {
         return contacts.normal_impulse[i] > 0 && i < contacts.rolling_impulse.size();
     }
 

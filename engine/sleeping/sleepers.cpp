@@ -15,7 +15,7 @@ constexpr double kLookInterval = kTimeToSleep / 8;  // s
 
 /// Calls fn(i) for every contact that carries an impulse.
 template <class Real, class Fn>
-void for_each_loaded(const ContactCandidates<Real>& contacts, const Fn& fn) {
+void for_each_loaded(const ContactRows<Real>& contacts, const Fn& fn) {
     contacts.for_each([&](std::size_t i) {
         if (contacts.normal_impulse[i] > 0) fn(i);
     });
@@ -77,7 +77,7 @@ void Sleepers<Real>::connect(const WorldState<Real>& world, const ContactGraph<R
 }
 
 template <class Real>
-void Sleepers<Real>::keep_contact(const WorldState<Real>& world, const ContactCandidates<Real>& contacts,
+void Sleepers<Real>::keep_contact(const WorldState<Real>& world, const ContactRows<Real>& contacts,
                                   std::size_t i, double substep) {
     const std::int32_t a = contacts.a[i], b = contacts.b[i];
     const std::int32_t smallest = islands_.island_of(a);
@@ -92,7 +92,7 @@ void Sleepers<Real>::keep_contact(const WorldState<Real>& world, const ContactCa
 }
 
 template <class Real>
-void Sleepers<Real>::keep_contacts(const WorldState<Real>& world, ContactCandidates<Real>& contacts,
+void Sleepers<Real>::keep_contacts(const WorldState<Real>& world, ContactRows<Real>& contacts,
                                    double substep) {
     for_each_loaded(contacts, [&](std::size_t i) {
         const std::int32_t smallest = islands_.island_of(contacts.a[i]);
@@ -171,7 +171,7 @@ bool Sleepers<Real>::put_to_sleep(WorldState<Real>& world, ContactGraph<Real>& g
 
 template <class Real>
 void Sleepers<Real>::forget_contacts(ContactGraph<Real>& graph, const WorldState<Real>& world) {
-    ContactCandidates<Real>& supports = graph.supports;
+    ContactRows<Real>& supports = graph.supports;
     supports.for_each([&](std::size_t i) {
         if (supports.b[i] >= static_cast<std::int32_t>(world.bodies.count))
             supports.b[i] = supports.a[i], supports.normal_impulse[i] = 0;
@@ -251,7 +251,7 @@ void Sleepers<Real>::restore_impulses(ContactGraph<Real>& graph, const WorldStat
         filed.push_back({row_of(kept.a), kept.support < 0 ? kept.support : row_of(kept.b), i});
     }
     std::sort(filed.begin(), filed.end());
-    const auto restore = [&](ContactCandidates<Real>& contacts, bool is_turned) {
+    const auto restore = [&](ContactRows<Real>& contacts, bool is_turned) {
         contacts.for_each([&](std::size_t i) {
             Woken wanted{contacts.a[i], contacts.b[i], 0};
             if (is_turned) std::swap(wanted.a, wanted.b);

@@ -81,8 +81,8 @@ class Sleepers {
     std::span<const std::int32_t> find_near(const WorldState<Real>& world, Vec2 place, double reach);
     bool note_still(WorldState<Real>& world, double dt, double substep) const;
     void connect(const WorldState<Real>& world, const ContactGraph<Real>& graph);
-    void keep_contacts(const WorldState<Real>& world, ContactCandidates<Real>& contacts, double substep);
-    void keep_contact(const WorldState<Real>& world, const ContactCandidates<Real>& contacts, std::size_t i,
+    void keep_contacts(const WorldState<Real>& world, ContactRows<Real>& contacts, double substep);
+    void keep_contact(const WorldState<Real>& world, const ContactRows<Real>& contacts, std::size_t i,
                       double substep);
     void lay_down(WorldState<Real>& world, std::size_t row);
     void rename_island(WorldState<Real>& world, std::int32_t from, std::int32_t to);

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "constraints/contact_candidates.hpp"
 #include "constraints/contact_rows.hpp"
 #include "kernels/contact_arguments.hpp"
 

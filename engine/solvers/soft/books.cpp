@@ -58,17 +58,17 @@ template <class Real>
 template <class From>
 void SoftSolver<Real>::book_pairs(const Impulses& impulses, const From& from, Books& books) const {
     const Column<Real>&normal = impulses.normal, &friction = impulses.friction, &rolling = impulses.rolling;
-    pairs_.for_each([&](std::size_t i) {
-        const Vec2 n{pairs_.normal_x[i], pairs_.normal_y[i]};
-        const MeanTwice a = mean_twice(from, velocity_, pairs_.a[i]),
-                        b = mean_twice(from, velocity_, pairs_.b[i]);
+    graph.pairs.for_each([&](std::size_t i) {
+        const Vec2 n{graph.pairs.normal_x[i], graph.pairs.normal_y[i]};
+        const MeanTwice a = mean_twice(from, velocity_, graph.pairs.a[i]),
+                        b = mean_twice(from, velocity_, graph.pairs.b[i]);
         const Vec2 v = b.v - a.v;
         books.restitution += 0.5 * static_cast<double>(normal[i]) * dot(v, n);
         if (!friction.empty())
             books.friction += 0.5 * static_cast<double>(friction[i]) * (cross(n, v) - a.rim - b.rim);
         if (rolling.empty()) return;
         const double share =
-            pairs_.rolling_share.empty() ? 0.5 : static_cast<double>(pairs_.rolling_share[i]);
+            graph.pairs.rolling_share.empty() ? 0.5 : static_cast<double>(graph.pairs.rolling_share[i]);
         books.friction += 0.5 * static_cast<double>(rolling[i]) * ((1 - share) * b.rim - share * a.rim);
     });
 }
@@ -127,7 +127,8 @@ void SoftSolver<Real>::book_substep(const WorldState<Real>& world, Books& books)
     book_supports({supports_.normal_impulse, supports_.friction_impulse, supports_.rolling_impulse}, from,
                   books);
     if (!books.is_open) return;
-    book_pairs({pairs_.normal_impulse, pairs_.friction_impulse, pairs_.rolling_impulse}, from, books);
+    book_pairs({graph.pairs.normal_impulse, graph.pairs.friction_impulse, graph.pairs.rolling_impulse}, from,
+               books);
     book_free_flight(world, books);
 }
 
@@ -137,7 +138,8 @@ void SoftSolver<Real>::book_bounces(Books& books) const {
     book_supports({supports_.bounce_impulse, supports_.bounce_friction, supports_.bounce_rolling}, from,
                   books);
     if (books.is_open)
-        book_pairs({pairs_.bounce_impulse, pairs_.bounce_friction, pairs_.bounce_rolling}, from, books);
+        book_pairs({graph.pairs.bounce_impulse, graph.pairs.bounce_friction, graph.pairs.bounce_rolling},
+                   from, books);
 }
 
 template <class Real>

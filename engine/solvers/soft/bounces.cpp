@@ -99,11 +99,11 @@ void SoftSolver<Real>::sweep_bounces() {
         k.contacts.largest_impulse = nullptr;
         return k;
     };
-    const SolveContacts<Real> on_pairs = arguments_for(pairs_), on_supports = arguments_for(supports_);
+    const SolveContacts<Real> on_pairs = arguments_for(graph.pairs), on_supports = arguments_for(supports_);
     const Sweep once{contact_kernels().next_pairs, contact_kernels().next_supports};
     for (int sweeps = 0; sweeps < kMostBounceSweeps; ++sweeps) {
         sweep({&once, 1}, on_pairs, on_supports);
-        const double change = std::fmax(change_of_bounces(pairs_), change_of_bounces(supports_));
+        const double change = std::fmax(change_of_bounces(graph.pairs), change_of_bounces(supports_));
         if (change <= kBounceTolerance<Real> * fastest_bounce_) break;
     }
 }
@@ -111,7 +111,7 @@ void SoftSolver<Real>::sweep_bounces() {
 template <class Real>
 void SoftSolver<Real>::bounce(const WorldState<Real>& world, Books& books) {
     fastest_bounce_ = 0;
-    const bool any_pair = find_bounces(pairs_, world), any_support = find_bounces(supports_, world);
+    const bool any_pair = find_bounces(graph.pairs, world), any_support = find_bounces(supports_, world);
     if (!any_pair && !any_support) return;
     if (books.is_open) before_bounce_ = velocity_;
     sweep_bounces();

@@ -84,8 +84,8 @@ bool SoftSolver<Real>::mark_stuck(const WorldState<Real>& world) {
 template <class Real>
 void SoftSolver<Real>::mark_deep(double deep) {
     graph.pairs.for_each([&](std::size_t i) {
-        if (!pairs_.is_live[i / kContactBlock] || static_cast<double>(pairs_.separation[i]) > -deep ||
-            is_loaded(i))
+        if (!graph.pairs.is_live[i / kContactBlock] ||
+            static_cast<double>(graph.pairs.separation[i]) > -deep || is_loaded(i))
             return;
         for (const std::int32_t row : {graph.pairs.a[i], graph.pairs.b[i]})
             parting_.is_marked[static_cast<std::size_t>(row)] |= 1;
@@ -153,7 +153,7 @@ void SoftSolver<Real>::list_pairs_of_thrown(const Bodies<Real>& bodies, const Co
 template <class Real>
 bool SoftSolver<Real>::is_loaded(std::size_t pair) const {
     return static_cast<double>(graph.pairs.normal_impulse[pair]) * substep_dt_ >
-           static_cast<double>(pairs_.mass[pair]) * push_;
+           static_cast<double>(graph.pairs.mass[pair]) * push_;
 }
 
 /// Lists who is near somebody marked.

@@ -29,15 +29,15 @@ SolveQuality SoftSolver<Real>::quality() const {
         quality.residual_max = std::fmax(quality.residual_max, std::fabs(change));
     };
     const auto is_row = [this](std::int32_t row) { return static_cast<std::size_t>(row) < count_; };
-    // Between steps the candidates have the rows and impulses of pairs, which stand in the same places.
     graph.pairs.for_each([&](std::size_t i) {
         const std::size_t block = i / kContactBlock;
         const std::int32_t a = graph.pairs.a[i], b = graph.pairs.b[i];
-        if (block >= pairs_.is_live.size() || !pairs_.is_live[block] || !is_row(a) || !is_row(b)) return;
-        const double nx = static_cast<double>(pairs_.normal_x[i]),
-                     ny = static_cast<double>(pairs_.normal_y[i]);
+        if (block >= graph.pairs.is_live.size() || !graph.pairs.is_live[block] || !is_row(a) || !is_row(b))
+            return;
+        const double nx = static_cast<double>(graph.pairs.normal_x[i]),
+                     ny = static_cast<double>(graph.pairs.normal_y[i]);
         look_at(i, static_cast<double>(graph.pairs.normal_impulse[i]),
-                velocity(b, nx, ny) - velocity(a, nx, ny), pairs_);
+                velocity(b, nx, ny) - velocity(a, nx, ny), graph.pairs);
     });
     supports_.for_each([&](std::size_t i) {
         if (!is_row(supports_.a[i])) return;

@@ -92,6 +92,7 @@ void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Colum
     rolls_ = world.effects.rolling_resistance;
     rolling_varies_ = rolls_ && !bodies.rolling_resistance.is_uniform();
     uniform_rolling_ = static_cast<double>(bodies.rolling_resistance.uniform_value());
+    radius_varies_ = !bodies.radius.is_uniform();
     derive_masses(bodies);
     const FlightClock clock = flight_clock_at(h, world.drag.linear);
     gravity_change_ = clock.s * gravity, decay_ = clock.u;
@@ -125,6 +126,11 @@ void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Colum
 }
 
 template <class Real>
+ContactEffects SoftSolver<Real>::contact_effects() const {
+    return {has_friction_, bounces_, rolls_, friction_varies_, rolling_varies_, radius_varies_};
+}
+
+template <class Real>
 SolveContacts<Real> SoftSolver<Real>::arguments(ContactRows<Real>& live) {
     SolveContacts<Real> k{};
     k.contacts = live.columns();
@@ -145,31 +151,33 @@ SolveContacts<Real> SoftSolver<Real>::arguments(ContactRows<Real>& live) {
 /// What stays the same until the pairs change.
 template <class Real>
 void SoftSolver<Real>::describe_group(const Bodies<Real>& bodies, std::size_t group) {
-    const std::size_t first = pairs_.first_place(group), last = pairs_.first_place(group + 1);
-    for (Column<Real>* column :
-         {&pairs_.mass, &pairs_.reach, &pairs_.friction, &pairs_.rolling, &pairs_.rolling_share})
+    const std::size_t first = graph.pairs.first_place(group), last = graph.pairs.first_place(group + 1);
+    for (Column<Real>* column : {&graph.pairs.mass, &graph.pairs.reach, &graph.pairs.friction,
+                                 &graph.pairs.rolling, &graph.pairs.rolling_share})
         if (!column->empty())
             std::fill(column->data() + first, column->data() + last, Real(0));  // of padding
     const Real same = static_cast<Real>(bodies.inverse_mass(0));
-    pairs_.for_each(graph.pairs.first_colour[group], graph.pairs.first_colour[group + 1], [&](std::size_t i) {
-        const auto a = static_cast<std::size_t>(pairs_.a[i]), b = static_cast<std::size_t>(pairs_.b[i]);
-        pairs_.reach[i] = bodies.radius[a] + bodies.radius[b];
+    graph.pairs.for_each(group, group + 1, [&](std::size_t i) {
+        const auto a = static_cast<std::size_t>(graph.pairs.a[i]),
+                   b = static_cast<std::size_t>(graph.pairs.b[i]);
+        graph.pairs.reach[i] = bodies.radius[a] + bodies.radius[b];
         const Real of_a = masses_vary_ ? std::fabs(inverse_mass_[a]) : same,
                    of_b = masses_vary_ ? std::fabs(inverse_mass_[b]) : same;
-        pairs_.mass[i] = Real(1) / (of_a + of_b);
-        if (friction_varies_) pairs_.friction[i] = std::sqrt(bodies.friction[a] * bodies.friction[b]);
-        if (!pairs_.rolling.empty())
-            pairs_.rolling[i] = std::max(bodies.rolling_resistance[a], bodies.rolling_resistance[b]);
-        if (!pairs_.rolling_share.empty()) pairs_.rolling_share[i] = bodies.radius[b] / pairs_.reach[i];
+        graph.pairs.mass[i] = Real(1) / (of_a + of_b);
+        if (friction_varies_) graph.pairs.friction[i] = std::sqrt(bodies.friction[a] * bodies.friction[b]);
+        if (!graph.pairs.rolling.empty())
+            graph.pairs.rolling[i] = std::max(bodies.rolling_resistance[a], bodies.rolling_resistance[b]);
+        if (!graph.pairs.rolling_share.empty())
+            graph.pairs.rolling_share[i] = bodies.radius[b] / graph.pairs.reach[i];
     });
 }
 
 /// Runs of blocks of a group that have contacts which can touch.
 template <class Real>
 void SoftSolver<Real>::list_runs(std::size_t group) {
-    const std::size_t first = pairs_.first_place(group) / kContactBlock,
-                      last = pairs_.first_place(group + 1) / kContactBlock;
-    ContactRows<Real>& live = pairs_;
+    const std::size_t first = graph.pairs.first_place(group) / kContactBlock,
+                      last = graph.pairs.first_place(group + 1) / kContactBlock;
+    ContactRows<Real>& live = graph.pairs;
     std::size_t runs = 0;
     for (std::size_t block = first; block < last; ++block) {
         if (!live.is_live[block]) continue;
@@ -185,38 +193,36 @@ void SoftSolver<Real>::find_pairs(const Bodies<Real>& bodies, const Column<Real>
     // What is added between renewals changes the last group alone.
     const bool is_new = described_version_ != graph.version,
                are_all_new = described_renewal_ != graph.renewals;
-    if (is_new) {
-        pairs_.resize_in_place(graph.pairs, friction_varies_, bounces_);
-        pairs_.resize_rolling(graph.pairs.a.size(), false, rolls_, rolling_varies_,
-                              !bodies.radius.is_uniform());
-    }
-    pairs_.swap_with(graph.pairs);
+    if (is_new) graph.pairs.resize_for_step(contact_effects());
     FindContacts<Real> k{};
     k.motion = motion.data();
-    k.a = pairs_.a.data(), k.b = pairs_.b.data(), k.reach = pairs_.reach.data();
-    k.normal_impulse = pairs_.normal_impulse.data(), k.friction_impulse = pairs_.friction_impulse.data();
-    k.rolling_impulse = rolls_ ? pairs_.rolling_impulse.data() : nullptr;
-    k.normal_x = pairs_.normal_x.data(), k.normal_y = pairs_.normal_y.data();
-    k.separation = pairs_.separation.data(), k.approach = bounces_ ? pairs_.approach.data() : nullptr;
+    k.a = graph.pairs.a.data(), k.b = graph.pairs.b.data(), k.reach = graph.pairs.reach.data();
+    k.normal_impulse = graph.pairs.normal_impulse.data(),
+    k.friction_impulse = graph.pairs.friction_impulse.data();
+    k.rolling_impulse = rolls_ ? graph.pairs.rolling_impulse.data() : nullptr;
+    k.normal_x = graph.pairs.normal_x.data(), k.normal_y = graph.pairs.normal_y.data();
+    k.separation = graph.pairs.separation.data(),
+    k.approach = bounces_ ? graph.pairs.approach.data() : nullptr;
     k.dt = static_cast<Real>(dt_), k.near = static_cast<Real>(contact_distance_);
     k.deep = static_cast<Real>(-deep_);
-    k.is_live = pairs_.is_live.data();
-    const double work = kNanosecondsToFind * static_cast<double>(pairs_.a.size());
+    k.is_live = graph.pairs.is_live.data();
+    const double work = kNanosecondsToFind * static_cast<double>(graph.pairs.a.size());
     executor_->for_each_task(graph.groups.count(), work, [&](std::size_t group) {
         if (are_all_new || (is_new && group == graph.groups.far())) describe_group(bodies, group);
-        pairs_.live_count[group] =
-            kernels_->find_contacts(k, pairs_.first_place(group), pairs_.first_place(group + 1));
+        graph.pairs.live_count[group] =
+            kernels_->find_contacts(k, graph.pairs.first_place(group), graph.pairs.first_place(group + 1));
         list_runs(group);
     });
-    is_crowded_ = std::find(pairs_.is_live.begin(), pairs_.is_live.end(), kDeepBlock) != pairs_.is_live.end();
+    is_crowded_ = std::find(graph.pairs.is_live.begin(), graph.pairs.is_live.end(), kDeepBlock) !=
+                  graph.pairs.is_live.end();
     described_version_ = graph.version, described_renewal_ = graph.renewals;
-    if (is_new && are_masses_uneven_) uneven_.find(pairs_, inverse_mass_, count_);
+    if (is_new && are_masses_uneven_) uneven_.find(graph.pairs, inverse_mass_, count_);
 }
 
 /// What lasts from step to step is force: after substeps of another length the impulses are of another size.
 /// If that differs much, what was noise would become a kick: better to start from nothing, with more sweeps.
 template <class Real>
-void SoftSolver<Real>::rescale_impulses(ContactCandidates<Real>& candidates) const {
+void SoftSolver<Real>::rescale_impulses(ContactRows<Real>& candidates) const {
     if (substep_dt_ == impulses_of_h_) return;
     const double ratio = impulses_of_h_ > 0 ? substep_dt_ / impulses_of_h_ : 0;
     const auto kept = static_cast<Real>(are_impulses_known_ ? ratio : 0);
@@ -241,30 +247,30 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const Candid
     impulses_of_h_ = substep_dt_;
     find_pairs(world.bodies, motion);
     find_supports(world, edges);
-    uneven_.begin_step(pairs_, supports_);
+    uneven_.begin_step(graph.pairs, supports_);
     is_unloaded_ = false;
-    for (ContactRows<Real>* live : {&pairs_, &supports_})
+    for (ContactRows<Real>* live : {&graph.pairs, &supports_})
         if (bounces_)
             for (Column<Real>* column : {&live->largest_impulse, &live->bounce_impulse})
                 std::fill(column->begin(), column->end(), Real(0));
     counters.contacts = static_cast<std::int64_t>(
-        std::accumulate(pairs_.live_count.begin(), pairs_.live_count.end(), supports_.contacts()));
-    counters.colours = static_cast<std::int64_t>(pairs_.count.size());
-    counters.overflow = static_cast<std::int64_t>(pairs_.overflow());
+        std::accumulate(graph.pairs.live_count.begin(), graph.pairs.live_count.end(), supports_.contacts()));
+    counters.colours = static_cast<std::int64_t>(graph.pairs.count.size());
+    counters.overflow = static_cast<std::int64_t>(graph.pairs.overflow());
 }
 
 template <class Real>
 void SoftSolver<Real>::rebalance_loads(const Bodies<Real>& bodies) {
     is_unloaded_ = true;
     std::sort(graph.lost.begin(), graph.lost.end());
-    unloading_.balance(graph.lost, pairs_, supports_, bodies, uniform_friction_, gravity_change_);
+    unloading_.balance(graph.lost, graph.pairs, supports_, bodies, uniform_friction_, gravity_change_);
     graph.lost.clear();
 }
 
 template <class Real>
 void SoftSolver<Real>::warm_start() {
     const Sweep once{contact_kernels().warm_start_pairs, contact_kernels().warm_start_supports};
-    sweep({&once, 1}, arguments(pairs_), arguments(supports_));
+    sweep({&once, 1}, arguments(graph.pairs), arguments(supports_));
 }
 
 /// One colour after the other. Within a batch no two contacts share a body that moves, so a whole run of
@@ -272,18 +278,18 @@ void SoftSolver<Real>::warm_start() {
 template <class Real>
 void SoftSolver<Real>::sweep_pairs(std::size_t group, const Sweep& sweep,
                                    const SolveContacts<Real>& on_pairs) {
-    const std::size_t first = pairs_.first_place(group) / kContactBlock,
-                      last = pairs_.first_place(group + 1) / kContactBlock;
-    const typename ContactRows<Real>::Run* run = pairs_.run.data() + first;
-    std::uint8_t* needs_second_sweep = pairs_.needs_second_sweep.data();
+    const std::size_t first = graph.pairs.first_place(group) / kContactBlock,
+                      last = graph.pairs.first_place(group + 1) / kContactBlock;
+    const typename ContactRows<Real>::Run* run = graph.pairs.run.data() + first;
+    std::uint8_t* needs_second_sweep = graph.pairs.needs_second_sweep.data();
     if (sweep.blocks == Sweep::Blocks::all_and_mark)
         std::fill(needs_second_sweep + first, needs_second_sweep + last, std::uint8_t{0});
     if (sweep.blocks != Sweep::Blocks::restless) {
-        for (std::size_t i = 0; i < pairs_.run_count[group]; ++i)
+        for (std::size_t i = 0; i < graph.pairs.run_count[group]; ++i)
             sweep.pair_kernel(on_pairs, kContactBlock * run[i].first, kContactBlock * run[i].last);
         return;
     }
-    for (std::size_t i = 0; i < pairs_.run_count[group]; ++i)
+    for (std::size_t i = 0; i < graph.pairs.run_count[group]; ++i)
         for (std::size_t block = run[i].first; block < run[i].last; ++block) {
             const std::size_t begin = block;
             while (block < run[i].last && needs_second_sweep[block]) ++block;
@@ -304,7 +310,7 @@ void SoftSolver<Real>::sweep(std::span<const Sweep> sweeps, const SolveContacts<
                              const SolveContacts<Real>& on_supports) {
     using Kind = typename SweepPart::Kind;
     const TaskGroups& groups = graph.groups;
-    const bool any_far = pairs_.run_count[groups.far()] > 0,
+    const bool any_far = graph.pairs.run_count[groups.far()] > 0,
                any_crowded = graph.supports.first_colour[groups.chunks] <
                              graph.supports.first_colour[groups.chunks + 1];
     sweep_parts_.clear(), sweep_phases_.clear();
@@ -353,7 +359,7 @@ template <class Real>
 void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
     elapsed_ = number * substep_dt_;
     const ContactKernels<Real>& kernels = contact_kernels();
-    SolveContacts<Real> on_supports = arguments(supports_), on_pairs = arguments(pairs_);
+    SolveContacts<Real> on_supports = arguments(supports_), on_pairs = arguments(graph.pairs);
     if (number == 0)  // what contacts hold is of the step before
         on_supports.contacts.largest_impulse = on_pairs.contacts.largest_impulse = nullptr;
     const bool starts_anew = number == 0 && !are_impulses_known_;
@@ -368,7 +374,8 @@ void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
 template <class Real>
 void SoftSolver<Real>::solve_uneven_contacts() {
     if (are_masses_uneven_)
-        uneven_.solve(arguments(pairs_), arguments(supports_), std::sqrt(length_squared(gravity_change_)));
+        uneven_.solve(arguments(graph.pairs), arguments(supports_),
+                      std::sqrt(length_squared(gravity_change_)));
 }
 
 template <class Real>
@@ -385,7 +392,8 @@ void SoftSolver<Real>::correct_loads(const Column<Real>& motion) {
     if (!is_correction_due_) return;
     const ContactKernels<Real>& kernels = contact_kernels();
     coarse_.begin(velocity_.size() / 4);
-    const SolveContacts<Real> on_pairs = coarse_arguments(pairs_), on_supports = coarse_arguments(supports_);
+    const SolveContacts<Real> on_pairs = coarse_arguments(graph.pairs),
+                              on_supports = coarse_arguments(supports_);
     const Sweep sum{kernels.sum_loads_pairs, kernels.sum_loads_supports},
         scale{kernels.scale_loads_pairs, kernels.scale_loads_supports};
     sweep({&sum, 1}, on_pairs, on_supports);
@@ -393,7 +401,7 @@ void SoftSolver<Real>::correct_loads(const Column<Real>& motion) {
                                        gravity_change_, *executor_);
     if (is_corrected_) sweep({&scale, 1}, on_pairs, on_supports);
     const Sweep next = next_sweep(Sweep::Blocks::all);
-    sweep({&next, 1}, arguments(pairs_), arguments(supports_));
+    sweep({&next, 1}, arguments(graph.pairs), arguments(supports_));
 }
 
 /// After the books of the step, which have the impulses as they were.
@@ -403,7 +411,7 @@ void SoftSolver<Real>::retain_correction() {
     is_corrected_ = false;
     const ContactKernels<Real>& kernels = contact_kernels();
     const Sweep keep{kernels.keep_loads_pairs, kernels.keep_loads_supports};
-    sweep({&keep, 1}, coarse_arguments(pairs_), coarse_arguments(supports_));
+    sweep({&keep, 1}, coarse_arguments(graph.pairs), coarse_arguments(supports_));
 }
 
 template <class Real>
@@ -423,7 +431,6 @@ void SoftSolver<Real>::advance_bodies(bool is_last) {
 template <class Real>
 void SoftSolver<Real>::end_contacts() {
     retain_correction();
-    pairs_.swap_with(graph.pairs);
     supports_.for_each([&](std::size_t i) {
         const auto candidate = static_cast<std::size_t>(supports_.candidate[i]);
         graph.supports.normal_impulse[candidate] = supports_.normal_impulse[i];
@@ -458,8 +465,8 @@ void SoftSolver<Real>::end_substeps(Bodies<Real>& bodies, std::vector<std::int32
 
 template <class Real>
 std::size_t SoftSolver<Real>::bytes() const {
-    return graph.bytes() + pairs_.bytes() + supports_.bytes() + inverse_mass_.bytes() + velocity_.bytes() +
-           start_x_.bytes() + start_y_.bytes() + start_rim_.bytes() + displacement_.bytes() + turn_.bytes() +
+    return graph.bytes() + supports_.bytes() + inverse_mass_.bytes() + velocity_.bytes() + start_x_.bytes() +
+           start_y_.bytes() + start_rim_.bytes() + displacement_.bytes() + turn_.bytes() +
            unloading_.bytes() + uneven_.bytes() + coarse_.bytes() + parting_.bytes() + near_rows_.bytes();
 }
 

@@ -163,7 +163,7 @@ class SoftSolver {
     void list_parted_pairs(const Bodies<Real>& bodies, const Column<Real>& motion);
     void list_parted_supports(const WorldState<Real>& world, const EdgeCandidates<Real>& edges);
 
-    void rescale_impulses(ContactCandidates<Real>& candidates) const;
+    void rescale_impulses(ContactRows<Real>& candidates) const;
     void derive_masses(const Bodies<Real>& bodies);
     void find_pairs(const Bodies<Real>& bodies, const Column<Real>& motion);
     void describe_group(const Bodies<Real>& bodies, std::size_t group);
@@ -175,6 +175,7 @@ class SoftSolver {
                      const WorldState<Real>& world);
     void note_left_edge(std::size_t candidate, std::size_t group, const WorldState<Real>& world);
     void hand_on_impulses(const WorldState<Real>& world);
+    ContactEffects contact_effects() const;
     SolveContacts<Real> arguments(ContactRows<Real>& live);
     StartColumns<Real> start_columns();
     void sweep(std::span<const Sweep> sweeps, const SolveContacts<Real>& on_pairs,
@@ -211,7 +212,7 @@ class SoftSolver {
     Vec2 gravity_change_;
     double decay_ = 1, spin_decay_ = 1;
     bool has_friction_ = false, has_rotation_ = false, some_are_fixed_ = false, bounces_ = false;
-    bool friction_varies_ = false, rolls_ = false, rolling_varies_ = false;
+    bool friction_varies_ = false, rolls_ = false, rolling_varies_ = false, radius_varies_ = false;
     double uniform_friction_ = 0, uniform_rolling_ = 0;
 
     bool masses_are_known_ = false;
@@ -220,8 +221,8 @@ class SoftSolver {
 
     Column<Real> velocity_, displacement_, turn_;
     Column<Real> start_x_, start_y_, start_rim_;  // velocities at the start of the substep
-    ContactRows<Real> pairs_, supports_;
-    std::vector<SweepPart> sweep_parts_;  // of the sweeps of now
+    ContactRows<Real> supports_;                  // those of graph.supports that can touch in this step
+    std::vector<SweepPart> sweep_parts_;          // of the sweeps of now
     std::vector<PhaseKind> sweep_phases_;
     // Of the graph whose pairs' masses and reaches are known.
     std::int64_t described_version_ = -1, described_renewal_ = -1;

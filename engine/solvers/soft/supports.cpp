@@ -23,7 +23,7 @@ constexpr double kNanosecondsToFind = 10;  // a support on one thread, for the e
 template <class Real>
 void SoftSolver<Real>::add_support(const SupportSurface& surface, std::size_t candidate, std::size_t at,
                                    const WorldState<Real>& world) {
-    const ContactCandidates<Real>& candidates = graph.supports;
+    const ContactRows<Real>& candidates = graph.supports;
     const Bodies<Real>& bodies = world.bodies;
     const auto row = static_cast<std::size_t>(candidates.a[candidate]);
     const auto real = [](double value) { return static_cast<Real>(value); };
@@ -53,9 +53,8 @@ void SoftSolver<Real>::add_support(const SupportSurface& surface, std::size_t ca
 
 template <class Real>
 void SoftSolver<Real>::find_supports(const WorldState<Real>& world, const EdgeCandidates<Real>& edges) {
-    ContactCandidates<Real>& candidates = graph.supports;
-    supports_.resize(candidates, has_friction_, bounces_);
-    supports_.resize_rolling(supports_.a.size(), true, rolls_, true, true);
+    ContactRows<Real>& candidates = graph.supports;
+    supports_.resize_for_some_of(candidates, contact_effects().of_supports());
     const std::size_t groups = candidates.groups();
     left_edges_of_.resize(std::max(left_edges_of_.size(), groups));
     const double work = kNanosecondsToFind * static_cast<double>(candidates.a.size());
@@ -70,7 +69,7 @@ void SoftSolver<Real>::find_supports(const WorldState<Real>& world, const EdgeCa
 template <class Real>
 void SoftSolver<Real>::find_supports_of(std::size_t group, const WorldState<Real>& world,
                                         const EdgeCandidates<Real>& edges) {
-    ContactCandidates<Real>& candidates = graph.supports;
+    ContactRows<Real>& candidates = graph.supports;
     const Bodies<Real>& bodies = world.bodies;
     left_edges_of_[group].clear();
     const double fall = length_squared(gravity_change_) > 0
@@ -115,7 +114,7 @@ void SoftSolver<Real>::find_supports_of(std::size_t group, const WorldState<Real
 template <class Real>
 void SoftSolver<Real>::note_left_edge(std::size_t candidate, std::size_t group,
                                       const WorldState<Real>& world) {
-    const ContactCandidates<Real>& candidates = graph.supports;
+    const ContactRows<Real>& candidates = graph.supports;
     if (!(candidates.normal_impulse[candidate] > 0)) return;
     left_edges_of_[group].push_back(
         {candidates.a[candidate], world.edges[edge_of_support(candidates.b[candidate])].body,

@@ -55,7 +55,7 @@ template <class Real>
 void SoftSolver<Real>::find_tunnelled(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
                                       const Column<Real>& motion) {
     tunnelled_.clear();
-    const ContactCandidates<Real>& supports = graph.supports;
+    const ContactRows<Real>& supports = graph.supports;
     supports.for_each([&](std::size_t i) {
         if (is_edge_support(supports.b[i]))
             note_tunnelled(world, edges, motion, supports.a[i], edge_of_support(supports.b[i]));
