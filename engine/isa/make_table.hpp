@@ -20,16 +20,16 @@ namespace {
 template <unsigned kVariant, class Real, class Isa>
 constexpr ContactKernels<Real> make_contact_kernels() {
     return {
-        .warm_start_pairs = &warm_start_pairs<kVariant, Real, Isa>,
-        .warm_start_supports = &warm_start_supports<kVariant, Real, Isa>,
-        .first_pairs = &solve_pairs<kVariant, true, Real, Isa>,
-        .first_supports = &solve_supports<kVariant, true, Real, Isa>,
-        .next_pairs = &solve_pairs<kVariant, false, Real, Isa>,
-        .next_supports = &solve_supports<kVariant, false, Real, Isa>,
-        .sum_loads_pairs = &sum_loads_pairs<kVariant, Real, Isa>,
-        .sum_loads_supports = &sum_loads_supports<kVariant, Real, Isa>,
-        .scale_loads_pairs = &scale_loads_pairs<kVariant, Real, Isa>,
-        .scale_loads_supports = &scale_loads_supports<kVariant, Real, Isa>,
+        .warm_start_pairs = &warm_start<kVariant, true, Real, Isa>,
+        .warm_start_supports = &warm_start<kVariant, false, Real, Isa>,
+        .first_pairs = &solve_contacts<kVariant, true, true, Real, Isa>,
+        .first_supports = &solve_contacts<kVariant, true, false, Real, Isa>,
+        .next_pairs = &solve_contacts<kVariant, false, true, Real, Isa>,
+        .next_supports = &solve_contacts<kVariant, false, false, Real, Isa>,
+        .sum_loads_pairs = &sum_loads<kVariant, true, Real, Isa>,
+        .sum_loads_supports = &sum_loads<kVariant, false, Real, Isa>,
+        .scale_loads_pairs = &scale_loads<kVariant, true, Real, Isa>,
+        .scale_loads_supports = &scale_loads<kVariant, false, Real, Isa>,
         .keep_loads_pairs = &retain_correction<kVariant, true, Real, Isa>,
         .keep_loads_supports = &retain_correction<kVariant, false, Real, Isa>,
     };

@@ -16,71 +16,44 @@
 namespace carom {
 namespace {
 
-/// Normal and tangential impulse of a batch of contacts, and their sum as a vector.
-template <unsigned kVariant, class Lanes>
-struct ImpulseLanes {
-    using F = typename Lanes::Batch;
-    F normal, tangent, x, y;
-
-    template <class Real>
-    ImpulseLanes(const SolveContacts<Real>& k, std::size_t c, F nx, F ny)
-        : normal(Lanes::load(k.contacts.normal_impulse + c)), tangent(F(0)) {
-        if constexpr ((kVariant & kRough) != 0) tangent = Lanes::load(k.contacts.friction_impulse + c);
-        x = normal * nx - tangent * ny, y = normal * ny + tangent * nx;
-    }
-};
-
-template <unsigned kVariant, class Real, class Isa>
-void sum_loads_pairs(const SolveContacts<Real>& k, std::size_t first, std::size_t last) {
+template <unsigned kVariant, bool kOtherMoves, class Real, class Isa>
+void sum_loads(const SolveContacts<Real>& k, std::size_t first, std::size_t last) {
     using Lanes = simd::Lanes<Real, Isa>;
     using F = typename Lanes::Batch;
+    const F half(Real(0.5));
     for (std::size_t c = first; c < last; c += Lanes::size) {
         const std::int32_t *row_a = k.contacts.a + c, *row_b = k.contacts.b + c;
         const F nx = Lanes::load(k.contacts.normal_x + c), ny = Lanes::load(k.contacts.normal_y + c);
-        const ImpulseLanes<kVariant, Lanes> impulse(k, c, nx, ny);
-        const auto a = Lanes::load_rows4(k.velocity, row_a), b = Lanes::load_rows4(k.velocity, row_b);
-        const F dvx = b[0] - a[0], dvy = b[1] - a[1];
-        F rate = impulse.normal * (dvx * nx + dvy * ny - Lanes::load(k.contacts.floor + c));
-        if constexpr ((kVariant & kRough) != 0) rate += impulse.tangent * (dvy * nx - dvx * ny - a[2] - b[2]);
-        const F half(Real(0.5)), half_rate = half * rate;
+        const MovingSide<kVariant, Lanes> a{Lanes::load_rows4(k.velocity, row_a)};
+        const auto b = load_other_side<kVariant, kOtherMoves, Lanes>(k, c);
+        const auto impulses = load_impulses<kVariant, Lanes>(k, c);
+        const F x = impulses.normal * nx - impulses.tangent * ny,
+                y = impulses.normal * ny + impulses.tangent * nx;
+        F rate = impulses.normal * (normal_velocity(a, b, nx, ny) - Lanes::load(k.contacts.floor + c));
+        if constexpr ((kVariant & kRough) != 0) rate += impulses.tangent * tangent_velocity(a, b, nx, ny);
+        if constexpr (kOtherMoves) rate = half * rate;
 
-        auto load_a = Lanes::load_rows4(k.load, row_a), load_b = Lanes::load_rows4(k.load, row_b);
-        load_a[0] -= impulse.x, load_a[1] -= impulse.y, load_a[2] += half_rate;
-        load_b[0] += impulse.x, load_b[1] += impulse.y, load_b[2] += half_rate;
-        Lanes::store_rows4(k.load, row_a, load_a);
-        Lanes::store_rows4(k.load, row_b, load_b);
+        auto load_a = Lanes::load_rows4(k.load, row_a);
+        load_a[0] -= x, load_a[1] -= y, load_a[2] += rate;
+        if constexpr (!kOtherMoves) {
+            Lanes::store_rows4(k.load, row_a, load_a);
+        } else {
+            auto load_b = Lanes::load_rows4(k.load, row_b);
+            load_b[0] += x, load_b[1] += y, load_b[2] += rate;
+            Lanes::store_rows4(k.load, row_a, load_a);
+            Lanes::store_rows4(k.load, row_b, load_b);
 
-        // To either body the other one is at the distance d along the normal that points away from it, and
-        // pushes against that normal: half of s' d goes with -d n.
-        const F arm = half * (Lanes::load(k.reach + c) + Lanes::load(k.contacts.separation + c));
-        const F arm_x = arm * nx, arm_y = arm * ny;
-        const F xx = impulse.x * arm_x, xy = impulse.x * arm_y, yx = impulse.y * arm_x,
-                yy = impulse.y * arm_y;
-        for (const std::int32_t* row : {row_a, row_b}) {
-            auto stress = Lanes::load_rows4(k.stress, row);
-            stress[0] -= xx, stress[1] -= xy, stress[2] -= yx, stress[3] -= yy;
-            Lanes::store_rows4(k.stress, row, stress);
+            // To either body the other one is at the distance d along the normal that points away from it,
+            // and pushes against that normal: half of s' d goes with -d n.
+            const F arm = half * (Lanes::load(k.reach + c) + Lanes::load(k.contacts.separation + c));
+            const F arm_x = arm * nx, arm_y = arm * ny;
+            const F xx = x * arm_x, xy = x * arm_y, yx = y * arm_x, yy = y * arm_y;
+            for (const std::int32_t* row : {row_a, row_b}) {
+                auto stress = Lanes::load_rows4(k.stress, row);
+                stress[0] -= xx, stress[1] -= xy, stress[2] -= yx, stress[3] -= yy;
+                Lanes::store_rows4(k.stress, row, stress);
+            }
         }
-    }
-}
-
-template <unsigned kVariant, class Real, class Isa>
-void sum_loads_supports(const SolveContacts<Real>& k, std::size_t first, std::size_t last) {
-    using Lanes = simd::Lanes<Real, Isa>;
-    using F = typename Lanes::Batch;
-    for (std::size_t c = first; c < last; c += Lanes::size) {
-        const std::int32_t* row = k.contacts.a + c;
-        const F nx = Lanes::load(k.contacts.normal_x + c), ny = Lanes::load(k.contacts.normal_y + c);
-        const ImpulseLanes<kVariant, Lanes> impulse(k, c, nx, ny);
-        const auto body = Lanes::load_rows4(k.velocity, row);
-        F rate = impulse.normal * (Lanes::load(k.contacts.surface_normal + c) -
-                                   (body[0] * nx + body[1] * ny) - Lanes::load(k.contacts.floor + c));
-        if constexpr ((kVariant & kRough) != 0)
-            rate += impulse.tangent *
-                    (Lanes::load(k.contacts.surface_tangent + c) - (body[1] * nx - body[0] * ny) - body[2]);
-        auto load = Lanes::load_rows4(k.load, row);
-        load[0] -= impulse.x, load[1] -= impulse.y, load[2] += rate;
-        Lanes::store_rows4(k.load, row, load);
     }
 }
 
@@ -93,40 +66,36 @@ void multiply_impulses(const SolveContacts<Real>& k, std::size_t c, typename Lan
     if constexpr ((kVariant & kRolling) != 0) multiply(k.contacts.rolling_impulse + c);
 }
 
-/// Gives the bodies the share s of their contacts' impulses once more, which become 1 + s times what they
-/// were.
-template <unsigned kVariant, class Real, class Isa>
-void scale_loads_pairs(const SolveContacts<Real>& k, std::size_t first, std::size_t last) {
-    using Lanes = simd::Lanes<Real, Isa>;
+/// The s of a batch of contacts.
+template <bool kOtherMoves, class Lanes, class Real>
+typename Lanes::Batch scale_of(const SolveContacts<Real>& k, std::size_t c) {
     using F = typename Lanes::Batch;
-    for (std::size_t c = first; c < last; c += Lanes::size) {
-        const F share = F(Real(0.5)) * (Lanes::gather_at(k.scale, k.contacts.a + c) +
-                                        Lanes::gather_at(k.scale, k.contacts.b + c));
-        give_impulses_to_pairs<kVariant, Lanes>(k, c, share);
-        multiply_impulses<kVariant, Lanes>(k, c, F(1) + share);
-    }
+    const F of_a = Lanes::gather_at(k.scale, k.contacts.a + c);
+    if constexpr (!kOtherMoves) return of_a;
+    return F(Real(0.5)) * (of_a + Lanes::gather_at(k.scale, k.contacts.b + c));
 }
 
-template <unsigned kVariant, class Real, class Isa>
-void scale_loads_supports(const SolveContacts<Real>& k, std::size_t first, std::size_t last) {
+/// Gives the bodies the share s of their contacts' impulses once more, which become 1 + s times what they
+/// were.
+template <unsigned kVariant, bool kOtherMoves, class Real, class Isa>
+void scale_loads(const SolveContacts<Real>& k, std::size_t first, std::size_t last) {
     using Lanes = simd::Lanes<Real, Isa>;
     using F = typename Lanes::Batch;
     for (std::size_t c = first; c < last; c += Lanes::size) {
-        const F share = Lanes::gather_at(k.scale, k.contacts.a + c);
-        give_impulses_to_supported<kVariant, Lanes>(k, c, share);
-        multiply_impulses<kVariant, Lanes>(k, c, F(1) + share);
+        const F scale = scale_of<kOtherMoves, Lanes>(k, c);
+        give_impulses<kVariant, kOtherMoves, Lanes>(k, c, scale);
+        multiply_impulses<kVariant, Lanes>(k, c, F(1) + scale);
     }
 }
 
 /// Leaves the contacts `kept` of what scaling added.
-template <unsigned kVariant, bool kArePairs, class Real, class Isa>
+template <unsigned kVariant, bool kOtherMoves, class Real, class Isa>
 void retain_correction(const SolveContacts<Real>& k, std::size_t first, std::size_t last) {
     using Lanes = simd::Lanes<Real, Isa>;
     using F = typename Lanes::Batch;
     for (std::size_t c = first; c < last; c += Lanes::size) {
-        F share = Lanes::gather_at(k.scale, k.contacts.a + c);
-        if constexpr (kArePairs) share = F(Real(0.5)) * (share + Lanes::gather_at(k.scale, k.contacts.b + c));
-        multiply_impulses<kVariant, Lanes>(k, c, (F(1) + F(k.kept) * share) / (F(1) + share));
+        const F scale = scale_of<kOtherMoves, Lanes>(k, c);
+        multiply_impulses<kVariant, Lanes>(k, c, (F(1) + F(k.kept) * scale) / (F(1) + scale));
     }
 }
 

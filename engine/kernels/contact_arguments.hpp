@@ -7,9 +7,8 @@
 // 64-byte aligned; `first` and `last` are multiples of kRowPadding, so there is no tail.
 //
 // A body's velocity record is [4]: vx, vy [m/s], rim speed u = spin * radius [m/s], inverse mass [1/kg]. The
-// inverse mass is zero for what nothing moves, and negative for a disc that has a fixed angle. With the rim
-// speed in place of the spin no formula of a disc needs its radius: I = m r²/2, so an impulse j at the rim
-// changes u by r² j / I = 2 j / m.
+// inverse mass is zero for what nothing moves, and negative for a disc that has a fixed angle.
+// constraints/contact_law.hpp says why the rim speed stands in place of the spin, and what contacts do.
 // A body's displacement record is [2]: how far it moved since the start of the step [m].
 
 namespace carom {
@@ -17,13 +16,6 @@ namespace carom {
 /// Contacts of a block belong to one colour: a batch of any width is in one block. It is kRowPadding, which
 /// kernels do not see.
 inline constexpr std::size_t kContactBlock = 16;
-
-/// What a variant of the contact kernels has compiled in.
-enum ContactVariant : unsigned {
-    kRough = 1,        // friction, and with it rotation
-    kFixedAngles = 2,  // some bodies do not turn (only with kRough)
-    kRolling = 4,      // rolling resistance (only with kRough): effects/rolling_resistance.hpp
-};
 
 /// Contacts of one kind as the solver streams them, sorted by colour: a body is in one contact of a colour.
 /// The normal points from body a to body b, the tangent is the normal turned by a quarter counter-clockwise.

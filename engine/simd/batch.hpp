@@ -77,6 +77,7 @@ bool all(xsimd::batch_bool<Real, Isa> mask) {
 /// The operations that all x86 batches share; the instruction sets add their own below.
 template <class Real, class Isa>
 struct BatchLanes {
+    using Number = Real;
     using Batch = simd::Batch<Real, Isa>;
     using Mask = typename Batch::Mask;
     static constexpr std::size_t size = Batch::Raw::size;

@@ -7,6 +7,7 @@
 /// `ShortLanes<Real, Isa>` has the same, with at most eight lanes.
 ///
 ///   size                 lanes in a batch
+///   Number               Real
 ///   Batch, Mask, Rows    Real lanes; booleans (&, |, !); as many int32 row numbers
 ///   Batch4, Batch2       four batches, [0] ... [3]; two
 ///   broadcast(value), load(p), load_unaligned(p), store(p, batch), store_unaligned(p, batch)

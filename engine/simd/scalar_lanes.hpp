@@ -90,6 +90,7 @@ inline std::size_t store_marked_pairs_one_by_one(std::int32_t* to_a, std::int32_
 template <class Real>
 struct ScalarLanes {
     static constexpr std::size_t size = 1;
+    using Number = Real;
     using Batch = Real;
     using Mask = bool;
     using Rows = std::int32_t;
