@@ -22,7 +22,7 @@
 //
 // A normal impulse of a disc changes neither v_t nor v_r, so that the normal law does not wait for the
 // others.
-// All have internal linkage: kernels are compiled once for each instruction set.
+// Functions have internal linkage: kernels are compiled once for each instruction set.
 
 namespace carom {
 
@@ -31,6 +31,28 @@ enum ContactVariant : unsigned {
     kRough = 1,        // friction, and with it rotation
     kFixedAngles = 2,  // some bodies do not turn (only with kRough)
     kRolling = 4,      // rolling resistance (only with kRough): effects/rolling_resistance.hpp
+};
+
+/// Impulses of a contact [N s], or what is added to them.
+template <class F>
+struct ContactImpulses {
+    F normal, tangent, rolling;
+};
+
+/// What decides the impulses of a contact.
+template <class F>
+struct ContactTerms {
+    F nx, ny;
+    F mass, tangent_mass;  // kg, effective
+    F floor;               // m/s, least normal velocity
+    F friction, rolling;   // coefficients
+    F of_a;                // the share s of body a's rim speed in the rolling velocity
+};
+
+/// An impulse, and what was added to it.
+template <class F>
+struct ImpulseUpdate {
+    F impulse, added;
 };
 
 namespace {
@@ -146,28 +168,6 @@ F tangent_mass(const A& a, const B& b, F mass) {
     else
         return mass * F(static_cast<typename A::Number>(kTangentMassShare));
 }
-
-/// Impulses of a contact [N s], or what is added to them.
-template <class F>
-struct ContactImpulses {
-    F normal, tangent, rolling;
-};
-
-/// What decides the impulses of a contact.
-template <class F>
-struct ContactTerms {
-    F nx, ny;
-    F mass, tangent_mass;  // kg, effective
-    F floor;               // m/s, least normal velocity
-    F friction, rolling;   // coefficients
-    F of_a;                // the share s of body a's rim speed in the rolling velocity
-};
-
-/// An impulse, and what was added to it.
-template <class F>
-struct ImpulseUpdate {
-    F impulse, added;
-};
 
 /// Signorini. @param wanted  the impulse that would bring this contact alone to its floor
 template <class F>

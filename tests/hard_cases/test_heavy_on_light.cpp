@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 using namespace carom;
 using namespace carom::test;
 
@@ -45,6 +47,27 @@ double deepest_sink(const Column& column) {
            column.friction, ": sink ", 100 * deepest, " % of a diameter, at last ",
            100 * (top - run.state(heavy).position.y) / (2 * kRadius), " %");
     return deepest;
+}
+
+/// A disc on another of the same size, beside its top by an angle from the vertical. Rolling resistance moves
+/// the normal force in either contact by c times R = r / 2 and r, so that both hold while sin(angle) <= c
+/// / 2.
+template <class Real>
+Vec2 on_top_after(double seconds, double ratio, double angle, double rolling_resistance) {
+    Scene scene;
+    scene.gravity = {0, -kGravity};
+    scene.walls = floor_at(0);
+    scene.walls->material = {.friction = 1, .rolling_resistance = rolling_resistance};
+    scene.accuracy.solver = Solver::soft;
+    scene.add(disc(kRadius, 1, {0, kRadius}));
+    scene.add(disc(kRadius, ratio, {2 * kRadius * std::sin(angle), kRadius + 2 * kRadius * std::cos(angle)}));
+    for (Body& body : scene.bodies) body.material = {.friction = 1, .rolling_resistance = rolling_resistance};
+    PassiveRun<Real> run(scene);
+    for (int i = 0; i < std::lround(seconds / kStep); ++i) run.step(kStep);
+    run.check();
+    report("ratio ", ratio, ", angle ", angle, ": moved by ",
+           run.state(1).position.x - scene.bodies[1].position.x, " m");
+    return run.state(1).position;
 }
 
 }  // namespace
@@ -96,5 +119,16 @@ TEST_SUITE("hard cases/heavy on light") {
         CHECK(end.energy.total() <= start.energy.total() * (1 + round_off));
         CHECK(std::fabs(end.energy_by_cause.unexplained) < 10 * round_off * start.energy.total());
         CHECK(world.state({1, 0}).velocity.x > 1);  // they were hit
+    }
+
+    TEST_CASE_TEMPLATE("rolling resistance balances a heavy disc on a light one as far as its arm reaches",
+                       Real, float, double) {
+        constexpr double kRolling = 0.2, kHeld = 0.05, kLost = 0.15;  // sin(angle) <= 0.1
+        for (const double ratio : {1.0, 100.0, 1e4}) {
+            CAPTURE(ratio);
+            CHECK(on_top_after<Real>(10, ratio, kHeld, kRolling).x ==
+                  doctest::Approx(2 * kRadius * std::sin(kHeld)).epsilon(0.02));
+            CHECK(on_top_after<Real>(10, ratio, kLost, kRolling).y < 1.1 * kRadius);
+        }
     }
 }

@@ -17,6 +17,28 @@ constexpr double kAccuracy = 1e-3;
 /// Contacts solved in a substep at most, 20 ns each.
 constexpr std::size_t kMostSolves = 8192;
 
+using Lanes = simd::Lanes<double, simd::Scalar>;
+/// Masses and effects are those of the few contacts here, not of the world.
+constexpr unsigned kRolls = kRough | kFixedAngles | kRolling, kDoesNotRoll = kRough | kFixedAngles;
+using Body = MovingSide<kRolls, Lanes>;
+using Impulses = ContactImpulses<double>;
+
+Impulses operator+(const Impulses& a, const Impulses& b) {
+    return {a.normal + b.normal, a.tangent + b.tangent, a.rolling + b.rolling};
+}
+Impulses operator-(const Impulses& a, const Impulses& b) {
+    return {a.normal - b.normal, a.tangent - b.tangent, a.rolling - b.rolling};
+}
+Impulses operator*(double share, const Impulses& a) {
+    return {share * a.normal, share * a.tangent, share * a.rolling};
+}
+double largest_of(const Impulses& a) {
+    return std::fmax(std::fmax(std::fabs(a.normal), std::fabs(a.tangent)), std::fabs(a.rolling));
+}
+double squares_of(const Impulses& a) {
+    return a.normal * a.normal + a.tangent * a.tangent + a.rolling * a.rolling;
+}
+
 }  // namespace
 
 template <class Real>
@@ -62,15 +84,15 @@ template <class Real>
 std::int32_t LocalSolve<Real>::body_of(std::int32_t row) {
     std::int32_t& number = number_of_[static_cast<std::size_t>(row)];
     if (number < 0) {
-        number = static_cast<std::int32_t>(bodies_.size());
-        bodies_.push_back({row, 0, 0, 0, 0, 0});
+        number = static_cast<std::int32_t>(rows_.size());
+        rows_.push_back(row);
     }
     return number;
 }
 
 template <class Real>
 void LocalSolve<Real>::begin_step(const ContactRows<Real>& pairs, const ContactRows<Real>& supports) {
-    bodies_.clear(), contacts_.clear();
+    rows_.clear(), contacts_.clear();
     if (pairs_.empty()) return;
     for (const std::uint32_t i : pairs_) {
         if (!pairs.is_live[i / kContactBlock]) continue;
@@ -87,94 +109,89 @@ void LocalSolve<Real>::begin_step(const ContactRows<Real>& pairs, const ContactR
             contact.a = body_of(row), contact.b = -1, contact.contact = static_cast<std::uint32_t>(i);
             contacts_.push_back(contact);
         });
-    for (const BodyState& body : bodies_) number_of_[static_cast<std::size_t>(body.row)] = -1;
+    for (const std::int32_t row : rows_) number_of_[static_cast<std::size_t>(row)] = -1;
+}
+
+/// Calls fn(a, b) with the sides of a contact, and keeps what it does to their velocities.
+template <class Real>
+template <class Fn>
+void LocalSolve<Real>::with_sides(const Contact& c, const Fn& fn) {
+    Body a{Lanes::load_rows4(records_.data(), &c.a)};
+    if (c.b < 0) {
+        SteadySide<Lanes> surface{c.surface_normal, c.surface_tangent, c.surface_rolling};
+        fn(a, surface);
+    } else {
+        Body b{Lanes::load_rows4(records_.data(), &c.b)};
+        fn(a, b);
+        Lanes::store_rows4(records_.data(), &c.b, b.record);
+    }
+    Lanes::store_rows4(records_.data(), &c.a, a.record);
 }
 
 template <class Real>
 void LocalSolve<Real>::load(const SolveContacts<Real>& of_pairs, const SolveContacts<Real>& of_supports) {
-    for (BodyState& body : bodies_) {
-        const Real* record = of_pairs.velocity + 4 * static_cast<std::size_t>(body.row);
-        body.vx = record[0], body.vy = record[1], body.rim = record[2];
-        body.inverse_mass = std::fabs(record[3]);
-        body.inverse_inertia = 2 * std::fmax(static_cast<double>(record[3]), 0);
-    }
+    records_.resize(4 * rows_.size());
+    for (std::size_t body = 0; body < rows_.size(); ++body)
+        std::copy_n(of_pairs.velocity + 4 * static_cast<std::size_t>(rows_[body]), 4, &records_[4 * body]);
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
         Contact& c = contacts_[i];
-        const bool is_pair = i < pair_count_;
-        const SolveContacts<Real>& k = is_pair ? of_pairs : of_supports;
+        const SolveContacts<Real>& k = i < pair_count_ ? of_pairs : of_supports;
         const ContactColumns<Real>& columns = k.contacts;
-        const std::size_t at = c.contact;
-        const bool is_rough = columns.friction_impulse != nullptr;
-        const BodyState& a = bodies_[static_cast<std::size_t>(c.a)];
-        double inverse = a.inverse_mass, turning = a.inverse_inertia;
-        if (is_pair) {
-            const BodyState& b = bodies_[static_cast<std::size_t>(c.b)];
-            inverse += b.inverse_mass, turning += b.inverse_inertia;
-        }
-        c.nx = columns.normal_x[at], c.ny = columns.normal_y[at];
-        c.mass = 1 / inverse, c.tangent_mass = is_rough ? 1 / (inverse + turning) : 0;
-        c.friction = !is_rough          ? 0
-                     : columns.friction ? static_cast<double>(columns.friction[at])
-                                        : static_cast<double>(k.uniform_friction);
-        c.floor = columns.floor[at];
-        c.surface_normal = is_pair ? 0 : static_cast<double>(columns.surface_normal[at]);
-        c.surface_tangent = is_pair ? 0 : static_cast<double>(columns.surface_tangent[at]);
-        c.normal = columns.normal_impulse[at];
-        c.tangent = is_rough ? static_cast<double>(columns.friction_impulse[at]) : 0;
-        c.normal_step = c.tangent_step = 0;
+        const auto value = [&](const Real* column, double without) {
+            return column ? static_cast<double>(column[c.contact]) : without;
+        };
+        const bool is_rough = columns.friction_impulse != nullptr, rolls = columns.rolling_impulse != nullptr;
+        c.impulses = {value(columns.normal_impulse, 0), value(columns.friction_impulse, 0),
+                      value(columns.rolling_impulse, 0)};
+        c.step = {};
+        c.surface_normal = value(columns.surface_normal, 0);
+        c.surface_tangent = value(columns.surface_tangent, 0);
+        c.surface_rolling = value(columns.surface_rolling, 0);
+        ContactTerms<double>& terms = c.terms;
+        terms.nx = columns.normal_x[c.contact], terms.ny = columns.normal_y[c.contact];
+        terms.floor = columns.floor[c.contact];
+        terms.friction = is_rough ? value(columns.friction, static_cast<double>(k.uniform_friction)) : 0;
+        terms.rolling = rolls ? value(columns.rolling, static_cast<double>(k.uniform_rolling)) : 0;
+        terms.of_a = value(columns.rolling_share, 0.5);
+        with_sides(c, [&](const auto& a, const auto& b) {
+            terms.mass = 1 / inverse_mass(a, b);
+            terms.tangent_mass = tangent_mass<kRolls>(a, b, terms.mass);
+        });
     }
 }
 
 template <class Real>
 void LocalSolve<Real>::store(const SolveContacts<Real>& of_pairs,
                              const SolveContacts<Real>& of_supports) const {
-    for (const BodyState& body : bodies_) {
-        Real* record = of_pairs.velocity + 4 * static_cast<std::size_t>(body.row);
-        record[0] = static_cast<Real>(body.vx), record[1] = static_cast<Real>(body.vy);
-        record[2] = static_cast<Real>(body.rim);
-    }
+    for (std::size_t body = 0; body < rows_.size(); ++body)
+        for (std::size_t k = 0; k < 3; ++k)
+            of_pairs.velocity[4 * static_cast<std::size_t>(rows_[body]) + k] =
+                static_cast<Real>(records_[4 * body + k]);
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
         const Contact& c = contacts_[i];
         const ContactColumns<Real>& columns = (i < pair_count_ ? of_pairs : of_supports).contacts;
-        const auto normal = static_cast<Real>(c.normal);
+        const auto normal = static_cast<Real>(c.impulses.normal);
         columns.normal_impulse[c.contact] = normal;
-        if (columns.friction_impulse) columns.friction_impulse[c.contact] = static_cast<Real>(c.tangent);
+        if (columns.friction_impulse)
+            columns.friction_impulse[c.contact] = static_cast<Real>(c.impulses.tangent);
+        if (columns.rolling_impulse)
+            columns.rolling_impulse[c.contact] = static_cast<Real>(c.impulses.rolling);
         if (columns.largest_impulse)
             columns.largest_impulse[c.contact] = std::max(columns.largest_impulse[c.contact], normal);
     }
 }
 
-template <class Real>
-void LocalSolve<Real>::apply(const Contact& c, double normal, double tangent) {
-    const double x = normal * c.nx - tangent * c.ny, y = normal * c.ny + tangent * c.nx;
-    BodyState& a = bodies_[static_cast<std::size_t>(c.a)];
-    a.vx -= a.inverse_mass * x, a.vy -= a.inverse_mass * y, a.rim -= a.inverse_inertia * tangent;
-    if (c.b < 0) return;
-    BodyState& b = bodies_[static_cast<std::size_t>(c.b)];
-    b.vx += b.inverse_mass * x, b.vy += b.inverse_mass * y, b.rim -= b.inverse_inertia * tangent;
-}
-
 /// @return m/s, the largest change.
 template <class Real>
+template <unsigned kVariant>
 double LocalSolve<Real>::sweep() {
     double largest = 0;
     for (Contact& c : contacts_) {
-        const BodyState& a = bodies_[static_cast<std::size_t>(c.a)];
-        double normal_velocity = c.surface_normal - (a.vx * c.nx + a.vy * c.ny);
-        double tangent_velocity = c.surface_tangent - (a.vy * c.nx - a.vx * c.ny) - a.rim;
-        if (c.b >= 0) {
-            const BodyState& b = bodies_[static_cast<std::size_t>(c.b)];
-            normal_velocity += b.vx * c.nx + b.vy * c.ny;
-            tangent_velocity += b.vy * c.nx - b.vx * c.ny - b.rim;
-        }
-        const double normal = std::fmax(c.normal + c.mass * (c.floor - normal_velocity), 0);
-        const double limit = c.friction * normal;
-        const double tangent =
-            std::fmax(-limit, std::fmin(limit, c.tangent - c.tangent_mass * tangent_velocity));
-        const double added = normal - c.normal, added_along = tangent - c.tangent;
-        c.normal = normal, c.tangent = tangent;
-        apply(c, added, added_along);
-        largest = std::fmax(largest, std::fmax(std::fabs(added), std::fabs(added_along)) / c.mass);
+        Impulses added{};
+        with_sides(c, [&](auto& a, auto& b) {
+            added = solve_contact<kVariant>(a, b, c.terms, c.impulses, [](double wanted) { return wanted; });
+        });
+        largest = std::fmax(largest, largest_of(added) / c.terms.mass);
     }
     return largest;
 }
@@ -183,10 +200,7 @@ double LocalSolve<Real>::sweep() {
 template <class Real>
 double LocalSolve<Real>::change() const {
     double sum = 0;
-    for (const Contact& c : contacts_) {
-        const double normal = c.normal - c.normal_before, tangent = c.tangent - c.tangent_before;
-        sum += (normal * normal + tangent * tangent) / c.mass;
-    }
+    for (const Contact& c : contacts_) sum += squares_of(c.impulses - c.before) / c.terms.mass;
     return sum;
 }
 
@@ -194,11 +208,13 @@ double LocalSolve<Real>::change() const {
 template <class Real>
 void LocalSolve<Real>::conjugate_step(double share) {
     for (Contact& c : contacts_) {
-        const double normal = c.normal - c.normal_before, tangent = c.tangent - c.tangent_before;
-        const double added = share * c.normal_step, added_along = share * c.tangent_step;
-        c.normal += added, c.tangent += added_along;
-        if (added != 0 || added_along != 0) apply(c, added, added_along);
-        c.normal_step = added + normal, c.tangent_step = added_along + tangent;
+        const Impulses by_sweep = c.impulses - c.before, added = share * c.step;
+        c.impulses = c.impulses + added;
+        if (largest_of(added) > 0)
+            with_sides(c, [&](auto& a, auto& b) {
+                apply_impulses<kRolls>(a, b, c.terms.nx, c.terms.ny, c.terms.of_a, added);
+            });
+        c.step = added + by_sweep;
     }
 }
 
@@ -207,23 +223,24 @@ void LocalSolve<Real>::solve(const SolveContacts<Real>& of_pairs, const SolveCon
                              double fall) {
     if (contacts_.empty()) return;
     load(of_pairs, of_supports);
+    const bool rolls = of_pairs.contacts.rolling_impulse != nullptr;
     const std::size_t most = std::max<std::size_t>(kMostSolves / contacts_.size(), 1);
     double first = 0, before = 0;
     for (std::size_t sweeps = 1;; ++sweeps) {
-        for (Contact& c : contacts_) c.normal_before = c.normal, c.tangent_before = c.tangent;
-        if (sweep() <= kAccuracy * fall) break;
+        for (Contact& c : contacts_) c.before = c.impulses;
+        if ((rolls ? sweep<kRolls>() : sweep<kDoesNotRoll>()) <= kAccuracy * fall) break;
         // The change by a sweep is the gradient of what is to become least.
         const double now = change();
-        if (sweeps == 1) first = now, first_bodies_ = bodies_, first_contacts_ = contacts_;
+        if (sweeps == 1) first = now, first_records_ = records_, first_contacts_ = contacts_;
         if (sweeps >= most) {
-            if (now > first) bodies_ = first_bodies_, contacts_ = first_contacts_;  // worse than one sweep
+            if (now > first) records_ = first_records_, contacts_ = first_contacts_;  // worse than one sweep
             break;
         }
         const double share = before > 0 ? now / before : 0;
         if (share <= 1) {
             conjugate_step(share);
         } else {
-            for (Contact& c : contacts_) c.normal_step = c.tangent_step = 0;
+            for (Contact& c : contacts_) c.step = {};
         }
         before = now;
     }
@@ -233,8 +250,8 @@ void LocalSolve<Real>::solve(const SolveContacts<Real>& of_pairs, const SolveCon
 template <class Real>
 std::size_t LocalSolve<Real>::bytes() const {
     return pairs_.capacity() * sizeof(std::uint32_t) + is_near_.capacity() +
-           number_of_.capacity() * sizeof(std::int32_t) +
-           (bodies_.capacity() + first_bodies_.capacity()) * sizeof(BodyState) +
+           (number_of_.capacity() + rows_.capacity()) * sizeof(std::int32_t) +
+           (records_.capacity() + first_records_.capacity()) * sizeof(double) +
            (contacts_.capacity() + first_contacts_.capacity()) * sizeof(Contact);
 }
 

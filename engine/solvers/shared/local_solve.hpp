@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "constraints/contact_law.hpp"
 #include "constraints/contact_rows.hpp"
 #include "kernels/contact_arguments.hpp"
 
@@ -38,35 +39,34 @@ class LocalSolve {
     std::size_t bytes() const;
 
   private:
-    struct BodyState {
-        std::int32_t row;
-        double vx, vy, rim, inverse_mass, inverse_inertia;  // as in the velocity records
-    };
     struct Contact {
-        std::int32_t a, b;      // of bodies_; b < 0: nothing moves it
-        std::uint32_t contact;  // of the pairs, or of the supports
-        double nx, ny, mass, tangent_mass, friction, floor;
-        double surface_normal, surface_tangent;  // m/s, of b where nothing moves it
-        double normal, tangent;                  // N s
-        double normal_before, tangent_before;    // at the start of an iteration
-        double normal_step, tangent_step;        // of the conjugate gradient
+        std::int32_t a, b;           // of records_; b < 0: nothing moves it
+        std::uint32_t contact;       // of the pairs, or of the supports
+        ContactTerms<double> terms;  // friction and rolling are zero where there is none
+        double surface_normal, surface_tangent, surface_rolling;  // m/s, of b where nothing moves it
+        ContactImpulses<double> impulses;
+        ContactImpulses<double> before;  // an iteration
+        ContactImpulses<double> step;    // of the conjugate gradient
     };
 
     std::int32_t body_of(std::int32_t row);
     void load(const SolveContacts<Real>& of_pairs, const SolveContacts<Real>& of_supports);
     void store(const SolveContacts<Real>& of_pairs, const SolveContacts<Real>& of_supports) const;
-    void apply(const Contact& contact, double normal, double tangent);
+    template <class Fn>
+    void with_sides(const Contact& contact, const Fn& fn);
+    template <unsigned kVariant>
     double sweep();
     double change() const;
     void conjugate_step(double share);
 
     std::vector<std::uint32_t> pairs_;     // that may touch until the pairs change
     std::vector<std::uint8_t> is_near_;    // by row: how many contacts from a heavy body, at least 1
-    std::vector<std::int32_t> number_of_;  // by row, in bodies_
-    std::vector<BodyState> bodies_;        // of this step
+    std::vector<std::int32_t> number_of_;  // by row, in rows_
+    std::vector<std::int32_t> rows_;       // of the bodies of this step
+    std::vector<double> records_;          // [bodies][4], as in the velocity records
     std::vector<Contact> contacts_;        // of this step: pairs, then supports
     std::size_t pair_count_ = 0;
-    std::vector<BodyState> first_bodies_;  // after the first sweep
+    std::vector<double> first_records_;  // after the first sweep
     std::vector<Contact> first_contacts_;
 };
 
