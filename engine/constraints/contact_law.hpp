@@ -249,5 +249,20 @@ template <unsigned kVariant, class A, class B, class F, class Relax>
     return added;
 }
 
+// One contact in double precision, whatever effects are on and whichever bodies turn.
+inline constexpr unsigned kEveryEffect = kRough | kFixedAngles | kRolling;
+using DoubleLanes = simd::Lanes<double, simd::Scalar>;
+using DoubleBody = MovingSide<kEveryEffect, DoubleLanes>;
+using DoubleSurface = SteadySide<DoubleLanes>;
+
+/// @param records  velocity records of all rows
+template <class Records>
+DoubleBody body_at(const Records& records, std::int32_t row) {
+    const auto value = [&](std::size_t k) {
+        return static_cast<double>(records[4 * static_cast<std::size_t>(row) + k]);
+    };
+    return {{{value(0), value(1), value(2), value(3)}}};
+}
+
 }  // namespace
 }  // namespace carom

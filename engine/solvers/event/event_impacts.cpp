@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constraints/contact_law.hpp"
 #include "effects/friction.hpp"
 #include "effects/restitution.hpp"
 
@@ -122,8 +123,7 @@ void EventImpacts::carry_out(EventStore& store, EventContact& c, double time) {
     c.impulse = (c.target - c.normal_velocity) / c.inverse_mass;
     c.normal_velocity_after = c.target;
     if (c.friction > 0) {
-        const double limit = c.friction * c.impulse;
-        c.friction_impulse = std::clamp(-c.slip / c.inverse_slip_mass, -limit, limit);
+        c.friction_impulse = hold_within(0.0, -c.slip / c.inverse_slip_mass, c.friction * c.impulse).impulse;
         c.slip_after = c.slip + c.friction_impulse * c.inverse_slip_mass;
     }
     apply(store, c, time);
@@ -153,17 +153,17 @@ double EventImpacts::solve_sweep(const EventStore& store, std::vector<EventConta
         const auto spin_of = [&](const Change* change, std::int32_t disc) {
             return change ? store.movers[static_cast<std::size_t>(disc)].radius * change->spin : 0;
         };
-        double& impulse = with_friction ? c.friction_impulse : c.impulse;
-        const double before = impulse;
+        double change = 0;
         if (with_friction) {
             const double slip = c.slip + dot(velocity, tangent) - spin_of(a, c.a) - spin_of(b, c.b);
-            const double limit = c.friction * c.impulse;
-            impulse = std::clamp(before - slip / c.inverse_slip_mass, -limit, limit);
+            const auto friction = hold_within(
+                c.friction_impulse, c.friction_impulse - slip / c.inverse_slip_mass, c.friction * c.impulse);
+            c.friction_impulse = friction.impulse, change = friction.added;
         } else {
             const double speed = c.normal_velocity + dot(velocity, c.normal);
-            impulse = std::max(0.0, before - (speed - c.target) / c.inverse_mass);
+            const auto normal = push_only(c.impulse, c.impulse - (speed - c.target) / c.inverse_mass);
+            c.impulse = normal.impulse, change = normal.added;
         }
-        const double change = impulse - before;
         const Vec2 along = change * (with_friction ? tangent : c.normal);
         const auto push = [&](Change* of, std::int32_t disc, double sign) {
             if (!of) return;

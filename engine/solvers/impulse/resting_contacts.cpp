@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constraints/contact_law.hpp"
+
 namespace carom {
 namespace {
 
@@ -50,8 +52,9 @@ void RestingContacts<Real>::carry(Flights<Real>& flights, std::vector<PressedMee
             const Vec2 of_b = m.with_wall() ? Vec2{} : flights.acceleration(m.b);
             const double apart =
                 dot(of_b - flights.acceleration(m.a), solved_[i].normal) + solved_[i].unforced;
-            const double force = std::fmax(0, contacts[i].force - apart / solved_[i].inverse_mass_sum);
-            const double change = force - contacts[i].force;
+            // Signorini's law again, of forces and accelerations.
+            const auto [force, change] =
+                push_only(contacts[i].force, contacts[i].force - apart / solved_[i].inverse_mass_sum);
             contacts[i].force = force;
             press(i, change);
             largest_change = std::fmax(largest_change, std::fabs(change));

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "constraints/contact_law.hpp"
+
 namespace carom {
 namespace {
 
@@ -44,10 +46,11 @@ void SimultaneousImpacts<Real>::solve(double negligible) {
     for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
         double largest_change = 0;
         for (Impact& i : impacts_) {
-            const double j = std::fmax(0, i.impulse - (normal_velocity(i) - i.target) / i.inverse_mass_sum);
-            const Vec2 change = (j - i.impulse) * i.encounter.normal;
-            largest_change = std::fmax(largest_change, std::fabs(j - i.impulse) * i.inverse_mass_sum);
-            i.impulse = j;
+            const double wanted = i.impulse - (normal_velocity(i) - i.target) / i.inverse_mass_sum;
+            const auto [impulse, added] = push_only(i.impulse, wanted);
+            const Vec2 change = added * i.encounter.normal;
+            largest_change = std::fmax(largest_change, std::fabs(added) * i.inverse_mass_sum);
+            i.impulse = impulse;
             VelocityChange& a = changes_[i.place_a];
             a.change -= a.inverse_mass * change;
             if (i.meeting.with_wall()) continue;

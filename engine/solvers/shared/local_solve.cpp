@@ -17,10 +17,7 @@ constexpr double kAccuracy = 1e-3;
 /// Contacts solved in a substep at most, 20 ns each.
 constexpr std::size_t kMostSolves = 8192;
 
-using Lanes = simd::Lanes<double, simd::Scalar>;
-/// Masses and effects are those of the few contacts here, not of the world.
-constexpr unsigned kRolls = kRough | kFixedAngles | kRolling, kDoesNotRoll = kRough | kFixedAngles;
-using Body = MovingSide<kRolls, Lanes>;
+constexpr unsigned kDoesNotRoll = kEveryEffect & ~kRolling;
 using Impulses = ContactImpulses<double>;
 
 Impulses operator+(const Impulses& a, const Impulses& b) {
@@ -116,16 +113,16 @@ void LocalSolve<Real>::begin_step(const ContactRows<Real>& pairs, const ContactR
 template <class Real>
 template <class Fn>
 void LocalSolve<Real>::with_sides(const Contact& c, const Fn& fn) {
-    Body a{Lanes::load_rows4(records_.data(), &c.a)};
+    DoubleBody a{DoubleLanes::load_rows4(records_.data(), &c.a)};
     if (c.b < 0) {
-        SteadySide<Lanes> surface{c.surface_normal, c.surface_tangent, c.surface_rolling};
+        DoubleSurface surface{c.surface_normal, c.surface_tangent, c.surface_rolling};
         fn(a, surface);
     } else {
-        Body b{Lanes::load_rows4(records_.data(), &c.b)};
+        DoubleBody b{DoubleLanes::load_rows4(records_.data(), &c.b)};
         fn(a, b);
-        Lanes::store_rows4(records_.data(), &c.b, b.record);
+        DoubleLanes::store_rows4(records_.data(), &c.b, b.record);
     }
-    Lanes::store_rows4(records_.data(), &c.a, a.record);
+    DoubleLanes::store_rows4(records_.data(), &c.a, a.record);
 }
 
 template <class Real>
@@ -155,7 +152,7 @@ void LocalSolve<Real>::load(const SolveContacts<Real>& of_pairs, const SolveCont
         terms.of_a = value(columns.rolling_share, 0.5);
         with_sides(c, [&](const auto& a, const auto& b) {
             terms.mass = 1 / inverse_mass(a, b);
-            terms.tangent_mass = tangent_mass<kRolls>(a, b, terms.mass);
+            terms.tangent_mass = tangent_mass<kEveryEffect>(a, b, terms.mass);
         });
     }
 }
@@ -212,7 +209,7 @@ void LocalSolve<Real>::conjugate_step(double share) {
         c.impulses = c.impulses + added;
         if (largest_of(added) > 0)
             with_sides(c, [&](auto& a, auto& b) {
-                apply_impulses<kRolls>(a, b, c.terms.nx, c.terms.ny, c.terms.of_a, added);
+                apply_impulses<kEveryEffect>(a, b, c.terms.nx, c.terms.ny, c.terms.of_a, added);
             });
         c.step = added + by_sweep;
     }
@@ -228,7 +225,7 @@ void LocalSolve<Real>::solve(const SolveContacts<Real>& of_pairs, const SolveCon
     double first = 0, before = 0;
     for (std::size_t sweeps = 1;; ++sweeps) {
         for (Contact& c : contacts_) c.before = c.impulses;
-        if ((rolls ? sweep<kRolls>() : sweep<kDoesNotRoll>()) <= kAccuracy * fall) break;
+        if ((rolls ? sweep<kEveryEffect>() : sweep<kDoesNotRoll>()) <= kAccuracy * fall) break;
         // The change by a sweep is the gradient of what is to become least.
         const double now = change();
         if (sweeps == 1) first = now, first_records_ = records_, first_contacts_ = contacts_;

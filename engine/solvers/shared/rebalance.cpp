@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constraints/contact_law.hpp"
 #include "math/vec2_math.hpp"
 
 namespace carom {
@@ -13,7 +14,7 @@ namespace {
 constexpr double kAllowedWeights = 0.5, kAllowedShare = 0.002;
 /// Stiffness of a contact along its tangent over that along its normal: the ratio of a disc's effective
 /// masses.
-constexpr double kTangentStiffness = 1.0 / 3;
+constexpr double kTangentStiffness = kTangentMassShare;
 /// Stiffness, in that of one contact, which is added in every direction: a body with a single contact is then
 /// held sideways, too.
 constexpr double kLeastStiffness = 1e-3;
@@ -28,18 +29,23 @@ Vec2 tangent_of(Vec2 normal) {
 }  // namespace
 
 template <class Real>
-void Rebalance<Real>::list(const ContactRows<Real>& contacts, bool are_pairs, double friction) {
+void Rebalance<Real>::list(const ContactRows<Real>& contacts, bool are_pairs, double friction,
+                           double rolling) {
     contacts.for_each([&](std::size_t i) {
         if (!(contacts.normal_impulse[i] > 0)) return;
-        const bool is_rough = !contacts.friction_impulse.empty();
-        const double own = contacts.friction.empty() ? friction : static_cast<double>(contacts.friction[i]);
+        const auto value = [i](const Column<Real>& column, double without) {
+            return column.empty() ? without : static_cast<double>(column[i]);
+        };
+        const bool is_rough = !contacts.friction_impulse.empty(), rolls = !contacts.rolling_impulse.empty();
         loaded_.push_back({contacts.a[i],
                            are_pairs ? contacts.b[i] : -1,
                            static_cast<std::uint32_t>(i),
                            {contacts.normal_x[i], contacts.normal_y[i]},
-                           is_rough ? own : 0,
+                           is_rough ? value(contacts.friction, friction) : 0,
+                           rolls ? value(contacts.rolling, rolling) : 0,
                            contacts.normal_impulse[i],
-                           is_rough ? static_cast<double>(contacts.friction_impulse[i]) : 0});
+                           value(contacts.friction_impulse, 0),
+                           value(contacts.rolling_impulse, 0)});
     });
 }
 
@@ -138,6 +144,7 @@ void Rebalance<Real>::pass_load_on(std::int32_t row) {
         const Vec2 taken = share * on_body(contact);
         if (!(dot(taken, flow) > 0)) continue;
         contact.normal_impulse *= 1 - share, contact.friction_impulse *= 1 - share;
+        contact.rolling_impulse *= 1 - share;
         load.excess -= taken;
         const std::int32_t other = row == contact.a ? contact.b : contact.a;
         if (other < 0) continue;
@@ -167,12 +174,15 @@ void Rebalance<Real>::relax_body(std::int32_t row) {
         Loaded& contact = loaded_[of_body_[k]];
         const Vec2 n = contact.normal, t = tangent_of(n);
         const double side = row == contact.a ? 1 : -1;  // towards b
-        const double normal = std::fmax(0, contact.normal_impulse + side * dot(moved, n));
-        const double limit = contact.friction * normal;
-        const double wanted = contact.friction_impulse + side * kTangentStiffness * dot(moved, t);
-        const double friction = std::fmax(-limit, std::fmin(limit, wanted));
-        const Vec2 added = (normal - contact.normal_impulse) * n + (friction - contact.friction_impulse) * t;
-        contact.normal_impulse = normal, contact.friction_impulse = friction;
+        const auto normal = push_only(contact.normal_impulse, contact.normal_impulse + side * dot(moved, n));
+        const auto friction = hold_within(contact.friction_impulse,
+                                          contact.friction_impulse + side * kTangentStiffness * dot(moved, t),
+                                          contact.friction * normal.impulse);
+        const auto rolling =
+            hold_within(contact.rolling_impulse, contact.rolling_impulse, contact.rolling * normal.impulse);
+        const Vec2 added = normal.added * n + friction.added * t;
+        contact.normal_impulse = normal.impulse, contact.friction_impulse = friction.impulse;
+        contact.rolling_impulse = rolling.impulse;
         load.excess -= side * added;
         const std::int32_t other = row == contact.a ? contact.b : contact.a;
         if (other < 0) continue;
@@ -193,11 +203,11 @@ void Rebalance<Real>::drain_queue(void (Rebalance::*deal_with)(std::int32_t)) {
 template <class Real>
 void Rebalance<Real>::balance(std::span<const LostContact> lost, ContactRows<Real>& pairs,
                               ContactRows<Real>& supports, const Bodies<Real>& bodies, double friction,
-                              Vec2 gain) {
+                              double rolling, Vec2 gain) {
     loaded_.clear(), queue_.clear();
-    list(pairs, true, friction);
+    list(pairs, true, friction, rolling);
     const std::size_t pair_count = loaded_.size();
-    list(supports, false, friction);
+    list(supports, false, friction, rolling);
     loads_.assign(bodies.count, {});
     sort_by_body();
     const double weight = kAllowedWeights * std::sqrt(length_squared(gain));
@@ -220,6 +230,8 @@ void Rebalance<Real>::balance(std::span<const LostContact> lost, ContactRows<Rea
         contacts.normal_impulse[contact.contact] = static_cast<Real>(contact.normal_impulse);
         if (!contacts.friction_impulse.empty())
             contacts.friction_impulse[contact.contact] = static_cast<Real>(contact.friction_impulse);
+        if (!contacts.rolling_impulse.empty())
+            contacts.rolling_impulse[contact.contact] = static_cast<Real>(contact.rolling_impulse);
     }
 }
 

@@ -21,30 +21,31 @@ namespace carom {
 /// down to the walls. The load it carried for others has to find another way: the impulse that a body gets
 /// too much is shared out among its contacts, as if they were springs and its neighbours stood still; then
 /// these have it, and so on, until no body has much more than one that falls. Impulses act on both bodies of
-/// a contact, so momentum is kept; they push, and friction stays within its limit. Numbers:
-/// docs/decisions/0013-removed-loads.md. Source: relaxation where the residual is largest (Southwell 1940),
-/// here in the order in which it appears.
+/// a contact, so momentum is kept; they push, and friction and rolling resistance stay within their limits.
+/// Numbers: docs/decisions/0013-removed-loads.md. Source: relaxation where the residual is largest (Southwell
+/// 1940), here in the order in which it appears.
 template <class Real>
 class Rebalance {
   public:
     /// @param lost  contacts that are gone with their bodies, sorted by those
-    /// @param friction  coefficient where contacts have none of their own
+    /// @param friction, rolling  coefficients where contacts have none of their own
     /// @param gain  m/s, what gravity adds in a substep
     /// Cost: O(bodies + contacts), and what is passed on.
     void balance(std::span<const LostContact> lost, ContactRows<Real>& pairs, ContactRows<Real>& supports,
-                 const Bodies<Real>& bodies, double friction, Vec2 gain);
+                 const Bodies<Real>& bodies, double friction, double rolling, Vec2 gain);
 
     std::size_t bytes() const;
 
   private:
     /// A contact that pushes.
     struct Loaded {
-        std::int32_t a, b;        // rows; b < 0: nothing moves it
-        std::uint32_t contact;    // of the pairs, or of the supports
-        Vec2 normal;              // from a to b
-        double friction;          // coefficient
-        double normal_impulse;    // N s
-        double friction_impulse;  // N s, along the normal turned by a quarter counter-clockwise, on b
+        std::int32_t a, b;         // rows; b < 0: nothing moves it
+        std::uint32_t contact;     // of the pairs, or of the supports
+        Vec2 normal;               // from a to b
+        double friction, rolling;  // coefficients
+        double normal_impulse;     // N s
+        double friction_impulse;   // N s, along the normal turned by a quarter counter-clockwise, on b
+        double rolling_impulse;    // N s
     };
     struct Load {
         Vec2 excess;                       // N s, what contacts and gravity add up to
@@ -55,7 +56,7 @@ class Rebalance {
         bool is_queued = false;
     };
 
-    void list(const ContactRows<Real>& contacts, bool are_pairs, double friction);
+    void list(const ContactRows<Real>& contacts, bool are_pairs, double friction, double rolling);
     void sort_by_body();
     Vec2 excess_of(const Load& load) const;
     void queue_if_uneven(std::int32_t row);

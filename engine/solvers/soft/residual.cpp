@@ -1,51 +1,41 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constraints/contact_law.hpp"
 #include "solvers/soft/soft_solver.hpp"
 
 namespace carom {
 
-/// What one more sweep would change in the relative normal velocity of each contact, on its own: the
-/// contact law of kernels/solve_contacts.hpp with the velocities at the end of the step. Contacts that
-/// bounced have left the law on purpose.
+/// What one more sweep would change in the relative normal velocity of each contact, on its own, with the
+/// velocities at the end of the step. Contacts that bounced have left the law on purpose.
 template <class Real>
 SolveQuality SoftSolver<Real>::quality() const {
     SolveQuality quality;
     double sum = 0;
     std::int64_t pushing = 0;
-    const auto velocity = [this](std::int32_t row, double nx, double ny) {
-        const Real* record = velocity_.data() + 4 * static_cast<std::size_t>(row);
-        return static_cast<double>(record[0]) * nx + static_cast<double>(record[1]) * ny;
-    };
-    const auto look_at = [&](std::size_t i, double impulse, double relative, const ContactRows<Real>& live) {
+    const auto look_at = [&](const ContactRows<Real>& contacts, std::size_t i, const auto& other) {
+        const double impulse = contacts.normal_impulse[i], mass = contacts.mass[i], nx = contacts.normal_x[i],
+                     ny = contacts.normal_y[i], floor = contacts.floor[i];
         if (impulse > 0) ++quality.touching;
-        if (!live.bounce_impulse.empty() && live.bounce_impulse[i] > 0) return;
-        const double mass = static_cast<double>(live.mass[i]);
-        // At most what would take the whole impulse back.
-        const double change = std::fmax(static_cast<double>(live.floor[i]) - relative, -impulse / mass);
-        if (impulse == 0 && change <= 0) return;
+        if (!contacts.bounce_impulse.empty() && contacts.bounce_impulse[i] > 0) return;
+        const double velocity = normal_velocity(body_at(velocity_, contacts.a[i]), other, nx, ny);
+        const auto sweep = push_only(impulse, impulse + mass * (floor - velocity));
+        if (impulse == 0 && sweep.impulse == 0) return;
+        const double change = std::fabs(sweep.added) / mass;
         ++pushing;
         sum += change * change;
-        quality.residual_max = std::fmax(quality.residual_max, std::fabs(change));
+        quality.residual_max = std::fmax(quality.residual_max, change);
     };
     const auto is_row = [this](std::int32_t row) { return static_cast<std::size_t>(row) < count_; };
-    graph.pairs.for_each([&](std::size_t i) {
+    const ContactRows<Real>& pairs = graph.pairs;
+    pairs.for_each([&](std::size_t i) {
         const std::size_t block = i / kContactBlock;
-        const std::int32_t a = graph.pairs.a[i], b = graph.pairs.b[i];
-        if (block >= graph.pairs.is_live.size() || !graph.pairs.is_live[block] || !is_row(a) || !is_row(b))
-            return;
-        const double nx = static_cast<double>(graph.pairs.normal_x[i]),
-                     ny = static_cast<double>(graph.pairs.normal_y[i]);
-        look_at(i, static_cast<double>(graph.pairs.normal_impulse[i]),
-                velocity(b, nx, ny) - velocity(a, nx, ny), graph.pairs);
+        if (block >= pairs.is_live.size() || !pairs.is_live[block]) return;
+        if (is_row(pairs.a[i]) && is_row(pairs.b[i])) look_at(pairs, i, body_at(velocity_, pairs.b[i]));
     });
     supports_.for_each([&](std::size_t i) {
-        if (!is_row(supports_.a[i])) return;
-        const double nx = static_cast<double>(supports_.normal_x[i]),
-                     ny = static_cast<double>(supports_.normal_y[i]);
-        look_at(i, static_cast<double>(supports_.normal_impulse[i]),
-                static_cast<double>(supports_.surface_normal[i]) - velocity(supports_.a[i], nx, ny),
-                supports_);
+        if (is_row(supports_.a[i]))
+            look_at(supports_, i, DoubleSurface{static_cast<double>(supports_.surface_normal[i]), 0, 0});
     });
     if (pushing > 0) quality.residual = std::sqrt(sum / static_cast<double>(pushing));
     return quality;

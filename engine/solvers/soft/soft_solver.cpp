@@ -263,7 +263,8 @@ template <class Real>
 void SoftSolver<Real>::rebalance_loads(const Bodies<Real>& bodies) {
     is_unloaded_ = true;
     std::sort(graph.lost.begin(), graph.lost.end());
-    unloading_.balance(graph.lost, graph.pairs, supports_, bodies, uniform_friction_, gravity_change_);
+    unloading_.balance(graph.lost, graph.pairs, supports_, bodies, uniform_friction_, uniform_rolling_,
+                       gravity_change_);
     graph.lost.clear();
 }
 

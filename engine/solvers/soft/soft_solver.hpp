@@ -198,9 +198,12 @@ class SoftSolver {
     void book_bounces(Books& books) const;
     struct Impulses;
     template <class From>
-    void book_pairs(const Impulses& impulses, const From& from, Books& books) const;
+    void book_contacts(const ContactRows<Real>& contacts, const Impulses& impulses, const From& from,
+                       Books& books) const;
+    void book_supports(const Impulses& impulses, Books& books) const;
     template <class From>
-    void book_supports(const Impulses& impulses, const From& from, Books& books) const;
+    void book_kinds(const Impulses& of_supports, const Impulses& of_pairs, const From& from,
+                    Books& books) const;
     void book_free_flight(const WorldState<Real>& world, Books& books);
     double change_of_bounces(ContactRows<Real>& live) const;
 
