@@ -73,6 +73,7 @@ void EdgeCandidates<Real>::find(const WorldState<Real>& world, const Candidates<
     pairs_.clear(), new_pairs_.clear();
     allowance_ = kAllowance * candidates.smallest_radius();
     found_at_.resize(poses_.size());
+    if (poses_.empty()) return;
     double largest_reach = 0;
     const Bodies<Real>& bodies = world.bodies;
     for (std::size_t row = 0; row < bodies.count; ++row)
@@ -98,6 +99,7 @@ void EdgeCandidates<Real>::find(const WorldState<Real>& world, const Candidates<
 template <class Real>
 void EdgeCandidates<Real>::add_strays(const WorldState<Real>& world, const Candidates<Real>& candidates) {
     new_pairs_.clear();
+    if (found_at_.empty()) return;
     for (const std::int32_t stray : candidates.strays()) {
         const auto row = static_cast<std::size_t>(stray);
         if (world.bodies.is_immovable(row)) continue;

@@ -46,6 +46,7 @@ class EdgeCandidates {
     bool has_left_margin() const;
 
     /// Finds all discs that can touch an edge, by edge, in an order that depends on the input alone.
+    /// In a world without edges there are none: those found before are forgotten.
     /// Cost: O(edges + their length / radii + what is found).
     void find(const WorldState<Real>& world, const Candidates<Real>& candidates);
     std::span<const EdgePair> pairs() const { return pairs_; }  ///< by row, then by edge

@@ -264,4 +264,25 @@ TEST_SUITE("physics/edges") {
         CHECK(world.state({2, 0}).position.y == doctest::Approx(kRadius - 3).epsilon(1e-4));
         CHECK_THROWS_AS(world.state({0, 0}), Error);
     }
+
+    TEST_CASE_TEMPLATE("discs fall freely when the world's last segment or chain is removed from under them",
+                       Real, float, double) {
+        const Shape shapes[] = {Segment{{-5, 0}, {5, 0}}, level_chain(-5, 5, 1)};
+        for (const Shape& shape : shapes) {
+            Scene scene;
+            scene.gravity = {0, -kGravity};
+            scene.add(line(shape, 0.5));
+            for (int i = 0; i < 3; ++i) scene.add(rough_disc({1.5 * i - 1.2, kRadius}, 0.5));
+            BasicWorld<Real> world(scene);
+            for (int i = 0; i < 30; ++i) world.step(kStep);
+            world.remove({0, 0});
+            for (int i = 0; i < 60; ++i) world.step(kStep);
+            for (std::uint32_t body = 1; body <= 3; ++body)
+                CHECK(world.state({body, 0}).position.y ==
+                      doctest::Approx(kRadius - 0.5 * kGravity).epsilon(1e-4));
+            world.add(line(shape, 0.5));  // above them
+            for (int i = 0; i < 30; ++i) world.step(kStep);
+            CHECK(world.state({1, 0}).velocity.y == doctest::Approx(-1.5 * kGravity).epsilon(1e-4));
+        }
+    }
 }

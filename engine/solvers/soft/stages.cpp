@@ -26,12 +26,11 @@ void update_contacts(SoftSimulation<Real>& sim) {
     sim.soft.graph.sleepers = sim.sleepers.pairs();
     if (sim.graph_of_rebuild != sim.candidates.rebuild_count() && sim.world.effects.sleeping)
         Sleepers<Real>::forget_contacts(sim.soft.graph, sim.world);
-    const bool has_edges = !sim.world.edges.empty();
     if (sim.graph_of_rebuild == sim.candidates.rebuild_count()) {
-        if (has_edges) sim.edge_candidates.add_strays(sim.world, sim.candidates);
+        sim.edge_candidates.add_strays(sim.world, sim.candidates);
         sim.soft.graph.add(sim.candidates, sim.edge_candidates, sim.world.bodies, walls);
     } else {
-        if (has_edges) sim.edge_candidates.find(sim.world, sim.candidates);
+        sim.edge_candidates.find(sim.world, sim.candidates);
         sim.soft.graph.renew(sim.candidates, sim.edge_candidates, sim.world.bodies, walls, sim.executor);
     }
     sim.graph_of_rebuild = sim.candidates.rebuild_count();
