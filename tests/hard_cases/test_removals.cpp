@@ -106,6 +106,34 @@ TEST_SUITE("hard cases/removals") {
                 }
     }
 
+    TEST_CASE_TEMPLATE("B24: a weight that leant on a static disc, too, leaves the stack below it at rest",
+                       Real, float, double) {
+        for (const int discs : {3, 8, 20})
+            for (const double weight : {10.0, 100.0}) {
+                Scene scene = stack(discs, weight, 0);
+                scene.walls->right = false;
+                const double top = discs - kRadius;
+                scene.add(
+                    {.type = BodyType::static_body, .shape = Segment{{1.001, 0}, {1.001, discs - 0.4}}});
+                scene.add({.type = BodyType::static_body,
+                           .shape = Disc{kRadius},
+                           .position = {kRadius + 1.5, top}});
+                const auto removed = static_cast<std::uint32_t>(discs);
+                scene.bodies[removed].position = {kRadius + 0.75, top + std::sqrt(1 - 0.75 * 0.75)};
+                BasicWorld<Real> world(scene, {.threads = 1});
+                run(world, 1200);
+                CHECK(world.state({removed, 0}).position.y > top + 0.5);
+                world.remove({removed, 0});
+                double fastest = 0;
+                for (int i = 0; i < 60; ++i) {
+                    world.step(kStep);
+                    fastest = std::fmax(fastest, motion_of(world).fastest);
+                }
+                report(discs, " discs, a weight of ", weight, " removed: at most ", fastest, " m/s");
+                CHECK(fastest < 0.1);
+            }
+    }
+
     TEST_CASE_TEMPLATE("B24: what stood on a base that is removed falls freely", Real, float, double) {
         for (const int discs : {3, 8})
             for (const double weight : {1.0, 100.0}) {

@@ -103,7 +103,9 @@ void Rebalance<Real>::begin_flows(std::span<const LostContact> lost) {
         double up = 0, down = 0;  // N s, along the weight of the bodies that were pressed
         for (; last < lost.size() && lost[last].gone == lost[first].gone; ++last) {
             const Load& load = loads_[static_cast<std::size_t>(lost[last].row)];
-            const double along = dot(load.excess, load.weight) / std::sqrt(length_squared(load.weight));
+            const double weight = std::sqrt(length_squared(load.weight));
+            if (!(weight > 0)) continue;  // nothing moves it: what it bore or bore down with ends there
+            const double along = dot(load.excess, load.weight) / weight;
             (along < 0 ? up : down) += std::fabs(along);
         }
         if (!(up > down)) continue;
