@@ -34,6 +34,7 @@ struct Inside {
         sim.world.effects = call_effects(scene, {}).effects;
         sim.world.gravity = scene.gravity;
         sim.world.walls = scene.walls;
+        sim.world.bodies.has_rotation = sim.world.effects.rotation;
         for (const Body& body : scene.bodies) sim.world.append(body);
     }
     void run(int steps) {
@@ -119,5 +120,36 @@ TEST_SUITE("physics/contact forces") {
         CHECK(early.residual >= early.residual_max / std::sqrt(2) * 0.999);
         two.run(6000);
         CHECK(two.sim.soft.quality().residual < 1e-2 * early.residual);
+    }
+
+    // What is left from an earlier touch would be given to the bodies when they touch again.
+    TEST_CASE_TEMPLATE("a contact that does not push neither rubs nor resists rolling", Real, float, double) {
+        Scene scene;
+        scene.gravity = {1, -kGravity};
+        const Material rough{.friction = 0.5, .rolling_resistance = 0.1};
+        for (int i = 0; i < 6; ++i)
+            scene.add(
+                {.shape = Disc{kRadius}, .position = {0.3 + 1.1 * i, 3.0 + 0.2 * i}, .material = rough});
+        scene.add({.type = BodyType::static_body, .shape = Disc{1}, .position = {3, 1}, .material = rough});
+        Chain slope;  // discs roll from one of its edges to the next
+        for (int i = 0; i < 40; ++i) slope.points.push_back({-4 + 0.7 * i, 1 - 0.1 * i});
+        scene.add({.type = BodyType::static_body, .shape = slope, .material = rough});
+        scene.accuracy.solver = Solver::soft;
+        Inside<Real> inside(scene);
+        std::size_t pushed = 0, idle = 0, wrong = 0;
+        for (int i = 0; i < 150; ++i) {
+            inside.run(1);
+            const auto& graph = inside.sim.soft.graph;
+            for (const ContactCandidates<Real>* contacts : {&graph.pairs, &graph.supports})
+                contacts->for_each([&](std::size_t k) {
+                    const bool pushes = contacts->normal_impulse[k] > 0;
+                    ++(pushes ? pushed : idle);
+                    wrong +=
+                        !pushes && (contacts->friction_impulse[k] != 0 || contacts->rolling_impulse[k] != 0);
+                });
+        }
+        CHECK(pushed > 50);
+        CHECK(idle > 50);
+        CHECK(wrong == 0);
     }
 }

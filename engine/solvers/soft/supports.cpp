@@ -75,6 +75,11 @@ void SoftSolver<Real>::find_supports_of(std::size_t group, const WorldState<Real
     const double fall = length_squared(gravity_change_) > 0
                             ? std::sqrt(length_squared(gravity_change_)) * dt_ / substep_dt_
                             : 0;
+    // A contact that is out of reach holds nothing: neither now nor when the body is back.
+    const auto let_go = [&](std::size_t i) {
+        candidates.normal_impulse[i] = candidates.friction_impulse[i] = 0;
+        if (rolls_) candidates.rolling_impulse[i] = 0;
+    };
     std::size_t place = candidates.first_place(group);
     for (std::size_t c = candidates.first_colour[group]; c < candidates.first_colour[group + 1]; ++c) {
         std::size_t at = place;
@@ -86,8 +91,10 @@ void SoftSolver<Real>::find_supports_of(std::size_t group, const WorldState<Real
                     clearance_of_edge(world, edges, row, edge_of_support(support), dt_);
                 if (clearance >
                     contact_distance_ + std::max(kCrowdedRadii * static_cast<double>(bodies.radius[row]),
-                                                 kBothAxes * way + dt_ * fall))
+                                                 kBothAxes * way + dt_ * fall)) {
+                    let_go(i);
                     continue;
+                }
             }
             const SupportSurface s = is_edge_support(support)
                                          ? surface_of_edge(world, edges, row, edge_of_support(support), dt_)
@@ -101,7 +108,7 @@ void SoftSolver<Real>::find_supports_of(std::size_t group, const WorldState<Real
             const bool is_far = !is_wall_support(support) && s.separation > near;
             if (!s.is_contact || is_far) {
                 if (!s.is_contact) note_left_edge(i, group, world);
-                candidates.normal_impulse[i] = 0;
+                let_go(i);
                 continue;
             }
             add_support(s, i, at, world);
