@@ -26,7 +26,9 @@ struct FreeFlight {
 ///
 /// The displacement is that of the velocity at the end, h v1 (symplectic Euler), which is what contacts need;
 /// where the velocity changed by no more than free flight would change it - bodies in flight, sliding,
-/// rolling, at rest - it is h (v0 + v1) / 2, which is exact under constant acceleration.
+/// rolling, at rest - it is h (v0 + v1) / 2, which is exact under constant acceleration. The turn likewise,
+/// where the rim speed changes by no more than that and angular drag together: in flight, and where a disc
+/// rolls.
 template <bool kTurns, class Real, class Isa>
 void advance_bodies(const AdvanceBodies<Real>& k, std::size_t first, std::size_t last) {
     using Lanes = simd::Lanes<Real, Isa>;
@@ -41,20 +43,26 @@ void advance_bodies(const AdvanceBodies<Real>& k, std::size_t first, std::size_t
         const F free_x = free.x(start_x, inverse_mass), free_y = free.y(start_y, inverse_mass);
         const F change_x = v[0] - start_x, change_y = v[1] - start_y;
         const F fall_x = free_x - start_x, fall_y = free_y - start_y;
-        const auto is_smooth = change_x * change_x + change_y * change_y <=
-                               (fall_x * fall_x + fall_y * fall_y) * F(Real(1.0001));
+        const F fall = fall_x * fall_x + fall_y * fall_y, margin(Real(1.0001));
+        const auto is_smooth = change_x * change_x + change_y * change_y <= fall * margin;
         moved[0] += h * (v[0] - simd::select(is_smooth, half * change_x, F(0)));
         moved[1] += h * (v[1] - simd::select(is_smooth, half * change_y, F(0)));
         Lanes::store_rows2(k.displacement + 2 * row, kConsecutive, moved);
-        if constexpr (kTurns) Lanes::store(k.turn + row, Lanes::load(k.turn + row) + h * v[2]);
+        F start_rim(0), free_rim(0);
+        if constexpr (kTurns) {
+            start_rim = Lanes::load(k.start.rim + row), free_rim = free.spin(start_rim, inverse_mass);
+            const F change = v[2] - start_rim, drag = free_rim - start_rim;
+            const auto turns_smoothly = change * change <= (fall + drag * drag) * margin;
+            const F mean = v[2] - simd::select(turns_smoothly, half * change, F(0));
+            Lanes::store(k.turn + row, Lanes::load(k.turn + row) + h * mean);
+        }
         if (k.is_last) continue;
         Lanes::store(k.start.x + row, v[0]), Lanes::store(k.start.y + row, v[1]);
         const F next_x = free.x(v[0], inverse_mass) + (v[0] - free_x);
         const F next_y = free.y(v[1], inverse_mass) + (v[1] - free_y);
         if constexpr (kTurns) {
-            const F start_rim = Lanes::load(k.start.rim + row);
             Lanes::store(k.start.rim + row, v[2]);
-            v[2] = free.spin(v[2], inverse_mass) + (v[2] - free.spin(start_rim, inverse_mass));
+            v[2] = free.spin(v[2], inverse_mass) + (v[2] - free_rim);
         }
         v[0] = simd::select(simd::abs(inverse_mass) > F(0), next_x, v[0]);
         v[1] = simd::select(simd::abs(inverse_mass) > F(0), next_y, v[1]);

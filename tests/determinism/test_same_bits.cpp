@@ -164,10 +164,10 @@ constexpr Golden kGolden[] = {
     {"falling sizes", 0x4fe0c9b61ea50e9c, 0xc84f698047eb650e},
     {"moving obstacles", 0x9450532e75523df8, 0x81f8d27062c9d725},
     {"stack at rest", 0xa436021f760768ad, 0xfd75b447dc578a50},
-    {"rough sizes", 0x2d9b960db8533710, 0x887f6b8e69f663c1},
-    {"rolling sizes", 0xa99fa5c3cd465c64, 0xc94322e3d96b39cb},
-    {"turning chain", 0x51251b636ccaa4d4, 0x9d6c45d9e2d104d},
-    {"woken sleepers", 0x78db6bf70028a4db, 0xd79665de5f5ca1d9},
+    {"rough sizes", 0xe205a815944fe984, 0x23ea3ec6377d430c},
+    {"rolling sizes", 0x3c3992b72d7e76e5, 0x32b2ce6148eb257d},
+    {"turning chain", 0xa170b92b5d1fd58a, 0x9c0312f4b30d2d38},
+    {"woken sleepers", 0x6ab2e75856d9e0e5, 0x3a95da24a3804626},
 };
 
 }  // namespace

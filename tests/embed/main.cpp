@@ -59,7 +59,7 @@ int main() {
     // Every line, whatever the others say: all new hashes are then known at once.
     const bool same[] = {ends_with<carom::World>("bouncing, float", bouncing, 0x77a5eb8a7be11833),
                          ends_with<carom::World64>("bouncing, double", bouncing, 0xd04f2f50aa586fe0),
-                         ends_with<carom::World>("rough, float", rough, 0xad0e8e015a2705f5),
-                         ends_with<carom::World64>("rough, double", rough, 0x5124254b5b135996)};
+                         ends_with<carom::World>("rough, float", rough, 0x21912cab6e99aadb),
+                         ends_with<carom::World64>("rough, double", rough, 0xf49672c7a79fc79a)};
     return same[0] && same[1] && same[2] && same[3] ? 0 : 1;
 }
