@@ -37,23 +37,12 @@ void Candidates<Real>::prepare(std::size_t count) {
 }
 
 template <class Real>
-void Candidates<Real>::measure_radii(const Bodies<Real>& bodies) {
-    if (radii_are_known_) return;
-    smallest_radius_ = largest_radius_ = bodies.count > 0 ? bodies.radius[0] : 0;
-    for (std::size_t row = 0; row < bodies.count && !bodies.radius.is_uniform(); ++row) {
-        smallest_radius_ = std::fmin(smallest_radius_, bodies.radius[row]);
-        largest_radius_ = std::fmax(largest_radius_, bodies.radius[row]);
-    }
-    radii_are_known_ = true;
-}
-
-template <class Real>
 void Candidates<Real>::choose_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
                                       double fastest) {
     const double fall = std::sqrt(length_squared(gravity)) * end.q;
     const double most = fastest * end.s + fall;
-    const double common = std::fmax(kSmallestMargin * smallest_radius_,
-                                    std::fmin(kStepsOfFastest * most, kLargestMargin * largest_radius_));
+    const double common = std::fmax(kSmallestMargin * radii_.smallest,
+                                    std::fmin(kStepsOfFastest * most, kLargestMargin * radii_.largest));
     // A body that crosses more than the common margin in one step.
     const double fast = (common / kOwnMargin - fall) / end.s;
     const bool some_are_fast = most * kOwnMargin > common;
@@ -110,7 +99,8 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
         }
         return;
     }
-    measure_radii(bodies);
+    if (!radii_are_known_) radii_ = measure_radii(bodies);
+    radii_are_known_ = true;
     if (rule_ == MarginRule::own)
         choose_own_margins(bodies, end, gravity, executor);
     else

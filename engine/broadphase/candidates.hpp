@@ -12,6 +12,7 @@
 #include "parallel/executor.hpp"
 #include "state/bodies.hpp"
 #include "state/chunked_list.hpp"
+#include "state/radii.hpp"
 
 namespace carom {
 
@@ -98,7 +99,7 @@ class Candidates {
     /// How far places, built_x and built_y, may go with the mean flow of the bodies before the pairs are void
     /// [m]. Lists of what a body reaches besides other bodies, as walls and edges, have to look farther by
     /// that.
-    double largest_drift() const { return rule_ == MarginRule::own ? kLargestDrift * smallest_radius_ : 0; }
+    double largest_drift() const { return rule_ == MarginRule::own ? kLargestDrift * radii_.smallest : 0; }
 
     /// Rule `own`: moves the places with the mean flow. To be called first in every step of length dt [s].
     /// A body that has used up its margin by that has a reach of its radius; it is to be taken for a stray.
@@ -116,8 +117,11 @@ class Candidates {
     const Column<Real>& built_y() const { return rule_ == MarginRule::own ? own_y_ : grid_.built_y(); }
     const Column<Real>& reach() const { return reach_; }  ///< m, radius plus margin
     const UniformGrid<Real>& grid() const { return grid_; }
-    double largest_radius() const { return largest_radius_; }
-    double smallest_radius() const { return smallest_radius_; }
+    /// Of the discs, as they were when the pairs were found last.
+    double largest_radius() const { return radii_.largest; }
+    double smallest_radius() const { return radii_.smallest; }
+    /// Null if they may have changed since.
+    const Radii* known_radii() const { return radii_are_known_ ? &radii_ : nullptr; }
 
     /// Whether rows have drifted so far from the order of the cells that sorting them pays.
     bool wants_sorted_rows() const;
@@ -143,7 +147,6 @@ class Candidates {
     }
 
     void choose_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity, double fastest);
-    void measure_radii(const Bodies<Real>& bodies);
     Real own_reach(const Bodies<Real>& bodies, std::size_t row, const FlightClock& end, double fall) const;
     void choose_own_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
                             const Executor& executor);
@@ -187,7 +190,7 @@ class Candidates {
     // Attempts to follow the flow that failed in a row, and occasions left out since the last attempt.
     int failed_follows_ = 0, follows_left_out_ = 0;
     Column<std::int32_t> near_;
-    double largest_radius_ = 0, smallest_radius_ = 0;
+    Radii radii_;
     bool is_valid_ = false;
     bool radii_are_known_ = false;
     std::int64_t rebuild_count_ = 0;

@@ -51,7 +51,7 @@ void Candidates<Real>::measure_flow(const Bodies<Real>& bodies, const FlightCloc
                                     bool is_new) {
     if (is_new)  // so large that the usual margins are within it
         flow_.lay_out(bodies.count, bodies.position_x.data(), bodies.position_y.data(),
-                      kCellInReaches * (1 + kLargestOwnMargin) * largest_radius_);
+                      kCellInReaches * (1 + kLargestOwnMargin) * radii_.largest);
     flow_.begin();
     const Vec2 fall = end.q * gravity;
     for (std::size_t row = 0; row < bodies.count; ++row) {
@@ -190,7 +190,7 @@ void Candidates<Real>::begin_flow(const Bodies<Real>& bodies, const FlightClock&
     }
     steepness_ = since_flow_ = 0, drift_left_ = largest_drift();
     may_flow_ = flows_ = false;
-    if (bodies.count == 0) return;
+    if (!(radii_.largest > 0)) return;  // no discs
     measure_flow(bodies, end, gravity, true);
     const MeanFlow::Most& most = flow_.most();
     // An immovable body is a stray in any flow.
@@ -198,7 +198,7 @@ void Candidates<Real>::begin_flow(const Bodies<Real>& bodies, const FlightClock&
     for (std::size_t row = 0; row < bodies.count && bodies.has_flags; ++row)
         immovable += takes_part(bodies.flags_of(row)) && bodies.is_immovable(row);
     may_flow_ = immovable * kBodiesPerImmovable <= bodies.count;
-    flows_ = may_flow_ && end.s * most.speed > kStill * smallest_radius_ &&
+    flows_ = may_flow_ && end.s * most.speed > kStill * radii_.smallest &&
              end.s * most.rate < kLargestStretch && end.s * most.speed < drift_left_;
     flow_is_local_ = true, largest_reach_ = 0;
     if (!flows_) return;

@@ -36,10 +36,10 @@ Real Candidates<Real>::own_reach(const Bodies<Real>& bodies, std::size_t row, co
     const Vec2 v = Vec2{bodies.velocity_x[row], bodies.velocity_y[row]} - flow;
     const double travel = std::sqrt(length_squared(v)) * end.s + fall;
     // A small body beside a large one has no use for a margin of the large one's size.
-    const double size = std::min(largest_radius_, kLargestSize * static_cast<double>(bodies.radius[row]));
+    const double size = std::min(radii_.largest, kLargestSize * static_cast<double>(bodies.radius[row]));
     const double most = std::max(kLargestOwnMargin * size, kFewestSteps * travel);
     const double wanted = kOwnSteps * travel + kFlowSteps * end.s * std::sqrt(length_squared(flow));
-    const double margin = std::max(std::min(wanted, most), kSmallestMargin * smallest_radius_);
+    const double margin = std::max(std::min(wanted, most), kSmallestMargin * radii_.smallest);
     return static_cast<Real>(static_cast<double>(bodies.radius[row]) + margin);
 }
 

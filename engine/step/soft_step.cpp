@@ -119,13 +119,9 @@ class SoftStep final : public SoftSimulation<Real> {
     static_assert(kFirstOfEnd + std::size(kEnd) <= StageTimes::kMostStages);
 
     int substeps_against_gravity(double dt) const {
-        const Bodies<Real>& bodies = this->world.bodies;
-        double smallest = this->candidates.smallest_radius();
-        if (!(smallest > 0)) {
-            smallest = bodies.radius[0];
-            for (std::size_t row = 1; row < bodies.count && !bodies.radius.is_uniform(); ++row)
-                smallest = std::fmin(smallest, bodies.radius[row]);
-        }
+        const Radii* known = this->candidates.known_radii();
+        const double smallest = known ? known->smallest : measure_radii(this->world.bodies).smallest;
+        if (!(smallest > 0)) return 0;
         const double gravity = std::sqrt(length_squared(this->world.gravity));
         return static_cast<int>(std::ceil(dt * std::sqrt(0.5 * gravity / (kLargestFall * smallest))));
     }

@@ -17,6 +17,20 @@ namespace {
 
 constexpr double kStep = 1.0 / 60;
 
+/// Steps once. @return the substeps that were taken
+template <class Real>
+std::int64_t substeps_of_step(BasicWorld<Real>& world) {
+    const auto sweeps = [&] {
+        std::int64_t calls = 0;
+        for (const StageTime& stage : world.profile().stages)
+            if (stage.name == "solve_contacts") calls = stage.calls;
+        return calls;
+    };
+    const std::int64_t before = sweeps();
+    world.step(kStep);
+    return sweeps() - before;
+}
+
 }  // namespace
 
 TEST_SUITE("hard cases/size ratios") {
@@ -147,5 +161,35 @@ TEST_SUITE("hard cases/size ratios") {
         CHECK(deepest < scaled(0.2, 1.0));
         CHECK(world.state(large).position.y > kLarge + 0.5 * top);  // it lies in a dent, not on the floor
         CHECK(world.quarantined().empty());
+    }
+
+    // The rows of segments and chains hold something in place of a radius: here that of the disc that goes.
+    TEST_CASE_TEMPLATE("a segment says nothing of how small the discs of a world are", Real, float, double) {
+        Scene scene;
+        scene.gravity = {0, -10};
+        scene.accuracy.solver = Solver::soft;
+        scene.add(disc(1e-3, 1, {0, 5}));
+        scene.add(disc(0.5, 1, {2, 0.5}));
+        scene.add({.type = BodyType::static_body, .shape = Segment{{-9, 0}, {9, 0}}});
+        BasicWorld<Real> world(scene);
+        CHECK(substeps_of_step(world) > 4);
+        world.remove({0, 0});
+        CHECK(substeps_of_step(world) == 4);
+        CHECK(substeps_of_step(world) == 4);
+    }
+
+    TEST_CASE_TEMPLATE("a world of moving segments alone has no radius at all, and steps", Real, float,
+                       double) {
+        Scene scene;
+        scene.gravity = {0, -10};
+        scene.accuracy.solver = Solver::soft;
+        for (const double x : {0.0, 3.0})
+            scene.add({.type = BodyType::kinematic_body,
+                       .shape = Segment{{-1, 0}, {1, 0}},
+                       .position = {x, 0},
+                       .velocity = {0, 1}});
+        BasicWorld<Real> world(scene);
+        for (int i = 0; i < 60; ++i) CHECK(substeps_of_step(world) == 4);
+        CHECK(world.state({1, 0}).position.y == doctest::Approx(1));
     }
 }
