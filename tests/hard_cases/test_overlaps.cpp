@@ -210,4 +210,32 @@ TEST_SUITE("hard cases/overlaps") {
             trial.check();
         }
     }
+
+    // The lower one cannot give way, the upper one falls by g dt² / 2 within the step.
+    TEST_CASE_TEMPLATE("under solver soft a disc that is let go just above another one ends no step in it",
+                       Real, float, double) {
+        constexpr double kFall = 10;
+        struct Case {
+            double radius, dt;
+        };
+        for (const Case& c : {Case{0.01, 1.0 / 60}, Case{0.005, 1.0 / 60}, Case{0.5, 0.1}, Case{0.1, 0.05}})
+            for (int share = 1; share <= 20; ++share) {
+                const double gap = 0.05 * share * 0.5 * kFall * c.dt * c.dt;
+                Scene scene;
+                scene.gravity = {0, -kFall};
+                scene.accuracy.solver = Solver::soft;
+                scene.walls = floor_at(0);
+                scene.add(disc(c.radius, 1, {0, c.radius}));
+                scene.add(disc(c.radius, 1, {0, 3 * c.radius + gap}));
+                BasicWorld<Real> world(scene);
+                CAPTURE(c.radius);
+                CAPTURE(gap / c.radius);
+                double deepest = 0;
+                for (int i = 0; i < 10; ++i) {
+                    world.step(c.dt);
+                    deepest = std::fmax(deepest, world.overlaps().max);
+                }
+                CHECK(deepest < 0.01);
+            }
+    }
 }

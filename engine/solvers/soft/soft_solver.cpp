@@ -238,7 +238,10 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const Candid
     dt_ = dt;
     const double smallest = candidates.smallest_radius();
     largest_radius_ = candidates.largest_radius();
-    contact_distance_ = kNearFraction * smallest + std::sqrt(length_squared(gravity_change_)) * dt;
+    // A body that falls from rest, in substeps h of g h each, beside one that is held, comes nearer by
+    // g dt (dt + h) / 2 at most.
+    const double fall = 0.5 * std::sqrt(length_squared(gravity_change_)) * dt * (dt / substep_dt_ + 1);
+    contact_distance_ = kNearFraction * smallest + fall;
     deep_ = kDeep * smallest;
     push_ = kPushRadiiPerSecond * smallest * substep_dt_;
     are_impulses_known_ =

@@ -72,9 +72,6 @@ void SoftSolver<Real>::find_supports_of(std::size_t group, const WorldState<Real
     ContactRows<Real>& candidates = graph.supports;
     const Bodies<Real>& bodies = world.bodies;
     left_edges_of_[group].clear();
-    const double fall = length_squared(gravity_change_) > 0
-                            ? std::sqrt(length_squared(gravity_change_)) * dt_ / substep_dt_
-                            : 0;
     // A contact that is out of reach holds nothing: neither now nor when the body is back.
     const auto let_go = [&](std::size_t i) {
         candidates.normal_impulse[i] = candidates.friction_impulse[i] = 0;
@@ -90,8 +87,8 @@ void SoftSolver<Real>::find_supports_of(std::size_t group, const WorldState<Real
                 const auto [clearance, way] =
                     clearance_of_edge(world, edges, row, edge_of_support(support), dt_);
                 if (clearance >
-                    contact_distance_ + std::max(kCrowdedRadii * static_cast<double>(bodies.radius[row]),
-                                                 kBothAxes * way + dt_ * fall)) {
+                    contact_distance_ +
+                        std::max(kCrowdedRadii * static_cast<double>(bodies.radius[row]), kBothAxes * way)) {
                     let_go(i);
                     continue;
                 }
@@ -104,7 +101,7 @@ void SoftSolver<Real>::find_supports_of(std::size_t group, const WorldState<Real
             // one may yet throw it there within this step. What is round only holds where it is met.
             const double crowd = s.is_flat ? kCrowdedRadii * static_cast<double>(bodies.radius[row]) : 0;
             const double near =
-                contact_distance_ + std::fmax(crowd, dt_ * (std::fabs(dv.x) + std::fabs(dv.y) + fall));
+                contact_distance_ + std::fmax(crowd, dt_ * (std::fabs(dv.x) + std::fabs(dv.y)));
             const bool is_far = !is_wall_support(support) && s.separation > near;
             if (!s.is_contact || is_far) {
                 if (!s.is_contact) note_left_edge(i, group, world);
