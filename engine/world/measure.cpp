@@ -44,11 +44,7 @@ void add_walls(const WorldState<Real>& world, Overlaps& overlaps) {
 
 /// Edges count like walls.
 template <class Real>
-void add_edges(Simulation<Real>& sim, Overlaps& overlaps) {
-    const WorldState<Real>& world = sim.world;
-    Candidates<Real> discs;  // those of the world have margins of their own, which a disc may have renewed
-    discs.prepare(world.bodies.count);
-    discs.update(world.bodies, FlightClock{}, {}, {}, 0, *sim.kernels, sim.executor);
+void add_edges(const WorldState<Real>& world, const Candidates<Real>& discs, Overlaps& overlaps) {
     EdgeCandidates<Real> edges;
     edges.place(world, 0);
     edges.find(world, discs);
@@ -65,45 +61,51 @@ void add_edges(Simulation<Real>& sim, Overlaps& overlaps) {
     }
 }
 
-}  // namespace
-
 template <class Real>
-OverlapReport measure_overlaps(Simulation<Real>& sim);
-
-/// As if all were awake: those that sleep are in no candidate pair.
-template <class Real>
-OverlapReport measure_with_sleepers(Simulation<Real>& sim) {
-    Bodies<Real>& bodies = sim.world.bodies;
-    const std::size_t asleep = bodies.asleep;
-    Candidates<Real> of_those_awake;
-    std::swap(of_those_awake, sim.candidates);
-    bodies.count += asleep, bodies.asleep = 0;
-    const OverlapReport report = measure_overlaps(sim);
-    bodies.count -= asleep, bodies.asleep = asleep;
-    std::swap(of_those_awake, sim.candidates);
-    return report;
-}
-
-template <class Real>
-OverlapReport measure_overlaps(Simulation<Real>& sim) {
-    const Bodies<Real>& bodies = sim.world.bodies;
-    if (bodies.asleep > 0) return measure_with_sleepers(sim);
-    sim.candidates.prepare(bodies.count);
-    // A clock that stands still: if there are no pairs yet, those of the present positions.
-    if (!sim.candidates.is_valid())
-        sim.candidates.update(bodies, FlightClock{}, {}, {}, 0, *sim.kernels, sim.executor);
-    Overlaps overlaps;
-    overlaps.report.candidates = static_cast<std::int64_t>(sim.candidates.pair_count());
-    for (std::size_t p = 0; p < sim.candidates.pair_count(); ++p) {
-        const auto a = static_cast<std::size_t>(sim.candidates.pair_a()[p]);
-        const auto b = static_cast<std::size_t>(sim.candidates.pair_b()[p]);
+void add_pairs(const Bodies<Real>& bodies, const Candidates<Real>& discs, Overlaps& overlaps) {
+    overlaps.report.candidates += static_cast<std::int64_t>(discs.pair_count());
+    for (std::size_t p = 0; p < discs.pair_count(); ++p) {
+        const auto a = static_cast<std::size_t>(discs.pair_a()[p]);
+        const auto b = static_cast<std::size_t>(discs.pair_b()[p]);
         const Vec2 d{static_cast<double>(bodies.position_x[b]) - static_cast<double>(bodies.position_x[a]),
                      static_cast<double>(bodies.position_y[b]) - static_cast<double>(bodies.position_y[a])};
         const double radius_a = bodies.radius[a], radius_b = bodies.radius[b];
         overlaps.add(std::sqrt(length_squared(d)) - radius_a - radius_b, std::fmin(radius_a, radius_b));
     }
-    if (sim.world.walls) add_walls(sim.world, overlaps);
-    if (!sim.world.edges.empty()) add_edges(sim, overlaps);
+}
+
+/// While it lives, rows that sleep count among those that are awake.
+template <class Real>
+class AllAwake {
+  public:
+    explicit AllAwake(Bodies<Real>& bodies) : bodies_(bodies), asleep_(bodies.asleep) {
+        bodies_.count += asleep_, bodies_.asleep = 0;
+    }
+    ~AllAwake() { bodies_.count -= asleep_, bodies_.asleep = asleep_; }
+    AllAwake(const AllAwake&) = delete;
+    AllAwake& operator=(const AllAwake&) = delete;
+
+  private:
+    Bodies<Real>& bodies_;
+    std::size_t asleep_;
+};
+
+}  // namespace
+
+// The candidates of the world are left alone. They would not do: what a disc reaches with a renewed margin is
+// not among their pairs, strays are in none, and sleepers have none.
+template <class Real>
+OverlapReport measure_overlaps(Simulation<Real>& sim) {
+    WorldState<Real>& world = sim.world;
+    const AllAwake<Real> all_awake(world.bodies);
+    Candidates<Real> discs;
+    discs.prepare(world.bodies.count);
+    // A clock that stands still: pairs of the present positions.
+    discs.update(world.bodies, FlightClock{}, {}, {}, 0, *sim.kernels, sim.executor);
+    Overlaps overlaps;
+    add_pairs(world.bodies, discs, overlaps);
+    if (world.walls) add_walls(world, overlaps);
+    if (!world.edges.empty()) add_edges(world, discs, overlaps);
     if (overlaps.report.touching > 0)
         overlaps.report.mean = overlaps.sum / static_cast<double>(overlaps.report.touching);
     return overlaps.report;

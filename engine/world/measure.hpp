@@ -8,7 +8,7 @@
 
 namespace carom {
 
-/// Overlaps of all candidate pairs and at the walls, from the positions in the columns.
+/// Overlaps of all pairs and at the walls, from the positions in the columns; leaves the simulation as it is.
 template <class Real>
 OverlapReport measure_overlaps(Simulation<Real>& sim);
 

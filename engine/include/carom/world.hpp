@@ -49,10 +49,12 @@ struct BodyState {
     double angular_velocity = 0;
 };
 
-/// How deep bodies and walls overlap now, measured from positions. Overlaps are fractions of the smaller
+/// How deep bodies and walls overlap now, measured from positions: over all pairs but those of two bodies
+/// that never move; sleeping bodies take part, quarantined ones do not. Overlaps are fractions of the smaller
 /// body's radius over touching pairs (separation < 0).
 struct OverlapReport {
-    std::int64_t candidates = 0;  ///< pairs close to each other, and walls that are touched
+    /// Pairs nearer than a tenth of the smallest radius, and walls that are touched.
+    std::int64_t candidates = 0;
     std::int64_t touching = 0;
     double mean = 0;
     double max = 0;
@@ -112,7 +114,8 @@ class BasicWorld {
     Profile profile() const;
     /// What runs and why.
     Plan plan() const;
-    /// Overlaps measured from positions. Cost: O(candidate pairs).
+    /// Overlaps measured from positions; changes nothing in the world. Cost: as finding all pairs anew, which
+    /// steps seldom do: O(bodies + pairs close to each other), and memory for them.
     OverlapReport overlaps() const;
     /// Bodies that were disabled because their state left the limits, in handle order.
     std::vector<BodyId> quarantined() const;
