@@ -28,18 +28,11 @@ std::optional<Problem> find_mass_problem(const Item& item, const Body& body) {
 }
 
 std::optional<Problem> find_motion_problem(const Item& item, const Body& body) {
-    if (body.type == BodyType::static_body && body.velocity != Vec2{})
-        return problem(ErrorCode::inconsistent, item, "/velocity", "velocity ", body.velocity,
-                       " m/s but is static; expected [0, 0]. Make it kinematic to move at a set velocity.");
-    if (body.angular_velocity == 0) return std::nullopt;
-    const std::string spin = join("angular velocity ", body.angular_velocity, " rad/s but ");
-    if (body.type == BodyType::static_body)
-        return problem(ErrorCode::inconsistent, item, "/angular_velocity", spin,
-                       "is static; expected 0. Make it kinematic to turn at a set velocity.");
-    if (body.fixed_rotation)
-        return problem(ErrorCode::inconsistent, item, "/angular_velocity", spin,
-                       "fixed rotation; expected 0. Drop one of the two.");
-    return std::nullopt;
+    const Mobility mobility = body.type == BodyType::static_body ? Mobility::none
+                              : body.fixed_rotation              ? Mobility::no_rotation
+                                                                 : Mobility::all;
+    if (auto found = find_velocity_problem(item, mobility, body.velocity)) return found;
+    return find_angular_velocity_problem(item, mobility, body.angular_velocity);
 }
 
 bool is_hex_digit(char c) {
@@ -143,7 +136,34 @@ std::optional<Problem> find_axis_problem(const Item& item, const Axis& axis, dou
 
 constexpr Item kSingleBody{"the body has", "", -1, ""};
 
+constexpr std::string_view kWasQuarantined =
+    "was quarantined, as its state left the limits, and takes no part any more; expected ";
+constexpr std::string_view kAddAnew = ". Remove it and add a body in its place.";
+
 }  // namespace
+
+std::optional<Problem> find_velocity_problem(const Item& item, Mobility mobility, Vec2 velocity) {
+    if (velocity == Vec2{} || mobility == Mobility::all || mobility == Mobility::no_rotation)
+        return std::nullopt;
+    const std::string what = join("velocity ", velocity, " m/s but ");
+    if (mobility == Mobility::quarantined)
+        return problem(ErrorCode::inconsistent, item, "/velocity", what, kWasQuarantined, "[0, 0]", kAddAnew);
+    return problem(ErrorCode::inconsistent, item, "/velocity", what,
+                   "is static; expected [0, 0]. Make it kinematic to move at a set velocity.");
+}
+
+std::optional<Problem> find_angular_velocity_problem(const Item& item, Mobility mobility, double spin) {
+    if (spin == 0 || mobility == Mobility::all) return std::nullopt;
+    const std::string what = join("angular velocity ", spin, " rad/s but ");
+    if (mobility == Mobility::quarantined)
+        return problem(ErrorCode::inconsistent, item, "/angular_velocity", what, kWasQuarantined, "0",
+                       kAddAnew);
+    if (mobility == Mobility::no_rotation)
+        return problem(ErrorCode::inconsistent, item, "/angular_velocity", what,
+                       "fixed rotation; expected 0. Drop one of the two.");
+    return problem(ErrorCode::inconsistent, item, "/angular_velocity", what,
+                   "is static; expected 0. Make it kinematic to turn at a set velocity.");
+}
 
 std::optional<Problem> find_material_problem(const Item& item, std::string_view tail,
                                              const Material& material) {

@@ -25,13 +25,18 @@ Sums operator-(const Sums& a, const Sums& b) {
 
 template <class Real>
 Sums WorldState<Real>::sums_of(std::size_t row) const {
-    if (bodies.is_immovable(row)) return {};
-    const double mass = bodies.mass[row], radius = bodies.radius[row];
     const Vec2 x{bodies.position_x[row], bodies.position_y[row]},
         v{bodies.velocity_x[row], bodies.velocity_y[row]};
+    return sums_of(row, x, v, bodies.has_rotation ? static_cast<double>(bodies.angular_velocity[row]) : 0);
+}
+
+template <class Real>
+Sums WorldState<Real>::sums_of(std::size_t row, Vec2 x, Vec2 v, double spin) const {
+    if (bodies.is_immovable(row)) return {};
+    const double mass = bodies.mass[row], radius = bodies.radius[row];
     Sums sums{{0.5 * mass * length_squared(v), 0, -mass * dot(gravity, x)}, mass * v, mass * cross(x, v)};
     if (bodies.has_rotation) {
-        const double inertia = 0.5 * mass * radius * radius, spin = bodies.angular_velocity[row];
+        const double inertia = 0.5 * mass * radius * radius;
         sums.energy.rotational = 0.5 * inertia * spin * spin;
         sums.angular_momentum += inertia * spin;
     }
@@ -85,14 +90,13 @@ BodyId WorldState<Real>::append(const Body& body) {
             row, static_cast<std::uint8_t>(kImmovable | (moves ? kKinematic : 0) | (has_edges ? kEdges : 0)));
         immovable_rows.push_back(static_cast<std::int32_t>(row));
     }
-    initial = initial + sums_of(row);
     return id;
 }
 
 template <class Real>
 EdgeStore::Removed WorldState<Real>::remove(std::size_t row) {
     const EdgeStore::Removed gone = edges.remove(bodies.id[row]);
-    initial = initial - sums_of(row);
+    outside = outside - sums_of(row);
     if (!bodies.is_immovable(row)) dynamic_mass -= static_cast<double>(bodies.mass[row]);
     handles.remove(bodies.id[row]);
     const std::size_t last_awake = bodies.count - 1, last = bodies.rows() - 1;
@@ -108,9 +112,10 @@ EdgeStore::Removed WorldState<Real>::remove(std::size_t row) {
 }
 
 template <class Real>
-void WorldState<Real>::quarantine(std::size_t row) {
+void WorldState<Real>::quarantine(std::size_t row, const Sums& taken) {
     if (!bodies.is_immovable(row)) dynamic_mass -= static_cast<double>(bodies.mass[row]);
-    initial = initial - sums_of(row);
+    const double size = taken.energy.total() + length_squared(taken.momentum);
+    outside = outside - (size - size == 0 ? taken : sums_of(row));  // NaN and infinity fail
     bodies.set_flags(
         row, static_cast<std::uint8_t>((bodies.flags_of(row) & ~kKinematic) | kImmovable | kDisabled));
     bodies.velocity_x[row] = 0, bodies.velocity_y[row] = 0;

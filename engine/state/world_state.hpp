@@ -52,7 +52,8 @@ struct WorldState {
     double time = 0;          ///< s
     std::uint64_t falls = 0;  ///< flights so far: says how speeds are rounded in the next one
     Books books;
-    Sums initial;                              ///< of the bodies there are, at the moment each joined
+    Sums initial;                              ///< of the scene's bodies, when the world was made
+    Sums outside;                              ///< what calls and quarantine have brought in since
     double dynamic_mass = 0;                   ///< kg, of the dynamic bodies that are awake
     std::vector<std::int32_t> immovable_rows;  ///< static, kinematic and disabled ones
     std::int64_t quarantined_count = 0;
@@ -61,6 +62,8 @@ struct WorldState {
 
     /// Energy and momentum of one row; zero if it is not dynamic.
     Sums sums_of(std::size_t row) const;
+    /// The same of a state that is not in its columns. @param spin  rad/s
+    Sums sums_of(std::size_t row, Vec2 position, Vec2 velocity, double spin) const;
     Sums sums() const;
 
     /// Appends a row for a body that has been validated.
@@ -69,7 +72,9 @@ struct WorldState {
     /// @return the edges that went with it.
     EdgeStore::Removed remove(std::size_t row);
     /// Rolls a row whose next state would leave the limits out of the simulation, where it is.
-    void quarantine(std::size_t row);
+    /// @param taken  what the books say it had by then; if that is no number, what its columns say is booked
+    void quarantine(std::size_t row, const Sums& taken);
+    void quarantine(std::size_t row) { quarantine(row, sums_of(row)); }
     /// Exchanges two rows. `list_immovable_rows` is to be called after it.
     void swap_rows(std::size_t a, std::size_t b);
     void list_immovable_rows();

@@ -68,6 +68,11 @@ void check_options(const Scene& scene, const WorldOptions& options) {
                                                  std::to_string(kMostThreads) + ".");
 }
 
+/// A body of a world, in messages: by the index of its handle.
+Item item_of(BodyId body) {
+    return {"body", "/bodies", static_cast<std::ptrdiff_t>(body.index), ""};
+}
+
 }  // namespace
 
 template <class Real>
@@ -185,8 +190,16 @@ struct BasicWorld<Real>::Implementation {
     void change_row(std::size_t row, const Change& change) {
         const Sums before = world().sums_of(row);
         change();
-        world().initial = world().initial + (world().sums_of(row) - before);
+        world().outside = world().outside + (world().sums_of(row) - before);
         sim().forget_derived_state();
+    }
+
+    Mobility mobility_of(std::size_t row) const {
+        const std::uint8_t flags = simulation->world.bodies.flags_of(row);
+        if (flags & kDisabled) return Mobility::quarantined;
+        if (flags & kKinematic) return Mobility::all;
+        if (flags & kImmovable) return Mobility::none;
+        return flags & kFixedAngle ? Mobility::no_rotation : Mobility::all;
     }
 
     /// Wakes a body that is about to be changed, and those that touch it. @return its row then
@@ -262,6 +275,7 @@ BasicWorld<Real>::BasicWorld(const Scene& scene, const WorldOptions& options) {
     world.bodies.has_rotation = world.effects.rotation;
     world.bodies.has_sleep = world.effects.sleeping;
     for (const Body& body : scene.bodies) world.append(body);
+    world.initial = world.sums();
     sim.check_bodies("World");
 }
 
@@ -339,7 +353,9 @@ BodyId BasicWorld<Real>::add(const Body& body) {
         implementation_->sim().wake_at(body.position, radius_of(body.shape));
     else
         implementation_->sim().wake_all();
-    const BodyId id = implementation_->world().append(body);
+    WorldState<Real>& world = implementation_->world();
+    const BodyId id = world.append(body);
+    world.outside = world.outside + world.sums_of(world.handles.row_of_slot(id.index));
     implementation_->sim().forget_derived_state();
     implementation_->undo_if_refused("World::add",
                                      [&] { implementation_->world().remove(body_count() - 1); });
@@ -390,6 +406,8 @@ template <class Real>
 void BasicWorld<Real>::set_velocity(BodyId body, Vec2 velocity) {
     std::size_t row = implementation_->row_of(body, "World::set_velocity");
     validate_velocity(velocity, "World::set_velocity");
+    raise_if("World::set_velocity",
+             find_velocity_problem(item_of(body), implementation_->mobility_of(row), velocity));
     row = implementation_->wake_around(row);
     Bodies<Real>& b = implementation_->bodies();
     implementation_->change_row(row, [&] {
@@ -401,6 +419,9 @@ template <class Real>
 void BasicWorld<Real>::set_angular_velocity(BodyId body, double angular_velocity) {
     std::size_t row = implementation_->row_of(body, "World::set_angular_velocity");
     validate_angular_velocity(angular_velocity, "World::set_angular_velocity");
+    raise_if(
+        "World::set_angular_velocity",
+        find_angular_velocity_problem(item_of(body), implementation_->mobility_of(row), angular_velocity));
     if (angular_velocity != 0) implementation_->turn_rotation_on();
     Bodies<Real>& b = implementation_->bodies();
     if (!b.has_rotation) return;
@@ -417,7 +438,7 @@ template <class Real>
 Ledger BasicWorld<Real>::ledger() const {
     const WorldState<Real>& world = implementation_->sim().world;
     const Books& books = world.books;
-    const Sums now = world.sums(), &start = world.initial;
+    const Sums now = world.sums(), &start = world.initial, &outside = world.outside;
     Ledger ledger;
     ledger.time = world.time;
     ledger.initial = start.energy, ledger.energy = now.energy;
@@ -430,14 +451,15 @@ Ledger BasicWorld<Real>::ledger() const {
     energy.gravity = start.energy.potential - now.energy.potential;
     energy.drag = books.drag, energy.restitution = books.restitution, energy.friction = books.friction;
     energy.correction = books.correction, energy.drive = books.drive, energy.sleep = books.sleep;
+    energy.outside = outside.energy.total();
     energy.unexplained = (now.energy.kinetic + now.energy.rotational) -
                          (start.energy.kinetic + start.energy.rotational) - energy.sum();
     MomentumByCause& momentum = ledger.momentum_by_cause;
     momentum.gravity = books.gravity_momentum, momentum.drag = books.drag_momentum;
     momentum.walls = books.wall_momentum, momentum.immovable = books.immovable_momentum;
-    momentum.sleep = books.sleep_momentum;
+    momentum.sleep = books.sleep_momentum, momentum.outside = outside.momentum;
     momentum.unexplained = now.momentum - start.momentum - momentum.gravity - momentum.drag - momentum.walls -
-                           momentum.immovable - momentum.sleep;
+                           momentum.immovable - momentum.sleep - momentum.outside;
     return ledger;
 }
 

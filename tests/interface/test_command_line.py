@@ -1,9 +1,12 @@
 """Invocations, right and wrong: exit codes, messages, and that a wrong one writes nothing."""
 import json
+import math
 import os
 import re
 import subprocess
 import unittest
+
+import numpy
 
 from program import ALL_FILES, PROGRAM, SEED, ProgramTest, gas
 
@@ -223,6 +226,10 @@ class QuarantineTest(ProgramTest):
         scene["bodies"][2].update(position=[9.99e7, 0], velocity=[1e6, 0])
         results = self.run_scene(scene, expect=1)
         self.assertEqual(results.summary["quarantined"], [2])
+        masses = [math.pi * body["shape"]["disc"]["radius"] ** 2 for body in scene["bodies"]]
+        start = [0.5 * mass * numpy.dot(body["velocity"], body["velocity"]) for mass, body in zip(masses, scene["bodies"])]
+        self.assertAlmostEqual(results.summary["energy"]["initial"]["kinetic"] / sum(start), 1, places=6)
+        self.assertAlmostEqual(results.summary["energy_by_cause"]["outside"] / -start[2], 1, places=6)
         self.assertEqual(self.files_in("out"), ALL_FILES)
         done = self.carom("run", self.folder / "scene.json", "--quiet", expect=1)
         self.assertIn("body 2", done.stderr)

@@ -17,7 +17,7 @@ LEDGER_COLUMNS = [
     "time", "kinetic", "rotational", "potential", "total", "px", "py", "L",
     "gravity", "drag", "restitution", "friction", "correction", "joints", "drive", "unexplained",
 ]
-CAUSES = LEDGER_COLUMNS[8:] + ["sleep"]
+CAUSES = LEDGER_COLUMNS[8:] + ["sleep", "outside"]
 
 
 def final_column(results, name, dtype=numpy.float64):
@@ -150,7 +150,7 @@ class LedgerTest(ProgramTest):
         ledger, start = results.ledger(), results.summary["momentum"]["initial"]
         for axis in (0, 1):
             name = "px" if axis == 0 else "py"
-            causes = sum(ledger[f"{name}_{cause}"] for cause in ("gravity", "drag", "walls", "immovable", "sleep", "unexplained"))
+            causes = sum(ledger[f"{name}_{cause}"] for cause in ("gravity", "drag", "walls", "immovable", "sleep", "outside", "unexplained"))
             numpy.testing.assert_allclose(causes, ledger[name] - start[axis], atol=1e-10)
 
     def test_last_row_is_what_the_summary_says(self):

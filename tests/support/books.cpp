@@ -16,7 +16,7 @@ double size_of(Vec2 v) {
 double momentum_scale(const Ledger& ledger) {
     const MomentumByCause& by = ledger.momentum_by_cause;
     return size_of(ledger.initial_momentum) + size_of(by.gravity) + size_of(by.drag) + ledger.wall_impulse +
-           size_of(by.immovable);
+           size_of(by.immovable) + size_of(by.outside);
 }
 
 void check_sums(const Ledger& ledger, double scale) {
@@ -39,7 +39,7 @@ double energy_scale(const Ledger& ledger) {
     const EnergyByCause& by = ledger.energy_by_cause;
     return std::abs(ledger.initial.kinetic) + std::abs(ledger.initial.rotational) + std::abs(by.gravity) +
            std::abs(by.drag) + std::abs(by.restitution) + std::abs(by.friction) + std::abs(by.correction) +
-           std::abs(by.drive);
+           std::abs(by.drive) + std::abs(by.outside);
 }
 
 template <class Real>

@@ -72,6 +72,7 @@ std::string ledger_line(const EnergyByCause& work) {
     add("joints", work.joints, false);
     add("drive", work.drive, false);
     add("sleep", work.sleep, false);
+    add("outside", work.outside, false);
     add("unexplained", work.unexplained, true);
     text.back() = '\n';
     return text;

@@ -24,9 +24,13 @@ struct EnergyByCause {
     double joints = 0;       ///< zero in this version
     double drive = 0;        ///< by kinematic bodies
     double sleep = 0;        ///< what bodies still had when they were put to sleep
+    /// What came and went with bodies that calls added, changed or removed, or that were quarantined:
+    /// potential energy included, which `gravity`, too, says of them.
+    double outside = 0;
     double unexplained = 0;  ///< what the columns say minus what the causes add up to: the error of the run
     double sum() const {
-        return gravity + drag + restitution + friction + correction + joints + drive + sleep + unexplained;
+        return gravity + drag + restitution + friction + correction + joints + drive + sleep + outside +
+               unexplained;
     }
 };
 
@@ -37,13 +41,14 @@ struct MomentumByCause {
     Vec2 walls;
     Vec2 immovable;  ///< by static and kinematic bodies
     Vec2 sleep;      ///< taken from bodies that were put to sleep
+    Vec2 outside;    ///< came and went with bodies that calls changed or that were quarantined
     Vec2 unexplained;
 };
 
 /// The books of a world: sums over its dynamic bodies, in double precision whatever the world's own.
 struct Ledger {
     double time = 0;  ///< s
-    Energy initial;
+    Energy initial;   ///< when the world was made, of the bodies of its scene; likewise below
     Energy energy;
     Vec2 initial_momentum;  ///< kg m/s
     Vec2 momentum;

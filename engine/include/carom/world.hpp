@@ -96,6 +96,8 @@ class BasicWorld {
     void remove(BodyId body);
     /// @throws Error (stale_handle, not_finite, out_of_range); the world is then unchanged.
     void set_position(BodyId body, Vec2 position);
+    /// Kinematic bodies go on at what is set. @throws Error as set_position; (inconsistent) for anything but
+    /// zero where nothing can move the body: it is static, was quarantined, or its rotation is fixed.
     void set_velocity(BodyId body, Vec2 velocity);
     void set_angular_velocity(BodyId body, double angular_velocity);
 

@@ -105,8 +105,9 @@ void run_events(EventSimulation<Real>& sim) {
     bool any_lost = false;
     for (std::size_t i = 0; i < sim.event_rows.size(); ++i) {
         const auto row = static_cast<std::size_t>(sim.event_rows[i]);
-        if (write_row(world.bodies, row, sim.events.state(i))) continue;
-        world.quarantine(row);
+        const EventDynamics::State state = sim.events.state(i);
+        if (write_row(world.bodies, row, state)) continue;
+        world.quarantine(row, world.sums_of(row, state.position, state.velocity, state.spin));
         any_lost = true;
     }
     sim.candidates.invalidate();  // no pairs were kept while the bodies moved

@@ -168,6 +168,16 @@ void SoftSolver<Real>::book_displacements(const WorldState<Real>& world, const C
 
 template void SoftSolver<float>::book_supports(const Impulses&, Books&) const;
 template void SoftSolver<double>::book_supports(const Impulses&, Books&) const;
+template <class Real>
+Sums SoftSolver<Real>::sums_of_lost(const WorldState<Real>& world, std::size_t row) const {
+    const Bodies<Real>& bodies = world.bodies;
+    const auto [v, rim] = of_record(velocity_, row);
+    return world.sums_of(row, {bodies.position_x[row], bodies.position_y[row]}, v,
+                         rim / static_cast<double>(bodies.radius[row]));
+}
+
+template Sums SoftSolver<float>::sums_of_lost(const WorldState<float>&, std::size_t) const;
+template Sums SoftSolver<double>::sums_of_lost(const WorldState<double>&, std::size_t) const;
 template void SoftSolver<float>::book_free_flight(const WorldState<float>&, Books&);
 template void SoftSolver<double>::book_free_flight(const WorldState<double>&, Books&);
 template void SoftSolver<float>::book_substep(const WorldState<float>&, Books&);

@@ -104,6 +104,10 @@ class SoftSolver {
     /// What the pushes of this step did against gravity.
     void book_displacements(const WorldState<Real>& world, const Column<Real>& motion, Books& books);
 
+    /// What a row that end_substeps lists as lost had by the books: the velocity that the impulses gave it,
+    /// at the place where it stays.
+    Sums sums_of_lost(const WorldState<Real>& world, std::size_t row) const;
+
     /// Masses, shapes or rows have changed: what was derived from them is made anew.
     void forget_rows() { masses_are_known_ = false; }
 

@@ -39,9 +39,11 @@ void update_contacts(SoftSimulation<Real>& sim) {
 
 template <class Real>
 void quarantine_bodies(SoftSimulation<Real>& sim) {
-    for (const std::int32_t row : sim.lost)
-        if (!sim.world.bodies.is_immovable(static_cast<std::size_t>(row)))
-            sim.world.quarantine(static_cast<std::size_t>(row));
+    for (const std::int32_t lost : sim.lost) {
+        const auto row = static_cast<std::size_t>(lost);
+        if (!sim.world.bodies.is_immovable(row))
+            sim.world.quarantine(row, sim.soft.sums_of_lost(sim.world, row));
+    }
     sim.forget_derived_state();
 }
 

@@ -7,7 +7,8 @@ LedgerCsv::LedgerCsv(const std::filesystem::path& path) : file_(path) {
         "time,kinetic,rotational,potential,total,px,py,L,"
         "gravity,drag,restitution,friction,correction,joints,drive,unexplained,"
         "px_gravity,py_gravity,px_drag,py_drag,px_walls,py_walls,px_immovable,py_immovable,"
-        "px_unexplained,py_unexplained,wall_impulse,impacts,sleep,px_sleep,py_sleep\n");
+        "px_unexplained,py_unexplained,wall_impulse,impacts,sleep,px_sleep,py_sleep,outside,px_outside,py_"
+        "outside\n");
 }
 
 void LedgerCsv::append(const Ledger& ledger, std::int64_t impacts) {
@@ -27,7 +28,8 @@ void LedgerCsv::append(const Ledger& ledger, std::int64_t impacts) {
         line_ += ',';
     }
     line_ += std::to_string(impacts);
-    for (const double value : {work.sleep, given.sleep.x, given.sleep.y}) {
+    for (const double value :
+         {work.sleep, given.sleep.x, given.sleep.y, work.outside, given.outside.x, given.outside.y}) {
         line_ += ',';
         append_number(line_, value);
     }

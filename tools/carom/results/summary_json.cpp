@@ -35,13 +35,18 @@ Json to_json(const EnergyByCause& work) {
             {"joints", work.joints},
             {"drive", work.drive},
             {"sleep", work.sleep},
+            {"outside", work.outside},
             {"unexplained", work.unexplained}};
 }
 
 Json to_json(const MomentumByCause& given) {
-    return {{"gravity", to_json(given.gravity)}, {"drag", to_json(given.drag)},
-            {"walls", to_json(given.walls)},     {"immovable", to_json(given.immovable)},
-            {"sleep", to_json(given.sleep)},     {"unexplained", to_json(given.unexplained)}};
+    return {{"gravity", to_json(given.gravity)},
+            {"drag", to_json(given.drag)},
+            {"walls", to_json(given.walls)},
+            {"immovable", to_json(given.immovable)},
+            {"sleep", to_json(given.sleep)},
+            {"outside", to_json(given.outside)},
+            {"unexplained", to_json(given.unexplained)}};
 }
 
 Json effects_of(const Plan& plan) {
