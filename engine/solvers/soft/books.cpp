@@ -171,9 +171,9 @@ template void SoftSolver<double>::book_supports(const Impulses&, Books&) const;
 template <class Real>
 Sums SoftSolver<Real>::sums_of_lost(const WorldState<Real>& world, std::size_t row) const {
     const Bodies<Real>& bodies = world.bodies;
-    const auto [v, rim] = of_record(velocity_, row);
-    return world.sums_of(row, {bodies.position_x[row], bodies.position_y[row]}, v,
-                         rim / static_cast<double>(bodies.radius[row]));
+    const Real* record = &velocity_[4 * row];
+    return world.sums_of(row, {bodies.position_x[row], bodies.position_y[row]}, {record[0], record[1]},
+                         static_cast<double>(record[2]) / static_cast<double>(bodies.radius[row]));
 }
 
 template Sums SoftSolver<float>::sums_of_lost(const WorldState<float>&, std::size_t) const;
