@@ -111,10 +111,9 @@ std::vector<PairOfRows> some_pairs(std::size_t count, std::mt19937& random) {
 std::vector<PairOfRows> some_supports(std::size_t count, std::mt19937& random) {
     std::set<PairOfRows> supports;
     while (supports.size() < count)
-        supports.insert(
-            {movable_row(random), static_cast<std::int32_t>(random() % 9) - 8});  // walls and edges
-    for (std::size_t i = 0; i < count / 10; ++i)                                  // bodies that nothing moves
-        supports.insert({static_cast<std::int32_t>(random() % kRows), static_cast<std::int32_t>(i)});
+        // Walls and edges.
+        supports.insert({movable_row(random), static_cast<std::int32_t>(random() % 9) - 8});
+    for (std::int32_t row = 0; row < kImmovable; ++row) supports.insert({movable_row(random), row});
     return {supports.begin(), supports.end()};
 }
 
