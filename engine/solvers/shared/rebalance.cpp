@@ -19,6 +19,9 @@ constexpr double kTangentStiffness = kTangentMassShare;
 /// held sideways, too.
 constexpr double kLeastStiffness = 1e-3;
 constexpr double kOverRelaxation = 1.5;
+/// A body is looked at again at once if its excess became smaller than this share of its square: what its
+/// contacts cannot take is left.
+constexpr double kWorthAnother = 0.9;
 /// At most this many looks at a body, 0.1 us each; the sweeps are left the unevenness that remains.
 constexpr std::size_t kMostLooks = 20000;
 
@@ -191,6 +194,8 @@ void Rebalance<Real>::relax_body(std::int32_t row) {
         loads_[static_cast<std::size_t>(other)].excess += side * added;
         queue_if_uneven(other);
     }
+    // A contact that only pushes, or slides, may not have taken its share: then the others get the rest.
+    if (length_squared(excess_of(load)) < kWorthAnother * length_squared(excess)) queue_if_uneven(row);
 }
 
 /// Deals with the bodies of the queue, first come, first served; dealing with one may bring others into it.
