@@ -140,7 +140,7 @@ TEST_SUITE("physics/contact forces") {
         for (int i = 0; i < 150; ++i) {
             inside.run(1);
             const auto& graph = inside.sim.soft.graph;
-            for (const ContactCandidates<Real>* contacts : {&graph.pairs, &graph.supports})
+            for (const ContactRows<Real>* contacts : {&graph.pairs, &graph.supports})
                 contacts->for_each([&](std::size_t k) {
                     const bool pushes = contacts->normal_impulse[k] > 0;
                     ++(pushes ? pushed : idle);

@@ -29,13 +29,13 @@ struct Carried {
 /// contacts stand apart.
 template <class Real>
 struct Contacts {
-    ContactCandidates<Real> candidates;
+    ContactRows<Real> candidates;
     std::map<PairOfRows, Carried<Real>> carried;
 
     /// @param pairs_of_group  rows (a, b)
     void lay_out(const std::vector<std::vector<PairOfRows>>& pairs_of_group, std::int32_t dummy,
                  bool has_overflow, std::mt19937& random) {
-        ContactCandidates<Real>& c = candidates;
+        ContactRows<Real>& c = candidates;
         c = {};
         c.has_overflow = has_overflow, c.overflow_stride = has_overflow ? kRowPadding : 1;
         for (const auto& pairs : pairs_of_group) {
@@ -70,7 +70,7 @@ struct Contacts {
   private:
     void add_colour(const std::vector<PairOfRows>& pairs, std::size_t first, std::size_t last,
                     std::size_t stride, std::int32_t dummy, std::mt19937& random) {
-        ContactCandidates<Real>& c = candidates;
+        ContactRows<Real>& c = candidates;
         c.begin.push_back(c.a.size()), c.count.push_back(last - first);
         std::size_t at = c.a.size();
         const std::size_t end = at + padded((last - first) * stride);

@@ -39,7 +39,7 @@ struct ContactRowsBench {
             pair_count += t.b >= 0;
         }
         lay_out_bodies();
-        lay_out(touches, 0, pair_count, pairs), lay_out(touches, pair_count, touches.size(), supports);
+        lay_out(touches, 0, pair_count, false), lay_out(touches, pair_count, touches.size(), true);
     }
     ContactRowsBench(const ContactRowsBench&) = delete;  // contacts have pointers
 
@@ -90,20 +90,19 @@ struct ContactRowsBench {
     }
 
     /// All in one colour: what is tested with this goes through them one by one.
-    void lay_out(const std::vector<Touch>& touches, std::size_t first, std::size_t last,
-                 ContactRows<Real>& rows) {
+    void lay_out(const std::vector<Touch>& touches, std::size_t first, std::size_t last, bool is_support) {
+        ContactRows<Real>& rows = is_support ? supports : pairs;
         const std::size_t count = last - first;
         const auto dummy = static_cast<std::int32_t>(discs.size());
-        ContactCandidates<Real> candidates;
-        candidates.begin = {0}, candidates.count = {count}, candidates.first_colour = {0, 1};
-        for (Column<std::int32_t>* column : {&candidates.a, &candidates.b}) column->resize(padded(count));
-        for (Column<Real>* column : {&candidates.normal_impulse, &candidates.friction_impulse})
-            column->resize(padded(count));
-        if (first == 0) {
-            rows.resize_in_place(candidates, true, false), rows.swap_with(candidates);
+        rows.begin = {0}, rows.count = {count}, rows.first_colour = {0, 1};
+        const ContactEffects effects{.friction = true, .friction_varies = true};
+        ContactRows<Real>::for_each_column(rows, [&](auto& column, const ColumnUse& use) {
+            const auto other = is_support ? ColumnUse::Of::pairs : ColumnUse::Of::supports;
+            column.resize(use.of != other && use.is_needed(effects) ? padded(count) : 0);
+        });
+        if (!is_support) {
+            rows.is_live.resize(padded(count) / kContactBlock);
             std::fill(rows.is_live.begin(), rows.is_live.end(), std::uint8_t{1});
-        } else {
-            rows.resize(candidates, true, false), rows.b.resize(0);
         }
         rows.close_colour(0, 0, count, dummy);
         for (std::size_t i = 0; i < count; ++i) {

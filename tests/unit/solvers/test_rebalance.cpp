@@ -151,7 +151,7 @@ TEST_SUITE("solvers/rebalance") {
         }
         ContactRowsBench<Real> bench(discs, touches);
         const LostContact lost[] = {{1000, kLeft - 1}};
-        Rebalance<Real>().balance(lost, bench.pairs, bench.supports, bench.bodies, 0, kGain);
+        Rebalance<Real>().balance(lost, bench.pairs, bench.supports, bench.bodies, 0, 0, kGain);
         for (std::size_t i = 0; i < bench.contacts.size(); ++i) {
             const auto row = bench.contacts[i].a - bench.discs.data();
             CHECK(static_cast<double>(bench.along(i)) ==
@@ -173,7 +173,7 @@ TEST_SUITE("solvers/rebalance") {
         const LostContact lost[] = {{1000, 1}, {1000, 2}};
         const std::vector<long double> pressed = pressure(bench);
         CHECK(unevenness(bench, pressed) > 5);
-        Rebalance<Real>().balance(lost, bench.pairs, bench.supports, bench.bodies, 0, kGain);
+        Rebalance<Real>().balance(lost, bench.pairs, bench.supports, bench.bodies, 0, 0, kGain);
         CHECK(unevenness(bench, pressed) < 1.01);
         for (std::size_t i = 0; i < bench.contacts.size(); ++i) CHECK(bench.along(i) >= 0);
     }
@@ -194,7 +194,7 @@ TEST_SUITE("solvers/rebalance") {
                 ContactRowsBench<Real> bench(pile.discs, converted<Real>(pile.touches));
                 const std::vector<long double> pressed = pressure(bench);
                 disturbed += unevenness(bench, pressed) > 1.5;
-                Rebalance<Real>().balance(lost, bench.pairs, bench.supports, bench.bodies, 0, kGain);
+                Rebalance<Real>().balance(lost, bench.pairs, bench.supports, bench.bodies, 0, 0, kGain);
                 CHECK(unevenness(bench, pressed) < 1.01);
                 std::size_t wrong = 0;
                 for (std::size_t i = 0; i < bench.contacts.size(); ++i) {
@@ -212,7 +212,7 @@ TEST_SUITE("solvers/rebalance") {
         const Pile pile(4, 5, 0.5);
         ContactRowsBench<Real> bench(pile.discs, converted<Real>(pile.touches));
         const Column<Real> pairs = bench.pairs.normal_impulse, supports = bench.supports.normal_impulse;
-        Rebalance<Real>().balance({}, bench.pairs, bench.supports, bench.bodies, 0, kGain);
+        Rebalance<Real>().balance({}, bench.pairs, bench.supports, bench.bodies, 0, 0, kGain);
         CHECK(std::equal(pairs.begin(), pairs.end(), bench.pairs.normal_impulse.begin()));
         CHECK(std::equal(supports.begin(), supports.end(), bench.supports.normal_impulse.begin()));
     }
