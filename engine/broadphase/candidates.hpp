@@ -133,6 +133,18 @@ class Candidates {
     std::int64_t rebuild_count() const { return rebuild_count_; }
     std::size_t bytes() const;
 
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.grid_, self.strays_, self.overshoot_, self.reach_, self.own_x_, self.own_y_);
+        archive(self.first_reach_, self.drift_x_, self.drift_y_, self.flow_x_, self.flow_y_, self.rate_);
+        archive(self.new_pairs_, self.added_pairs_, self.renewed_count_, self.farthest_, self.steepness_);
+        archive(self.drift_left_, self.largest_reach_, self.flow_, self.since_flow_, self.may_flow_);
+        archive(self.flows_, self.flow_is_local_, self.failed_follows_, self.follows_left_out_, self.radii_);
+        archive(self.is_valid_, self.radii_are_known_, self.rebuild_count_, self.rebuilds_until_sorted_);
+    }
+    /// To be called after the state was read.
+    void use(const KernelTable<Real>& kernels) { grid_.use(kernels); }
+
   private:
     static constexpr double kRoundingUp =
         1 + 1e-6;                               // factor on a reach: it and the place are rounded to Real

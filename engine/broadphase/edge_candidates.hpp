@@ -62,6 +62,11 @@ class EdgeCandidates {
 
     const EdgePose& pose_of(const Edge& edge) const { return poses_[static_cast<std::size_t>(edge.body)]; }
 
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.found_at_, self.pairs_, self.new_pairs_, self.allowance_);
+    }
+
     std::size_t bytes() const {
         return poses_.capacity() * sizeof(EdgePose) + found_at_.capacity() * sizeof(FoundAt) +
                (pairs_.capacity() + new_pairs_.capacity()) * sizeof(EdgePair) + near_.bytes();

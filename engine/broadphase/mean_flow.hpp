@@ -63,6 +63,12 @@ class MeanFlow {
     };
     const Most& most() const { return most_; }
 
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.low_, self.per_metre_, self.width_, self.height_, self.last_u_, self.last_v_);
+        archive(self.cells_, self.most_);
+    }
+
     std::size_t bytes() const { return cells_.capacity() * sizeof(Cell); }
 
   private:

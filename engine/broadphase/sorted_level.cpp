@@ -25,7 +25,7 @@ void SortedLevel<Real>::sort(const LevelInput<Real>& input, const KernelTable<Re
     find_cells(input, kernels, executor);
     count_cells(input.count);
     place_bodies(input);
-    view_.bodies = {x_.data(), y_.data(), reach_.data(), row_.data(), cell_.data(), cell_begin_.data()};
+    bind_view();
 }
 
 template <class Real>

@@ -5,6 +5,7 @@
 #include "state/column.hpp"
 
 #include <span>
+#include <type_traits>
 
 namespace carom {
 
@@ -38,11 +39,22 @@ class SortedLevel {
     double bodies_sharing_a_cell() const noexcept;
     std::size_t bytes() const noexcept;
 
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.view_.places, self.view_.numbering, self.view_.width, self.view_.cells);
+        archive(self.view_.largest_reach, self.cell_begin_, self.x_, self.y_, self.reach_, self.row_,
+                self.cell_);
+        if constexpr (!std::is_const_v<Self>) self.bind_view();
+    }
+
   private:
     void find_cells(const LevelInput<Real>& input, const KernelTable<Real>& kernels,
                     const Executor& executor);
     void count_cells(std::size_t count);
     void place_bodies(const LevelInput<Real>& input);
+    void bind_view() {
+        view_.bodies = {x_.data(), y_.data(), reach_.data(), row_.data(), cell_.data(), cell_begin_.data()};
+    }
 
     GridLevel<Real> view_{};
     Column<std::int32_t> unsorted_cell_;

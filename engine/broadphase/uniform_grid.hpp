@@ -29,6 +29,11 @@ struct GridInput {
 struct CandidatePairs {
     Column<std::int32_t> a, b;  // no shorter than padded(count)
     std::size_t count = 0;
+
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.a, self.b, self.count);
+    }
 };
 
 /// The broadphase: bodies sorted into square cells, one level of cells for each class of size.
@@ -90,6 +95,15 @@ class UniformGrid {
     /// Coarse to fine, for kernels that look around themselves in the grid.
     const GridLevel<Real>& level(std::size_t i) const noexcept { return levels_[i].view(); }
     std::size_t bytes() const noexcept;
+
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.count_, self.has_immovable_, self.level_count_, self.levels_, self.built_x_,
+                self.built_y_);
+        archive(self.order_, self.ordered_, self.pairs_);
+    }
+    /// To be called after the state was read: what looks around in the grid.
+    void use(const KernelTable<Real>& kernels) { kernels_ = &kernels; }
 
   private:
     void keep_positions(const GridInput<Real>& input, const Executor& executor);

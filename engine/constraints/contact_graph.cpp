@@ -388,6 +388,11 @@ void ContactGraph<Real>::add_late(ContactRows<Real>& sorted, std::int32_t paddin
     sorted.for_each(group, group + 1, [&](std::size_t i) {
         late_.push_back({sorted.a[i], sorted.b[i], sorted.normal_impulse[i], sorted.friction_impulse[i], 0});
     });
+    for (const Late& late :
+         late_) {  // rows that were there when the pairs were renewed, or in a restored state
+        const auto last = static_cast<std::size_t>(both_move ? std::max(late.a, late.b) : late.a);
+        if (colours_of_[0].size() <= last) colours_of_[0].resize(last + 1);
+    }
     std::uint64_t* taken = colours_of_[0].data();
     for (const Late& late : late_) {
         taken[late.a] = 0;

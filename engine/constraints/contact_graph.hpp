@@ -70,6 +70,11 @@ class ContactGraph {
 
     std::size_t bytes() const;
 
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.renewals, self.version, self.trail, self.lost, self.groups, self.pairs, self.supports);
+    }
+
   private:
     /// Contacts in the order of groups, before they are sorted by colour.
     struct Found {

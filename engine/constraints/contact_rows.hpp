@@ -101,6 +101,14 @@ struct ContactRows {
         fn(rows.spare, ColumnUse{kAll, kStep, {&E::restitution}});
     }
 
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        for_each_column(self, [&](auto& column, const ColumnUse& use) {
+            if (use.holds == ColumnUse::Holds::from_step_to_step) archive(column);
+        });
+        archive(self.begin, self.count, self.first_colour, self.has_overflow, self.overflow_stride);
+    }
+
     /// Colour c is [begin[c], begin[c] + count[c]); begin[c] is a multiple of kRowPadding.
     std::vector<std::size_t> begin, count;
     /// Group g has the colours [first_colour[g], first_colour[g + 1]).

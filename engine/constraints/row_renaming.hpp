@@ -25,6 +25,11 @@ class RowRenaming {
     /// Today's row of each row at the start, or kGone, [rows at the start]. Cost: O(rows).
     const std::vector<std::int32_t>& new_rows();
 
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.rows_, self.has_moved_, self.old_row_);
+    }
+
     std::size_t bytes() const { return (old_row_.capacity() + new_row_.capacity()) * sizeof(std::int32_t); }
 
   private:

@@ -63,6 +63,17 @@ class Sleepers {
     std::int64_t woken_count() const { return woken_count_; }
     std::size_t bytes() const;
 
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.kept_, self.woken_, self.marked_, self.pairs_, self.pairs_of_rebuild_,
+                self.next_island_);
+        archive(self.island_count_, self.woken_count_, self.since_look_, self.grid_, self.x_, self.y_);
+        archive(self.reach_, self.ids_, self.low_x_, self.low_y_, self.high_x_, self.high_y_,
+                self.is_grid_old_);
+    }
+    /// To be called after the state was read.
+    void use(const KernelTable<Real>& kernels) { grid_.use(kernels); }
+
   private:
     /// A contact of an island that sleeps.
     struct Kept {

@@ -44,6 +44,11 @@ class Property {
         }
     }
 
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.value_, self.is_any_, self.spread_, self.column_);
+    }
+
   private:
     Real value_ = 0;
     bool is_any_ = false;  // no row has given value_ a meaning
@@ -107,6 +112,14 @@ struct Bodies {
             has_flags = true;
         }
         flags[row] = value;
+    }
+
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.count, self.asleep, self.has_rotation, self.has_sleep, self.has_flags);
+        archive(self.mass, self.radius, self.restitution, self.friction, self.rolling_resistance);
+        archive(self.position_x, self.position_y, self.velocity_x, self.velocity_y, self.id);
+        archive(self.angle, self.angular_velocity, self.flags, self.still, self.island);
     }
 
   private:

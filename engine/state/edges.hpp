@@ -62,6 +62,11 @@ struct EdgeStore {
     /// @return which they were; none if the body has no edges.
     Removed remove(BodyId id);
 
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.bodies, self.edges);
+    }
+
     std::size_t bytes() const {
         return bodies.capacity() * sizeof(EdgeBody) + edges.capacity() * sizeof(Edge);
     }

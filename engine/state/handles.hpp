@@ -56,6 +56,11 @@ class Handles {
         return slots_.capacity() * sizeof(Slot) + free_.capacity() * sizeof(std::uint32_t);
     }
 
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.slots_, self.free_);
+    }
+
     static constexpr std::uint32_t kNoRow = UINT32_MAX;
 
   private:

@@ -58,6 +58,13 @@ struct WorldState {
     std::vector<std::int32_t> immovable_rows;  ///< static, kinematic and disabled ones
     std::int64_t quarantined_count = 0;
 
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.bodies, self.handles, self.edges, self.gravity, self.drag, self.walls, self.effects);
+        archive(self.time, self.falls, self.books, self.initial, self.outside, self.dynamic_mass);
+        archive(self.immovable_rows, self.quarantined_count);
+    }
+
     std::size_t bytes() const;
 
     /// Energy and momentum of one row; zero if it is not dynamic.

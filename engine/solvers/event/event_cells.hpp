@@ -53,6 +53,11 @@ class EventCells {
     Exit find_exit(const EventMover& disc, Vec2 position, Vec2 velocity, Vec2 gravity) const;
 
     std::size_t bucket_at(Vec2 position) const { return bucket(cell_at(position.x), cell_at(position.y)); }
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.size_, self.margin_, self.mask_x_, self.mask_y_, self.shift_x_, self.first_);
+    }
+
     std::size_t bytes() const { return first_.capacity() * sizeof(std::int32_t); }
 
   private:

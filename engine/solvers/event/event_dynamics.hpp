@@ -59,6 +59,13 @@ class EventDynamics {
     void keep_books(Books* books) { impacts_.books = books; }
     std::size_t bytes() const;
 
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.store_, self.cells_, self.queue_, self.impacts_, self.counters_, self.is_involved_);
+        archive(self.time_, self.same_instant_, self.longest_clock_, self.cell_radius_, self.sorted_at_);
+        if constexpr (!std::is_const_v<Self>) self.impacts_.counters = &self.counters_;
+    }
+
   private:
     struct Earliest;
     struct Path {  ///< of a disc from now on

@@ -67,6 +67,11 @@ class EventImpacts {
 
     std::size_t bytes() const;
 
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.rule, self.place_of_disc_);
+    }
+
   private:
     struct Change {
         Vec2 velocity;

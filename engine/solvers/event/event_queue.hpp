@@ -52,6 +52,11 @@ class EventQueue {
         return number;
     }
 
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.levels_, self.depth_);
+    }
+
     std::size_t bytes() const {
         std::size_t sum = 0;
         for (const Column<double>& level : levels_) sum += level.bytes();

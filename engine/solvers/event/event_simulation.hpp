@@ -22,9 +22,19 @@ class EventSimulation : public Simulation<Real> {
     void check_bodies(std::string_view where) override;
     void report(Profile& profile) const override;
     std::size_t bytes() const override;
+    void visit_state(StateSize& archive) const override { visit_all(*this, archive); }
+    void visit_state(StateWriter& archive) const override { visit_all(*this, archive); }
+    void visit_state(StateReader& archive) override { visit_all(*this, archive); }
 
     EventDynamics events;
     std::vector<std::int32_t> event_rows;  ///< the world's rows that `events` has; empty: they have changed
+
+  private:
+    template <class Self, class Archive>
+    static void visit_all(Self& self, Archive& archive) {
+        Simulation<Real>::visit_common(self, archive);
+        archive(self.events, self.event_rows);
+    }
 };
 
 /// A stage: goes from impact to impact to the end of the step.

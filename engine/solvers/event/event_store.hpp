@@ -64,6 +64,12 @@ struct EventStore {
         m.position = position, m.velocity = velocity, m.time = time;
     }
 
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.laws, self.movers, self.forecasts, self.surfaces, self.row_of, self.disc_of);
+        archive(self.first_immovable, self.large_begin, self.large_end);
+    }
+
     std::size_t bytes() const {
         return movers.bytes() + forecasts.bytes() + surfaces.bytes() +
                (row_of.capacity() + disc_of.capacity()) * sizeof(std::int32_t);

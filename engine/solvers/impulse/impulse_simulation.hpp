@@ -18,6 +18,9 @@ class ImpulseSimulation : public Simulation<Real> {
     void forget_derived_state() override;
     void report(Profile& profile) const override;
     std::size_t bytes() const override;
+    void visit_state(StateSize& archive) const override { visit_all(*this, archive); }
+    void visit_state(StateWriter& archive) const override { visit_all(*this, archive); }
+    void visit_state(StateReader& archive) override { visit_all(*this, archive); }
 
     ImpulseSolver<Real> impulse;
     // The lists below are those of the present substep.
@@ -25,6 +28,13 @@ class ImpulseSimulation : public Simulation<Real> {
     std::vector<FoundMeeting> meetings;                     ///< that the solver has to look at
     std::vector<std::vector<FoundMeeting>> chunk_meetings;  ///< where chunks run on several threads
     std::vector<Real> immovable_spins;                      ///< rad/s, kept over the turn
+
+  private:
+    template <class Self, class Archive>
+    static void visit_all(Self& self, Archive& archive) {
+        Simulation<Real>::visit_common(self, archive);
+        archive(self.impulse);
+    }
 };
 
 extern template class ImpulseSimulation<float>;

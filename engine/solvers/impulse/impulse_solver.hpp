@@ -74,6 +74,12 @@ class ImpulseSolver {
 
     std::size_t bytes() const;
 
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.counters, self.persisting_);
+        if constexpr (!std::is_const_v<Self>) self.flights.accelerations.clear();
+    }
+
   private:
     void collect_persisting(const Handles& handles);
     void drop_duplicates_at_rest();

@@ -62,6 +62,11 @@ class CoarseCorrection {
 
     std::size_t bytes() const;
 
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.pause_, self.substeps_since_);
+    }
+
   private:
     static constexpr int kShortestPause = 8;  // substeps
     static constexpr std::size_t kParts = 8;  // parts that rows are cut into, for any number of threads

@@ -11,6 +11,7 @@
 #include "broadphase/candidates.hpp"
 #include "isa/kernel_table.hpp"
 #include "parallel/executor.hpp"
+#include "state/archive.hpp"
 #include "state/chunked_list.hpp"
 #include "state/world_state.hpp"
 #include "step/stage.hpp"
@@ -67,6 +68,12 @@ class Simulation {
     /// Memory that it holds now.
     virtual std::size_t bytes() const;
 
+    // Its state as bytes (state/archive.hpp).
+
+    virtual void visit_state(StateSize& archive) const = 0;
+    virtual void visit_state(StateWriter& archive) const = 0;
+    virtual void visit_state(StateReader& archive) = 0;
+
     WorldState<Real> world;
     Candidates<Real> candidates;
     Executor executor;
@@ -92,6 +99,12 @@ class Simulation {
     bool can_meet() const { return world.bodies.rows() > 1 || world.effects.walls; }
 
   protected:
+    /// What is of every solver.
+    template <class Self, class Archive>
+    static void visit_common(Self& self, Archive& archive) {
+        archive(self.world, self.candidates, self.step_count);
+        if constexpr (!std::is_const_v<Self>) self.candidates.use(*self.kernels);
+    }
     explicit Simulation(MarginRule rule) : candidates(rule) {}
 };
 

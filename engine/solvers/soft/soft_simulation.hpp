@@ -23,6 +23,9 @@ class SoftSimulation : public Simulation<Real> {
     std::size_t wake_body(std::size_t row) override;
     void report(Profile& profile) const override;
     std::size_t bytes() const override;
+    void visit_state(StateSize& archive) const override { visit_all(*this, archive); }
+    void visit_state(StateWriter& archive) const override { visit_all(*this, archive); }
+    void visit_state(StateReader& archive) override { visit_all(*this, archive); }
 
     EdgeCandidates<Real> edge_candidates;
     SoftSolver<Real> soft;
@@ -32,6 +35,14 @@ class SoftSimulation : public Simulation<Real> {
     Column<Real> motion;  ///< [rows][4]: x, y [m], vx, vy [m/s] of each body at its start
     int substep = 0, substep_count = 1;
     double substep_dt = 0;  ///< s
+
+  private:
+    template <class Self, class Archive>
+    static void visit_all(Self& self, Archive& archive) {
+        Simulation<Real>::visit_common(self, archive);
+        archive(self.edge_candidates, self.soft, self.sleepers, self.graph_of_rebuild);
+        if constexpr (!std::is_const_v<Self>) self.sleepers.use(*self.kernels);
+    }
 };
 
 extern template class SoftSimulation<float>;

@@ -121,7 +121,16 @@ class SoftSolver {
 
     std::size_t bytes() const;
 
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.graph, self.counters, self.impulses_of_h_, self.coarse_);
+        if constexpr (!std::is_const_v<Self>) self.forget_step();
+    }
+
   private:
+    /// Nothing of the last step is known any more.
+    void forget_step() { masses_are_known_ = false, count_ = 0; }
+
     using ContactKernel = void (*)(const SolveContacts<Real>&, std::size_t, std::size_t);
     /// What a sweep does to each contact.
     struct Sweep {
