@@ -5,13 +5,13 @@
 #include <cmath>
 #include <string>
 
-#include "isa/select_isa.hpp"
 #include "scene/choose_solver.hpp"
 #include "scene/mass.hpp"
 #include "scene/validation.hpp"
 #include "step/make_simulation.hpp"
 #include "step/plan.hpp"
 #include "world/measure.hpp"
+#include "world/set_up.hpp"
 
 namespace carom {
 namespace {
@@ -39,15 +39,6 @@ class StateHash {
     }
     std::uint64_t hash_ = 0xCBF29CE484222325u;
 };
-
-/// `solver` is never automatic here.
-Accuracy accuracy_of(const Scene& scene, const WorldOptions& options) {
-    Accuracy accuracy = scene.accuracy;
-    accuracy.solver = choose_solver(scene, options.solver.value_or(accuracy.solver)).solver;
-    if (options.substeps) accuracy.substeps = options.substeps;
-    if (options.iterations) accuracy.iterations = options.iterations;
-    return accuracy;
-}
 
 void check_options(const Scene& scene, const WorldOptions& options) {
     const Accuracy accuracy = accuracy_of(scene, options);
@@ -246,9 +237,6 @@ BasicWorld<Real>::BasicWorld(const Scene& scene, const WorldOptions& options) {
     implementation_ = std::make_unique<Implementation>();
     implementation_->simulation = make_simulation<Real>(accuracy.solver);
     Simulation<Real>& sim = *implementation_->simulation;
-    sim.kernels = &select_kernels(options.isa).template of<Real>();
-    sim.executor = Executor(options.threads, options.parallel_for);
-    sim.substeps_asked_for = accuracy.substeps.value_or(default_substeps(accuracy.solver));
     implementation_->called = call_effects(scene, options.effects);
     const auto either = [](const std::optional<bool>& first, const std::optional<bool>& second) {
         return first ? first : second;
@@ -265,17 +253,7 @@ BasicWorld<Real>::BasicWorld(const Scene& scene, const WorldOptions& options) {
     implementation_->called.solver_reason = choose_solver(scene, implementation_->asked_for).reason;
     implementation_->facts = facts_of(scene);
 
-    WorldState<Real>& world = sim.world;
-    world.effects = implementation_->called.effects;
-    world.gravity = scene.gravity;
-    world.drag = {world.effects.drag ? scene.drag.linear : 0,
-                  world.effects.rotation ? scene.drag.angular : 0};
-    world.walls = scene.walls;
-    world.books.is_open = world.effects.ledger;
-    world.bodies.has_rotation = world.effects.rotation;
-    world.bodies.has_sleep = world.effects.sleeping;
-    for (const Body& body : scene.bodies) world.append(body);
-    world.initial = world.sums();
+    set_up(sim, scene, options, implementation_->called.effects);
     sim.check_bodies("World");
 }
 

@@ -1,12 +1,12 @@
 // What contacts of solver `soft` carry (A26 of docs/exact-cases.md), and how well they are solved: read
 // inside the solver.
-#include "isa/select_isa.hpp"
 #include "scene/call_effects.hpp"
 #include "shapes/walls.hpp"
 #include "solvers/soft/soft_simulation.hpp"
 #include "step/make_simulation.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"
+#include "world/set_up.hpp"
 
 #include <doctest/doctest.h>
 
@@ -27,15 +27,8 @@ struct Inside {
     std::unique_ptr<Simulation<Real>> simulation = make_soft_simulation<Real>();
     SoftSimulation<Real>& sim = static_cast<SoftSimulation<Real>&>(*simulation);
 
-    explicit Inside(const Scene& scene, int substeps = 4) {
-        sim.kernels = &select_kernels("auto").of<Real>();
-        sim.executor = Executor(1, {});
-        sim.substeps_asked_for = substeps;
-        sim.world.effects = call_effects(scene, {}).effects;
-        sim.world.gravity = scene.gravity;
-        sim.world.walls = scene.walls;
-        sim.world.bodies.has_rotation = sim.world.effects.rotation;
-        for (const Body& body : scene.bodies) sim.world.append(body);
+    explicit Inside(const Scene& scene) {
+        set_up(sim, scene, {.threads = 1}, call_effects(scene, {}).effects);
     }
     void run(int steps) {
         for (int i = 0; i < steps; ++i) sim.step(kStep);

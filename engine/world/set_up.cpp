@@ -1,0 +1,40 @@
+#include "world/set_up.hpp"
+
+#include <optional>
+
+#include "isa/select_isa.hpp"
+#include "scene/choose_solver.hpp"
+#include "scene/validation.hpp"
+
+namespace carom {
+
+Accuracy accuracy_of(const Scene& scene, const WorldOptions& options) {
+    Accuracy accuracy = scene.accuracy;
+    accuracy.solver = choose_solver(scene, options.solver.value_or(accuracy.solver)).solver;
+    if (options.substeps) accuracy.substeps = options.substeps;
+    if (options.iterations) accuracy.iterations = options.iterations;
+    return accuracy;
+}
+
+template <class Real>
+void set_up(Simulation<Real>& sim, const Scene& scene, const WorldOptions& options, const Effects& effects) {
+    const std::optional<int> substeps = accuracy_of(scene, options).substeps;
+    sim.kernels = &select_kernels(options.isa).template of<Real>();
+    sim.executor = Executor(options.threads, options.parallel_for);
+    sim.substeps_asked_for = substeps.value_or(default_substeps(sim.solver()));
+    WorldState<Real>& world = sim.world;
+    world.effects = effects;
+    world.gravity = scene.gravity;
+    world.drag = {effects.drag ? scene.drag.linear : 0, effects.rotation ? scene.drag.angular : 0};
+    world.walls = scene.walls;
+    world.books.is_open = effects.ledger;
+    world.bodies.has_rotation = effects.rotation;
+    world.bodies.has_sleep = effects.sleeping;
+    for (const Body& body : scene.bodies) world.append(body);
+    world.initial = world.sums();
+}
+
+template void set_up(Simulation<float>&, const Scene&, const WorldOptions&, const Effects&);
+template void set_up(Simulation<double>&, const Scene&, const WorldOptions&, const Effects&);
+
+}  // namespace carom
