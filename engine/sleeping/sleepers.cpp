@@ -224,18 +224,11 @@ std::size_t Sleepers<Real>::wake_marked(WorldState<Real>& world) {
     return bodies.count - before;
 }
 
-/// A contact that has woken, as it is sorted: by its rows, with its place in `woken_`.
-struct Woken {
-    std::int32_t a, b;
-    std::size_t kept;
-    friend auto operator<=>(const Woken&, const Woken&) = default;
-};
-
 template <class Real>
 void Sleepers<Real>::restore_impulses(ContactGraph<Real>& graph, const WorldState<Real>& world,
                                       double substep) {
     if (woken_.empty()) return;
-    std::vector<Woken> filed;
+    filed_.clear();
     for (std::size_t i = 0; i < woken_.size(); ++i) {
         const Kept& kept = woken_[i];
         const auto row_of = [&](BodyId id) {
@@ -248,16 +241,16 @@ void Sleepers<Real>::restore_impulses(ContactGraph<Real>& graph, const WorldStat
                 graph.lost.push_back({-1 - static_cast<std::int32_t>(kept.a.index), row_of(kept.b)});
             continue;
         }
-        filed.push_back({row_of(kept.a), kept.support < 0 ? kept.support : row_of(kept.b), i});
+        filed_.push_back({row_of(kept.a), kept.support < 0 ? kept.support : row_of(kept.b), i});
     }
-    std::sort(filed.begin(), filed.end());
+    std::sort(filed_.begin(), filed_.end());
     const auto restore = [&](ContactRows<Real>& contacts, bool is_turned) {
         contacts.for_each([&](std::size_t i) {
             Woken wanted{contacts.a[i], contacts.b[i], 0};
             if (is_turned) std::swap(wanted.a, wanted.b);
-            const auto found = std::lower_bound(filed.begin(), filed.end(), wanted);
-            if (found == filed.end() || found->a != wanted.a || found->b != wanted.b) return;
-            const Kept& kept = woken_[found->kept];
+            const auto found = std::lower_bound(filed_.begin(), filed_.end(), wanted);
+            if (found == filed_.end() || found->a != wanted.a || found->b != wanted.b) return;
+            const Kept& kept = woken_[found->number];
             const auto impulse = [&](double force) { return static_cast<Real>(force * substep); };
             contacts.normal_impulse[i] = impulse(kept.normal);
             if (!contacts.friction_impulse.empty()) contacts.friction_impulse[i] = impulse(kept.friction);

@@ -82,6 +82,12 @@ class Sleepers {
         std::int32_t support;              // a wall or an edge in place of b, else 0
         double normal, friction, rolling;  // N
     };
+    /// A contact that has woken, by its rows.
+    struct Woken {
+        std::int32_t a, b;
+        std::size_t number;  // in woken_
+        friend auto operator<=>(const Woken&, const Woken&) = default;
+    };
     /// A row that leans on a sleeper.
     struct Held {
         std::int32_t row, island;
@@ -99,6 +105,7 @@ class Sleepers {
     void rename_island(WorldState<Real>& world, std::int32_t from, std::int32_t to);
 
     std::vector<Kept> kept_, woken_;
+    std::vector<Woken> filed_;
     std::vector<std::int32_t> marked_;
     std::vector<SleeperPair> pairs_;
     std::int64_t pairs_of_rebuild_ = -1;

@@ -39,7 +39,14 @@ class Column {
         std::copy_n(other.rows_, other.size_, rows_);
     }
     Column(Column&& other) noexcept { swap(other); }
-    Column& operator=(Column other) noexcept {
+    /// In the memory that is there, if it suffices.
+    Column& operator=(const Column& other) {
+        if (this == &other) return *this;
+        resize_for_overwrite(other.size_);
+        std::copy_n(other.rows_, other.size_, rows_);
+        return *this;
+    }
+    Column& operator=(Column&& other) noexcept {
         swap(other);
         return *this;
     }

@@ -41,4 +41,21 @@ TEST_SUITE("state/column") {
         CHECK(copy[5] == 5);
         CHECK(copy[99] == 99);
     }
+
+    TEST_CASE("a copy goes into the memory that is there, and clears the rest") {
+        Column<std::int32_t> column(1000);
+        for (std::int32_t& row : column) row = 7;
+        const std::int32_t* before = column.data();
+        Column<std::int32_t> shorter(3);
+        shorter[2] = 5;
+        column = shorter;
+        CHECK(column.data() == before);
+        CHECK(column.size() == 3);
+        CHECK(column[2] == 5);
+        for (std::size_t row = 3; row < carom::held(3); ++row) CHECK(column.data()[row] == 0);
+        const auto& itself = column;
+        column = itself;
+        CHECK(column[2] == 5);
+        CHECK(column.size() == 3);
+    }
 }

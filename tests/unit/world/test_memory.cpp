@@ -89,6 +89,27 @@ Scene box_of_discs(std::int64_t count, RadiusRange radius) {
     return scene;
 }
 
+/// Discs with friction in a square container of edges, which turns.
+/// @param spin  rad/s
+Scene discs_in_a_container(int discs_a_side, double spin) {
+    Scene scene;
+    scene.gravity = {0, -10};
+    const double half = 0.3 * discs_a_side;
+    const Material rough{.friction = 0.5};
+    scene.add(
+        {.type = spin == 0 ? BodyType::static_body : BodyType::kinematic_body,
+         .shape = Chain{.points = {{-half, -half}, {half, -half}, {half, half}, {-half, half}}, .loop = true},
+         .angular_velocity = spin,
+         .material = rough});
+    Lattice discs;
+    discs.count_x = discs_a_side, discs.count_y = discs_a_side / 2;
+    discs.origin = {-half + 0.3, -half + 0.3}, discs.spacing = {0.56, 0.56};
+    discs.jitter = 0.02, discs.radius_range = RadiusRange{0.15, 0.25};
+    discs.body.material = rough;
+    add_lattice(scene, discs);
+    return scene;
+}
+
 constexpr double kStep = 1.0 / 60;  // s
 
 template <class World>
@@ -117,6 +138,44 @@ TEST_SUITE("world/memory") {
         scene.effects.ledger = true;
         World world(scene, {.threads = 1});
         CHECK(allocations_of_steps(world, 600, 100) == 0);
+    }
+
+    TEST_CASE_TEMPLATE(
+        "a warm drum with friction, sizes and edges, under solver soft, steps without an allocation", Real,
+        float, double) {
+        Scene scene = discs_in_a_container(15, 0.7);
+        scene.effects.ledger = true;
+        scene.bodies[7].material.rolling_resistance = 0.1;
+        scene.bodies[8].material.restitution = 0.5;
+        BasicWorld<Real> world(scene, {.threads = 1});
+        REQUIRE(world.plan().solver == "soft");
+        CHECK(allocations_of_steps(world, 3000, 200) == 0);
+    }
+
+    TEST_CASE_TEMPLATE("discs that sleep and are woken again and again allocate nothing in the end", Real,
+                       float, double) {
+        Scene scene = discs_in_a_container(8, 0);
+        scene.effects.sleep = true;
+        for (Body& body : scene.bodies) body.material.rolling_resistance = 0.1;
+        BasicWorld<Real> world(scene, {.threads = 1});
+        const BodyId one{5, 0};
+        int times_asleep = 0;
+        // Kicked up every three seconds, it wakes the others.
+        const auto allocations = [&](int kicks) {
+            long count = 0;
+            for (int kick = 0; kick < kicks; ++kick) {
+                times_asleep += world.is_asleep(one);
+                world.set_velocity(one, {0.3, 4});
+                const long before = allocation_count.load();
+                for (int i = 0; i < 180; ++i) world.step(kStep);
+                count += allocation_count.load() - before;
+            }
+            return count;
+        };
+        allocations(40);
+        times_asleep = 0;
+        CHECK(allocations(10) == 0);
+        CHECK(times_asleep > 5);
     }
 
     TEST_CASE("memory a body stays below what docs/how-a-step-works.md can count on") {
