@@ -17,6 +17,7 @@ TEST_SUITE("hard cases/long runs") {
         const int kSteps = scaled(1'000'000, 50'000), kCount = 4, kSettling = 600;
         constexpr double kRadius = 0.5;
         Scene scene;
+        scene.accuracy.solver = Solver::soft;
         scene.gravity = {0, -10};
         const Material rough{.friction = 0.5};
         scene.walls = Walls{.min = {-0.6, 0}, .max = {0.6, 100}, .top = false, .material = rough};

@@ -21,6 +21,7 @@ constexpr double kStep = 1.0 / 60;
 /// Neighbours in a box that is open at the top.
 Scene neighbours() {
     Scene scene = gas_scene({.count = 120, .packing_fraction = 0.15, .restitution = 0.95});
+    scene.accuracy.solver = Solver::impulse;
     scene.gravity = {0, -9};
     scene.walls->top = false;
     return scene;
@@ -177,6 +178,12 @@ TEST_SUITE("hard cases/quarantine") {
     TEST_CASE_TEMPLATE("a body that gravity makes too fast is disabled, and the others go on", Real, float,
                        double) {
         Scene scene;
+        SUBCASE("solver impulse") {
+            scene.accuracy.solver = Solver::impulse;
+        }
+        SUBCASE("solver soft") {
+            scene.accuracy.solver = Solver::soft;
+        }
         scene.gravity = {0, -1e6};
         scene.add(disc(0.5, 1, {0, 0}, {0, -0.999e7}));
         scene.add(disc(0.5, 1, {10, 0}, {0, 0.9e7}));
@@ -190,6 +197,7 @@ TEST_SUITE("hard cases/quarantine") {
 
     TEST_CASE_TEMPLATE("a disabled body is in nobody's way, and can be removed", Real, float, double) {
         Scene scene;
+        scene.accuracy.solver = Solver::impulse;
         const BodyId rogue = scene.add(disc(5, 1, {0.9999e8, 0}, {9e6, 0}, 1));
         const BodyId passer = scene.add(disc(5, 1, {0.9999e8 - 64, 0}, {32, 0}, 1));
         BasicWorld<Real> world(scene);

@@ -157,8 +157,8 @@ TEST_SUITE("hard cases/size ratios") {
         report("force on it differs from its weight by ", missing, " of it; overlap ", deepest, ", overflow ",
                overflow);
         CHECK(overflow > 0);  // more contacts than there are colours
-        CHECK(std::fabs(missing) < scaled(1e-3, 0.2));
-        CHECK(deepest < scaled(0.2, 1.0));
+        CHECK(std::fabs(missing) < scaled(1e-3, 0.05));
+        CHECK(deepest < 0.2);
         CHECK(world.state(large).position.y > kLarge + 0.5 * top);  // it lies in a dent, not on the floor
         CHECK(world.quarantined().empty());
     }

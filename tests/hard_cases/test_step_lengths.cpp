@@ -19,6 +19,7 @@ constexpr double kRadius = 0.5;
 /// Ten discs between walls, `slack` wider than they are and leaning left and right by as much.
 Scene stack_between_walls(double restitution, double slack) {
     Scene scene;
+    scene.accuracy.solver = restitution < 0.5 ? Solver::soft : Solver::impulse;
     scene.gravity = {0, -10};
     scene.walls = Walls{.min = {0, 0}, .max = {2 * kRadius + slack, 100}, .material = bouncy(restitution)};
     double y = kRadius;
@@ -74,6 +75,13 @@ TEST_SUITE("hard cases/step lengths") {
                        double) {
         Scene scene = gas_scene({.count = 50, .smallest_radius = 0.1, .largest_radius = 0.8});
         scene.gravity = {0, -10};
+        SUBCASE("solver impulse") {
+            scene.accuracy.solver = Solver::impulse;
+        }
+        SUBCASE("solver soft") {
+            scene.accuracy.solver = Solver::soft;
+            for (Body& body : scene.bodies) body.material.restitution = 0.5;
+        }
         scene.drag = {0.5, 0.5};
         scene.bodies[3].angular_velocity = 2;
         Trial<Real> trial(scene);

@@ -85,7 +85,7 @@ TEST_SUITE("hard cases/symmetric hits") {
             scene.add(disc(kRadius, mass, {0, 0}, {}, 1));
             scene.add(disc(kRadius, 2, {-2, 0}, {3, 0}, 1));
             scene.add(disc(kRadius, 2, {2, 0}, {-3, 0}, 1));
-            Trial<Real> trial(scene);
+            Trial<Real> trial(scene, {.solver = Solver::impulse});
             run_and_check(trial, scene, 60);
             CHECK(std::abs(trial.state(0).velocity.x) <= (kIsFloat<Real> ? 1e-5 : 1e-13));
             CHECK(trial.state(1).velocity.x == doctest::Approx(-3).epsilon(1e-6));
@@ -101,7 +101,7 @@ TEST_SUITE("hard cases/symmetric hits") {
             scene.add(disc(kRadius, 1.5, {-3, 0}, {2, 0}, 1));
             scene.add(disc(kRadius, 1, {0, aside}, {}, 1));
             scene.add(disc(kRadius, 1, {0, -aside}, {}, 1));
-            Trial<Real> trial(scene);
+            Trial<Real> trial(scene, {.solver = Solver::impulse});
             run_and_check(trial, scene, 120);
             check_mirrored(trial, 1, 2);
             CHECK(std::abs(trial.state(0).velocity.y) <= (kIsFloat<Real> ? 1e-6 : 1e-14));
@@ -120,7 +120,7 @@ TEST_SUITE("hard cases/symmetric hits") {
                 CAPTURE(rows);
                 CAPTURE(gap);
                 const Scene scene = rack(rows, gap);
-                Trial<Real> trial(scene);
+                Trial<Real> trial(scene, {.solver = Solver::impulse});
                 run_and_check(trial, scene, 60);
                 CHECK(trial.world.profile().impacts >= rows);
                 std::uint32_t first = 1;
@@ -137,7 +137,7 @@ TEST_SUITE("hard cases/symmetric hits") {
             Scene scene;
             scene.walls = Walls{.min = {-5, -5}, .max = {5, 5}, .material = bouncy(1)};
             scene.add(disc(kRadius, 1, {2, 2}, {speed, speed}, 1));
-            Trial<Real> trial(scene);
+            Trial<Real> trial(scene, {.solver = Solver::impulse});
             trial.run(200, kStep);
             const BodyState state = trial.state(0);
             const double tolerance = kIsFloat<Real> ? 1e-4 : 1e-12;
@@ -156,7 +156,7 @@ TEST_SUITE("hard cases/symmetric hits") {
         scene.walls = Walls{.min = {-5, -5}, .max = {0, 0}, .material = bouncy(1)};
         scene.add(disc(kRadius, 1, {-kRadius, -kRadius}, {}, 1));  // touches both walls
         scene.add(disc(kRadius, 1, {-2, -2}, {3, 3}, 1));
-        Trial<Real> trial(scene);
+        Trial<Real> trial(scene, {.solver = Solver::impulse});
         const double start = trial.world.ledger().energy.total();
         trial.run(60, kStep);
         CHECK(std::abs(trial.world.ledger().energy.total() / start - 1) < (kIsFloat<Real> ? 1e-5 : 1e-12));

@@ -32,6 +32,7 @@ Scene gas(Kind kind) {
                              .smallest_radius = 0.3,
                              .largest_radius = 0.6,
                              .seed = 11});
+    scene.accuracy.solver = Solver::impulse;
     if (kind == Kind::falling) {
         scene.gravity = {1.5, -4};
         scene.drag = {0.3, 0};

@@ -79,6 +79,7 @@ TEST_SUITE("hard cases/trivial worlds") {
 
     TEST_CASE_TEMPLATE("a single body between walls bounces", Real, float, double) {
         Scene scene;
+        scene.accuracy.solver = Solver::impulse;
         scene.walls = Walls{.min = {-1, -1}, .max = {1, 1}, .material = bouncy(1)};
         scene.add(disc(0.5, 1, {0, 0}, {1, 0}));
         Trial<Real> trial(scene);
@@ -92,6 +93,7 @@ TEST_SUITE("hard cases/trivial worlds") {
     TEST_CASE_TEMPLATE("a stage that a scene does not call for is absent from the plan", Real, float,
                        double) {
         Scene scene = gas_scene({.count = 20});
+        scene.accuracy.solver = Solver::impulse;
         BasicWorld<Real> world(scene);
         world.step(1.0 / 60);
         const auto names = stages_run(world.profile());

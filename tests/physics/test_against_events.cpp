@@ -53,7 +53,7 @@ void check_against_oracle(const Scene& scene, double seconds) {
     constexpr double kSize = 8;  // m, coordinates of the scene are smaller
     for (const double dt : {0.5, 0.1, 1.0 / 60, 1.0 / 500}) {
         CAPTURE(dt);
-        Trial<Real> trial(scene);
+        Trial<Real> trial(scene, {.solver = Solver::impulse});
         const int steps = static_cast<int>(std::lround(seconds / dt));
         trial.run(steps, dt);
         EventSimulation oracle(scene, rounded_to<Real>);

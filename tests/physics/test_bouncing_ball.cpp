@@ -21,6 +21,7 @@ constexpr double kPath = 4.555556;      // m, H (1 + e²) / (1 - e²)
 
 Scene ball_above_floor(double height, double restitution) {
     Scene scene;
+    scene.accuracy.solver = Solver::impulse;
     scene.gravity = {0, -kGravity};
     scene.walls = floor_at(0);
     scene.add(disc(kRadius, 1, {0, height + kRadius}, {}, restitution));
@@ -129,6 +130,7 @@ TEST_SUITE("physics/bouncing ball") {
         for (const double dt : {1e-2, 1e-3}) {
             CAPTURE(dt);
             Scene scene;
+            scene.accuracy.solver = Solver::impulse;
             scene.gravity = {0, -kGravity};
             scene.walls = floor_at(0);
             std::vector<double> height;

@@ -45,7 +45,7 @@ TEST_SUITE("physics/elastic gas") {
                        double) {
         constexpr bool kFloat = sizeof(Real) == sizeof(float);
         const Scene scene = gas_scene({.count = scaled(10000, 800)});
-        BasicWorld<Real> world(scene, {.threads = 1, .effects = {.ledger = true}});
+        BasicWorld<Real> world(scene, {.solver = Solver::impulse, .threads = 1, .effects = {.ledger = true}});
         const double start = world.ledger().energy.total();
         for (int i = 0; i < 600; ++i) world.step(kStep);
         const double change = world.ledger().energy.total() / start - 1;
@@ -65,7 +65,7 @@ TEST_SUITE("physics/elastic gas") {
         Scene scene = gas_scene({.count = 500, .packing_fraction = 0.5});
         scene.walls.reset();
         for (Body& body : scene.bodies) body.velocity.x += 1;
-        BasicWorld<Real> world(scene, {.threads = 1, .effects = {.ledger = true}});
+        BasicWorld<Real> world(scene, {.solver = Solver::impulse, .threads = 1, .effects = {.ledger = true}});
         const Ledger before = world.ledger();
         for (int i = 0; i < 120; ++i) world.step(kStep);
         const Ledger after = world.ledger();
@@ -81,7 +81,7 @@ TEST_SUITE("physics/elastic gas") {
         const std::int64_t count = scaled(10000, 2000);
         Scene scene = gas_scene({.count = count});
         make_speeds_equal(scene, 3);
-        BasicWorld<Real> world(scene, {.threads = 1});
+        BasicWorld<Real> world(scene, {.solver = Solver::impulse, .threads = 1});
         CHECK(flatness(world) == doctest::Approx(1).epsilon(1e-6));
         for (int i = 0; i < 300; ++i) world.step(kStep);  // some 45 collisions a disc
         double mean = 0;

@@ -29,6 +29,7 @@ double rounding_of(int steps, double size) {
 
 Scene projectile(double drag) {
     Scene scene;
+    scene.accuracy.solver = Solver::impulse;
     scene.gravity = kGravity;
     scene.drag.linear = drag;
     scene.add(disc(0.5, 2, kStart, kVelocity));
@@ -91,6 +92,7 @@ TEST_SUITE("physics/free flight") {
         for (const int rate : kStepsASecond) {
             CAPTURE(rate);
             Scene scene;
+            scene.accuracy.solver = Solver::impulse;
             scene.drag = {kLinear, kAngular};
             Body body = disc(0.5, 2, {}, {3, -4});
             body.angle = 0.25;
@@ -155,6 +157,7 @@ TEST_SUITE("physics/free flight") {
 
     TEST_CASE_TEMPLATE("a free spin turns by its rate times the time", Real, float, double) {
         Scene scene;
+        scene.accuracy.solver = Solver::impulse;
         Body body = disc(0.5, 2, {});
         body.angular_velocity = 7.25;
         scene.add(body);

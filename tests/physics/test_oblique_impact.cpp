@@ -41,6 +41,7 @@ Scene scene_of(const Case& c) {
         return Vec2{x * along.x + y * across.x, x * along.y + y * across.y};
     };
     Scene scene;
+    scene.accuracy.solver = Solver::impulse;
     Body a = disc(kRadiusA, 1, {}, at(4, 0), c.restitution);
     Body b = disc(kRadiusB, c.mass_ratio, at(ahead, aside), at(-1, 0.2), c.restitution / 2);
     a.angular_velocity = c.spin, b.angular_velocity = -0.5 * c.spin;

@@ -78,7 +78,7 @@ double spin_change_with_friction() {
     scene.add(
         {.position = {-0.3, 0}, .velocity = {3, 0}, .angular_velocity = 10, .mass = 1, .material = rough});
     scene.add({.position = {aside, aside}, .mass = 1, .material = rough});
-    World64 world(scene);
+    World64 world(scene, {.solver = Solver::soft});  // it has friction
     for (double time = 0; time < 0.5; time += kSeedDt) world.step(kSeedDt);
     const double first = world.state({0, 0}).angular_velocity - 10,
                  second = world.state({1, 0}).angular_velocity;
