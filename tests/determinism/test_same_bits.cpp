@@ -17,7 +17,7 @@
 #include <thread>
 #include <vector>
 
-#include "step/plan.hpp"
+#include "scene/call_effects.hpp"
 #include "support/effort.hpp"
 #include "support/report.hpp"
 
