@@ -116,7 +116,7 @@ void Candidates<Real>::move_places(const Bodies<Real>& bodies, double dt, const 
     Real *const x = own_x_.data(), *const y = own_y_.data(), *const reach = reach_.data();
     const Real *const flow_x = flow_x_.data(), *const flow_y = flow_y_.data(), *const rate = rate_.data();
     const Real *const radius = bodies.radius.data(), uniform_radius = bodies.radius.uniform_value();
-    executor.for_each_chunk(own_x_.size(), kRowsPerChunk, kNanosecondsToMove,
+    executor.for_each_chunk(reach_.size(), kRowsPerChunk, kNanosecondsToMove,
                             [&](std::size_t, std::size_t first, std::size_t last) {
                                 // One column at a time: compilers then use their widest registers.
                                 for (std::size_t row = first; row < last; ++row) x[row] += h * flow_x[row];

@@ -25,6 +25,12 @@ struct SolverFacts {
     std::string forced;  ///< of an effect that was asked for
     std::string dull;    ///< of a body that hardly bounces
 
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.bodies, self.has_walls, self.has_gravity, self.lines, self.rough, self.forced,
+                self.dull);
+    }
+
     /// Whether a body brings a reason that there is not yet.
     bool would_change(const Body& body) const;
     /// @param label  how reasons name the body, if it brings one

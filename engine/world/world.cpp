@@ -1,44 +1,21 @@
 #include <carom/world.hpp>
 
-#include <algorithm>
-#include <bit>
 #include <cmath>
 #include <string>
 
 #include "scene/choose_solver.hpp"
 #include "scene/mass.hpp"
 #include "scene/validation.hpp"
+#include "state/state_hash.hpp"
 #include "step/make_simulation.hpp"
 #include "step/plan.hpp"
 #include "world/measure.hpp"
+#include "world/report.hpp"
 #include "world/set_up.hpp"
+#include "world/snapshot.hpp"
 
 namespace carom {
 namespace {
-
-/// FNV-1a over 64-bit words (Fowler, Noll & Vo), with the two zeros made one.
-class StateHash {
-  public:
-    template <class Real>
-    void add(Real value) {
-        const Real zero_is_positive = value + Real(0);
-        if constexpr (sizeof(Real) == sizeof(std::uint32_t))
-            add_bits(std::bit_cast<std::uint32_t>(zero_is_positive));
-        else
-            add_bits(std::bit_cast<std::uint64_t>(zero_is_positive));
-    }
-    std::uint64_t value() const { return hash_; }
-
-  private:
-    void add_bits(std::uint64_t bits) {
-        for (int byte = 0; byte < 8; ++byte) {
-            hash_ ^= bits & 0xFF;
-            hash_ *= 0x100000001B3u;
-            bits >>= 8;
-        }
-    }
-    std::uint64_t hash_ = 0xCBF29CE484222325u;
-};
 
 void check_options(const Scene& scene, const WorldOptions& options) {
     const Accuracy accuracy = accuracy_of(scene, options);
@@ -67,15 +44,11 @@ Item item_of(BodyId body) {
 }  // namespace
 
 template <class Real>
-struct BasicWorld<Real>::Implementation {
+struct BasicWorld<Real>::Implementation : WorldSettings {
     std::unique_ptr<Simulation<Real>> simulation;
-    CalledEffects called;
-    EffectOverrides overrides;  // of the scene and of the options
-    double angular_drag = 0;    // 1/s, of the scene; in force once something turns
-    Solver asked_for = Solver::automatic;
-    SolverFacts facts;            // of all bodies there ever were
-    std::optional<int> substeps;  // that were asked for
-    Profile of_earlier_solvers;   // what they counted
+    int threads = 0;
+    ParallelFor parallel_for;
+    Profile of_earlier_solvers;  // what they counted
 
     Simulation<Real>& sim() { return *simulation; }
     const Simulation<Real>& sim() const { return *simulation; }
@@ -136,21 +109,6 @@ struct BasicWorld<Real>::Implementation {
         next->substeps_asked_for = substeps.value_or(default_substeps(solver));
         next->world = std::move(old.world);
         simulation = std::move(next);
-    }
-
-    /// Adds what a simulation has counted to a report.
-    static void add_counts(const Simulation<Real>& sim, Profile& profile) {
-        sim.report_stages([&](const StageState& stage) {
-            if (stage.time.calls == 0) return;
-            const auto known = std::find_if(profile.stages.begin(), profile.stages.end(),
-                                            [&](const StageTime& time) { return time.name == stage.name; });
-            StageTime& time = known != profile.stages.end()
-                                  ? *known
-                                  : profile.stages.emplace_back(StageTime{stage.name, 0, 0});
-            time.calls += stage.time.calls, time.seconds += stage.time.seconds;
-        });
-        profile.rebuilds += sim.candidates.rebuild_count();
-        sim.report(profile);
     }
 
     /// Turns on what a body to be added calls for and no other body has.
@@ -252,11 +210,29 @@ BasicWorld<Real>::BasicWorld(const Scene& scene, const WorldOptions& options) {
     implementation_->substeps = accuracy.substeps;
     implementation_->called.solver_reason = choose_solver(scene, implementation_->asked_for).reason;
     implementation_->facts = facts_of(scene);
+    implementation_->threads = options.threads, implementation_->parallel_for = options.parallel_for;
 
     set_up(sim, scene, options, implementation_->called.effects);
     sim.check_bodies("World");
 }
 
+template <class Real>
+BasicWorld<Real>::BasicWorld(const BasicWorld& other) : implementation_(std::make_unique<Implementation>()) {
+    const Implementation& original = *other.implementation_;
+    Implementation& copy = *implementation_;
+    copy.threads = original.threads, copy.parallel_for = original.parallel_for;
+    copy.simulation = make_simulation<Real>(original.sim().solver());
+    copy.sim().kernels = original.sim().kernels;
+    copy.sim().executor = Executor(copy.threads, copy.parallel_for);
+    std::vector<std::byte> bytes(other.state_bytes());
+    other.save_state(bytes);
+    restore_state(bytes);
+}
+template <class Real>
+BasicWorld<Real>& BasicWorld<Real>::operator=(const BasicWorld& other) {
+    if (this != &other) *this = BasicWorld(other);
+    return *this;
+}
 template <class Real>
 BasicWorld<Real>::~BasicWorld() = default;
 template <class Real>
@@ -414,38 +390,14 @@ double BasicWorld<Real>::time() const noexcept {
 
 template <class Real>
 Ledger BasicWorld<Real>::ledger() const {
-    const WorldState<Real>& world = implementation_->sim().world;
-    const Books& books = world.books;
-    const Sums now = world.sums(), &start = world.initial, &outside = world.outside;
-    Ledger ledger;
-    ledger.time = world.time;
-    ledger.initial = start.energy, ledger.energy = now.energy;
-    ledger.initial_momentum = start.momentum, ledger.momentum = now.momentum;
-    ledger.initial_angular_momentum = start.angular_momentum, ledger.angular_momentum = now.angular_momentum;
-    ledger.wall_impulse = books.wall_impulse;
-    if (!books.is_open) return ledger;
-
-    EnergyByCause& energy = ledger.energy_by_cause;
-    energy.gravity = start.energy.potential - now.energy.potential;
-    energy.drag = books.drag, energy.restitution = books.restitution, energy.friction = books.friction;
-    energy.correction = books.correction, energy.drive = books.drive, energy.sleep = books.sleep;
-    energy.outside = outside.energy.total();
-    energy.unexplained = (now.energy.kinetic + now.energy.rotational) -
-                         (start.energy.kinetic + start.energy.rotational) - energy.sum();
-    MomentumByCause& momentum = ledger.momentum_by_cause;
-    momentum.gravity = books.gravity_momentum, momentum.drag = books.drag_momentum;
-    momentum.walls = books.wall_momentum, momentum.immovable = books.immovable_momentum;
-    momentum.sleep = books.sleep_momentum, momentum.outside = outside.momentum;
-    momentum.unexplained = now.momentum - start.momentum - momentum.gravity - momentum.drag - momentum.walls -
-                           momentum.immovable - momentum.sleep - momentum.outside;
-    return ledger;
+    return ledger_of(implementation_->sim().world);
 }
 
 template <class Real>
 Profile BasicWorld<Real>::profile() const {
     const Simulation<Real>& sim = implementation_->sim();
     Profile profile = implementation_->of_earlier_solvers;
-    Implementation::add_counts(sim, profile);
+    add_counts(sim, profile);
     profile.steps = sim.step_count;
     profile.candidate_pairs = static_cast<std::int64_t>(sim.candidates.pair_count());
     profile.asleep = static_cast<std::int64_t>(sim.world.bodies.asleep);
@@ -470,19 +422,30 @@ std::vector<BodyId> BasicWorld<Real>::quarantined() const {
 }
 
 template <class Real>
-std::uint64_t BasicWorld<Real>::state_hash() const {
-    const WorldState<Real>& world = implementation_->sim().world;
-    const Bodies<Real>& b = world.bodies;
-    StateHash hash;
-    for (std::size_t slot = 0; slot < world.handles.slot_count(); ++slot) {
-        const std::uint32_t row = world.handles.row_of_slot(slot);
-        if (row == Handles::kNoRow) continue;
-        hash.add(b.position_x[row]), hash.add(b.position_y[row]);
-        hash.add(b.velocity_x[row]), hash.add(b.velocity_y[row]);
-        hash.add(b.has_rotation ? b.angle[row] : Real(0));
-        hash.add(b.has_rotation ? b.angular_velocity[row] : Real(0));
+std::size_t BasicWorld<Real>::state_bytes() const {
+    return snapshot_bytes(implementation_->sim(), *implementation_);
+}
+
+template <class Real>
+void BasicWorld<Real>::save_state(std::span<std::byte> out) const {
+    save_snapshot(implementation_->sim(), *implementation_, out);
+}
+
+template <class Real>
+void BasicWorld<Real>::restore_state(std::span<const std::byte> state) {
+    const Solver solver = solver_of_snapshot<Real>(state);
+    Implementation& own = *implementation_;
+    if (solver != own.sim().solver()) {
+        std::unique_ptr<Simulation<Real>> next = make_simulation<Real>(solver);
+        next->kernels = own.sim().kernels, next->executor = std::move(own.sim().executor);
+        own.simulation = std::move(next);
     }
-    return hash.value();
+    restore_snapshot(own.sim(), own, state);
+}
+
+template <class Real>
+std::uint64_t BasicWorld<Real>::state_hash() const {
+    return hash_of(implementation_->sim().world);
 }
 
 template class BasicWorld<float>;

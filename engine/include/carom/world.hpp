@@ -4,6 +4,7 @@
 #include <carom/profile.hpp>
 #include <carom/scene.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -70,6 +71,9 @@ class BasicWorld {
     /// @throws Error as `Scene::validate`, or for options out of range or an instruction set that is missing.
     explicit BasicWorld(const Scene& scene, const WorldOptions& options = {});
     ~BasicWorld();
+    /// A world that goes on as the other one does, bit for bit. Cost: that of a save and a restore.
+    BasicWorld(const BasicWorld& other);
+    BasicWorld& operator=(const BasicWorld& other);
     BasicWorld(BasicWorld&&) noexcept;
     BasicWorld& operator=(BasicWorld&&) noexcept;
 
@@ -121,6 +125,21 @@ class BasicWorld {
     OverlapReport overlaps() const;
     /// Bodies that were disabled because their state left the limits, in handle order.
     std::vector<BodyId> quarantined() const;
+    /// Bytes of the state: what a step depends on and nothing else. Changes as the world runs. Cost: O(1),
+    /// nearly.
+    std::size_t state_bytes() const;
+    /// Writes the state: bodies, candidate pairs, contacts with their impulses, sleep, clock, books.
+    /// @param out  room for state_bytes(); more is left as it is
+    /// @throws Error (out_of_range) if there is less; nothing is written then
+    /// Cost: O(state), a copy of it; no allocation.
+    void save_state(std::span<std::byte> out) const;
+    /// Goes on from a state as the world that saved it would have, bit for bit, whatever scene this world was
+    /// made of, on any number of threads and any instruction set. Handles are those of the saved world;
+    /// `profile()` goes on counting. States are of one precision and one version of the library; they are no
+    /// file format.
+    /// @throws Error (malformed, inconsistent) if the bytes are no such state or are damaged; the world is
+    /// then unchanged Cost: O(state); no allocation once the world has been as large.
+    void restore_state(std::span<const std::byte> state);
     /// Hash over the bit patterns of position, velocity, angle and spin of all bodies in handle order.
     std::uint64_t state_hash() const;
 

@@ -1,0 +1,138 @@
+#pragma once
+
+#include <carom/carom.hpp>
+#include <carom/generators.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+// Small scenes that together call for every effect and solver that `auto` takes; test_same_bits.cpp keeps
+// their hashes.
+
+namespace carom::test {
+
+inline Scene gas(std::int64_t count, RadiusRange radius, double restitution) {
+    Scene scene;
+    scene.name = "gas";
+    scene.walls.emplace();
+    const double side = std::sqrt(static_cast<double>(count) * 3.2 * radius.max * radius.max / 0.4);
+    scene.walls->max = {side, side};
+    scene.walls->material.restitution = restitution;
+    Gas discs;
+    discs.count = count, discs.radius = radius, discs.velocity_rms = 3, discs.seed = 4;
+    discs.body.material.restitution = restitution;
+    add_gas(scene, discs);
+    return scene;
+}
+
+inline Scene falling_sizes() {
+    Scene scene = gas(300, {0.01, 1}, 0.6);
+    scene.name = "falling sizes";
+    scene.gravity = {0.5, -9.81};
+    scene.drag = {.linear = 0.3, .angular = 0.1};
+    scene.bodies[5].angular_velocity = 2;
+    return scene;
+}
+
+inline Scene moving_obstacles() {
+    Scene scene = gas(200, {0.3, 0.5}, 0.8);
+    scene.name = "moving obstacles";
+    scene.gravity = {0, -5};
+    const double side = scene.walls->max.x;
+    Body post;
+    post.type = BodyType::static_body;
+    post.shape = Disc{1.5};
+    post.position = {side / 2, side / 3};
+    scene.add(post);
+    post.type = BodyType::kinematic_body;
+    post.position = {2, -3}, post.velocity = {1, 0.5};
+    scene.add(post);
+    return scene;
+}
+
+inline Scene stack_at_rest() {
+    Scene scene;
+    scene.name = "stack at rest";
+    scene.gravity = {0, -10};
+    scene.walls.emplace();
+    scene.walls->max = {3, 30};
+    Stack discs;
+    discs.count = 6, discs.origin = {1.5, 0.5};
+    discs.body.material.restitution = 0.5;
+    add_stack(scene, discs);
+    return scene;
+}
+
+/// Solver `soft` with all it has: friction, sizes, bodies that do not turn, restitution, a moving obstacle.
+inline Scene rough_sizes() {
+    Scene scene = moving_obstacles();
+    scene.name = "rough sizes";
+    scene.drag = {.linear = 0.1, .angular = 0.1};
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+        Material& material = scene.bodies[i].material;
+        material.friction = i % 3 == 0 ? 0.2 : 0.6;
+        material.restitution = i % 4 == 0 ? 0.5 : 0;
+        scene.bodies[i].fixed_rotation = i % 7 == 0;
+    }
+    scene.walls->material = {.friction = 0.4};
+    return scene;
+}
+
+inline Scene rolling_sizes() {
+    Scene scene = rough_sizes();
+    scene.name = "rolling sizes";
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+        scene.bodies[i].material.rolling_resistance = i % 5 == 0 ? 0.3 : 0.05;
+    return scene;
+}
+
+/// A container that turns, a segment that moves, a static chain under all of them.
+inline Scene turning_chain() {
+    Scene scene;
+    scene.name = "turning chain";
+    scene.gravity = {0, -10};
+    const Material rough{.friction = 0.5, .restitution = 0.3};
+    scene.add({.type = BodyType::kinematic_body,
+               .shape = Chain{.points = {{-6, -5}, {0, -6}, {6, -5}, {6, 6}, {-6, 6}}, .loop = true},
+               .angle = 0.2,
+               .angular_velocity = 0.7,
+               .material = rough});
+    Lattice discs;
+    discs.count_x = 9, discs.count_y = 8, discs.origin = {-3.6, -3.2}, discs.spacing = {0.9, 0.9};
+    discs.jitter = 0.05, discs.seed = 8, discs.radius_range = RadiusRange{0.25, 0.4};
+    discs.body.material = rough;
+    add_lattice(scene, discs);
+    scene.add({.type = BodyType::kinematic_body,
+               .shape = Segment{{-0.5, 0}, {0.5, 0.3}},
+               .position = {0, 4.5},
+               .velocity = {0.3, -1},
+               .material = rough});
+    scene.add({.type = BodyType::static_body, .shape = Chain{.points = {{-9, -9}, {0, -9.5}, {9, -9}}}});
+    scene.add({.shape = Disc{0.5}, .position = {0.1, -8.5}, .material = rough});
+    return scene;
+}
+
+/// Discs on a floor that fall asleep and are woken by one that drops among them.
+inline Scene woken_sleepers() {
+    Scene scene;
+    scene.name = "woken sleepers";
+    scene.gravity = {0, -10};
+    scene.walls = Walls{.min = {0, 0}, .max = {20, 20}, .material = {.friction = 0.5}};
+    scene.effects.sleep = true;
+    for (int i = 0; i < 30; ++i) {
+        const double radius = 0.3 + 0.01 * (i % 5);
+        scene.add({.shape = Disc{radius},
+                   .position = {0.7 + 0.64 * i, radius},
+                   .material = {.friction = 0.4, .rolling_resistance = 0.05}});
+    }
+    scene.add({.shape = Disc{0.5}, .position = {10.1, 7.3}, .material = {.friction = 0.4}});
+    return scene;
+}
+
+inline std::vector<Scene> golden_scenes() {
+    return {woken_sleepers(),   rolling_sizes(), gas(400, {0.5, 0.5}, 1), falling_sizes(),
+            moving_obstacles(), stack_at_rest(), rough_sizes(),           turning_chain()};
+}
+
+}  // namespace carom::test
