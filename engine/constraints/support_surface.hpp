@@ -4,6 +4,7 @@
 
 #include "broadphase/edge_candidates.hpp"
 #include "effects/rolling_resistance.hpp"
+#include "narrowphase/coincident.hpp"
 #include "narrowphase/disc_edge.hpp"
 #include "shapes/walls.hpp"
 #include "state/world_state.hpp"
@@ -44,7 +45,9 @@ SupportSurface surface_of(const WorldState<Real>& world, std::size_t row, std::i
     const auto other = static_cast<std::size_t>(support);
     const Vec2 d = Vec2{bodies.position_x[other], bodies.position_y[other]} - x;
     const double distance = std::sqrt(length_squared(d));
-    const Vec2 n = distance > 0 ? (1 / distance) * d : Vec2{0, -1};
+    const Vec2 n = distance > 0 ? (1 / distance) * d
+                                : normal_of_coincident(static_cast<std::uint32_t>(row),
+                                                       static_cast<std::uint32_t>(support));
     const double support_radius = bodies.radius[other];
     Vec2 velocity{bodies.velocity_x[other], bodies.velocity_y[other]};
     const double rim = bodies.has_rotation ? bodies.angular_velocity[other] * support_radius : 0;

@@ -1,40 +1,37 @@
 #pragma once
 
 #include "kernels/contact_arguments.hpp"
+#include "narrowphase/coincident.hpp"
+#include "narrowphase/time_of_impact.hpp"
 #include "simd/lanes.hpp"
 
 namespace carom {
 namespace {
 
-/// Coincident centres have no normal: these lanes get one that depends on the rows alone.
+/// Gives lanes whose centres coincide a normal.
 template <class Lanes, class Real>
 void separate_coincident(const std::int32_t* a, const std::int32_t* b, unsigned lanes,
                          typename Lanes::Batch& nx, typename Lanes::Batch& ny) {
-    // Eight directions, by rows; (3, 4, 5) / 5 so that they are unit vectors to the last bit.
-    constexpr Real kX[] = {1, Real(0.6), 0, Real(-0.8), -1, Real(-0.6), 0, Real(0.8)};
-    constexpr Real kY[] = {0, Real(0.8), 1, Real(0.6), 0, Real(-0.8), -1, Real(-0.6)};
     alignas(64) Real x[Lanes::size], y[Lanes::size];
     Lanes::store(x, nx), Lanes::store(y, ny);
     for (std::size_t lane = 0; lane < Lanes::size; ++lane) {
         if (((lanes >> lane) & 1u) == 0) continue;
-        const auto choice = static_cast<std::size_t>(a[lane] + 3 * b[lane]) % 8;
-        x[lane] = kX[choice], y[lane] = kY[choice];
+        const Vec2 n =
+            normal_of_coincident(static_cast<std::uint32_t>(a[lane]), static_cast<std::uint32_t>(b[lane]));
+        x[lane] = static_cast<Real>(n.x), y[lane] = static_cast<Real>(n.y);
     }
     nx = Lanes::load(x), ny = Lanes::load(y);
 }
 
-/// When two bodies at relative position d, flying at relative velocity v, come to touch, or nearest if they
-/// pass each other, within dt [s]; 0 if they touch already or do not approach. The normal of that moment is
-/// the one along which their separation never falls below zero before they touch. Touching: the smaller root
-/// of v² t² + 2 d·v t + d² - reach² = 0.
+/// When two bodies come to touch, or nearest if they pass each other, within dt [s]; 0 if they touch already
+/// or do not approach. The normal of that moment is the one along which their separation never falls below
+/// zero before they touch.
 template <class F>
-F time_of_meeting(F dx, F dy, F vx, F vy, F squared, F reach, F dt) {
-    const F zero(0);
-    const F a = vx * vx + vy * vy, b = dx * vx + dy * vy, c = squared - reach * reach;
-    const F discriminant = b * b - a * c;
-    const F touching = c / (simd::sqrt(simd::max(discriminant, zero)) - b);
-    const F t = simd::min(simd::select(discriminant > zero, touching, -b / a), dt);
-    return simd::select((c > zero) & (b < zero), t, zero);
+F time_of_meeting(const DiscApproach<F>& discs, F dt) {
+    const F zero(0), discriminant = discs.discriminant();
+    const F touching = discs.time_of_impact(simd::max(discriminant, zero));
+    const F t = simd::min(simd::select(discriminant > zero, touching, discs.time_of_least_distance()), dt);
+    return simd::select((discs.gap > zero) & (discs.approach < zero), t, zero);
 }
 
 /// Normals and separations of contacts.
@@ -67,7 +64,7 @@ std::size_t find_contacts(const FindContacts<Real>& k, std::size_t first, std::s
                 Lanes::store(k.rolling_impulse + p,
                              simd::select(live, Lanes::load(k.rolling_impulse + p), F(0)));
             // Bodies that are to meet in this step have the normal of the place where they meet.
-            const F t = time_of_meeting(dx, dy, dvx, dvy, squared, reach, F(k.dt));
+            const F t = time_of_meeting(DiscApproach<F>(dx, dy, dvx, dvy, reach), F(k.dt));
             const F there_x = dx + dvx * t, there_y = dy + dvy * t;
             const F there = there_x * there_x + there_y * there_y;
             const auto coincident = there == F(0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "narrowphase/time_of_impact.hpp"
 #include "state/edges.hpp"
 
 // A disc and an edge, both in the frame of the edge's body, in double precision. An edge is met from both
@@ -39,10 +40,10 @@ namespace disc_edge {
 /// When p0 + t way comes within `radius` of the corner, for t in [0, 1] and p0 outside; else 2.
 inline double time_at_corner(Vec2 p0, Vec2 way, Vec2 corner, double radius) {
     const Vec2 d = p0 - corner;
-    const double a = length_squared(way), b = dot(d, way), c = length_squared(d) - radius * radius;
-    const double discriminant = b * b - a * c;
-    if (!(b < 0 && discriminant > 0)) return 2;
-    const double t = c / (std::sqrt(discriminant) - b);
+    const DiscApproach<double> discs(d.x, d.y, way.x, way.y, radius);
+    const double discriminant = discs.discriminant();
+    if (!(discs.approach < 0 && discriminant > 0)) return 2;
+    const double t = discs.time_of_impact(discriminant);
     return t <= 1 ? t : 2;
 }
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "effects/flight.hpp"
+#include "narrowphase/time_of_impact.hpp"
 
 // When do two discs in flight, or a disc and a wall, meet? Times are on the clock s of effects/flight.hpp.
 
@@ -29,13 +30,12 @@ struct ApproachLimits {
 /// `reach`, or the window's start if they are already closer and approaching. Relative position at s: d + (s
 /// - from) v.
 inline double straight_impact_time(Vec2 d, Vec2 v, double reach, const Window& window) {
-    const double approach = dot(d, v);
-    if (!(approach < 0)) return kNever;
-    const double gap = length_squared(d) - reach * reach;
-    if (gap <= 0) return window.from;
-    const double discriminant = approach * approach - length_squared(v) * gap;
+    const DiscApproach<double> discs(d.x, d.y, v.x, v.y, reach);
+    if (!(discs.approach < 0)) return kNever;
+    if (discs.gap <= 0) return window.from;
+    const double discriminant = discs.discriminant();
     if (!(discriminant > 0)) return kNever;
-    const double s = window.from + gap / (std::sqrt(discriminant) - approach);
+    const double s = window.from + discs.time_of_impact(discriminant);
     return s <= window.until ? s : kNever;
 }
 

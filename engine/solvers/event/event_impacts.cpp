@@ -6,6 +6,7 @@
 #include "constraints/contact_law.hpp"
 #include "effects/friction.hpp"
 #include "effects/restitution.hpp"
+#include "narrowphase/coincident.hpp"
 
 namespace carom {
 namespace {
@@ -47,7 +48,9 @@ EventContact EventImpacts::measure(const EventStore& store, std::int32_t a, std:
         const double rb = store.movers[ib].radius;
         const Vec2 d = store.position_at(ib, time) - xa;
         const double distance = std::sqrt(length_squared(d));
-        c.normal = distance > 0 ? (1 / distance) * d : Vec2{1, 0};
+        c.normal = distance > 0
+                       ? (1 / distance) * d
+                       : normal_of_coincident(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b));
         c.separation = distance - (ra + rb);
         velocity = store.velocity_at(ib, time) - va;
         surface_speed += rb * sb.spin;

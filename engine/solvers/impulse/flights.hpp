@@ -9,6 +9,7 @@
 #include "effects/flight.hpp"
 #include "effects/restitution.hpp"
 #include "effects/touching.hpp"
+#include "narrowphase/coincident.hpp"
 #include "shapes/walls.hpp"
 #include "state/bodies.hpp"
 #include "state/books.hpp"
@@ -179,20 +180,9 @@ class Flights {
         books->drive += dot(on_movable, velocity_at(f, s, drag()));
     }
 
-    /// Coincident centres have no normal; each pair gets a fixed one of its own, from its handles:
-    /// ((1 - t²), 2t) / (1 + t²) with t in [-1, 1].
     Vec2 direction_of_coincident(Meeting m) const {
-        const auto id_a = bodies->id[static_cast<std::size_t>(m.a)].index;
-        const auto id_b = bodies->id[static_cast<std::size_t>(m.b)].index;
-        const std::uint32_t low = id_a < id_b ? id_a : id_b, high = id_a < id_b ? id_b : id_a;
-        std::uint64_t h = (std::uint64_t{high} << 32 | low) * 0x9E3779B97F4A7C15u;  // Fibonacci hashing
-        h ^= h >> 29;
-        const double t = static_cast<double>(h % 2000001u) * 1e-6 - 1;
-        const double scale = 1 / (1 + t * t);
-        const Vec2 n{(1 - t * t) * scale, 2 * t * scale};
-        const bool upside_down = (h >> 40 & 1u) != 0;
-        const Vec2 outward = upside_down ? -n : n;
-        return id_a < id_b ? outward : -outward;
+        return normal_of_coincident(bodies->id[static_cast<std::size_t>(m.a)].index,
+                                    bodies->id[static_cast<std::size_t>(m.b)].index);
     }
 };
 

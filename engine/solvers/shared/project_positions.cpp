@@ -2,19 +2,14 @@
 
 #include <cmath>
 
+#include "narrowphase/coincident.hpp"
+
 namespace carom {
 namespace {
 
 constexpr int kSweeps = 32;
 /// A push of less than this share of what a pair may overlap is not worth another sweep.
 constexpr double kCloseEnough = 0.1;
-
-/// Normal for centres that coincide: one of eight directions, by the rows alone.
-Vec2 any_normal(std::int32_t a, std::int32_t b) {
-    constexpr Vec2 kNormals[] = {{1, 0},  {0.6, 0.8},   {0, 1},  {-0.8, 0.6},
-                                 {-1, 0}, {-0.6, -0.8}, {0, -1}, {0.8, -0.6}};
-    return kNormals[(static_cast<std::uint32_t>(a) + 3 * static_cast<std::uint32_t>(b)) % 8];
-}
 
 }  // namespace
 
@@ -25,7 +20,9 @@ bool PositionProjection::push_pair(const Pair& pair) {
     const double near = pair.reach + pair.least, squared = length_squared(d);
     if (squared >= near * near) return false;
     const double distance = std::sqrt(squared), missing = near - distance;
-    const Vec2 n = distance > 0 ? (1 / distance) * d : any_normal(pair.a, pair.b);
+    const Vec2 n = distance > 0 ? (1 / distance) * d
+                                : normal_of_coincident(static_cast<std::uint32_t>(pair.a),
+                                                       static_cast<std::uint32_t>(pair.b));
     place[a] -= pair.share_a * missing * n;
     is_moved[a] = 1;
     if (pair.b >= 0) place[b] += pair.share_b * missing * n, is_moved[b] = 1;

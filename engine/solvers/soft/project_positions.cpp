@@ -192,11 +192,11 @@ void SoftSolver<Real>::put_back_thrown(const Bodies<Real>& bodies, const Column<
             const auto j = static_cast<std::size_t>(other);
             if (other == row) return;
             const double reach = (radius + static_cast<double>(bodies.radius[j])) * (1 - kLeftOver);
-            const Vec2 apart = parting_.place[j] - from;
-            const double along = dot(apart, way), c = length_squared(apart) - reach * reach;
-            const double root = along * along - squared * c;
-            if (!(along > 0) || !(root > 0)) return;
-            free = std::min(free, std::max(0.0, c / (along + std::sqrt(root))));
+            const Vec2 apart = from - parting_.place[j];
+            const DiscApproach<double> discs(apart.x, apart.y, way.x, way.y, reach);
+            const double discriminant = discs.discriminant();
+            if (!(discs.approach < 0) || !(discriminant > 0)) return;
+            free = std::min(free, std::max(0.0, discs.time_of_impact(discriminant)));
         };
         const std::size_t found =
             candidates.find_around(i, 2 * radius + 0.5 * std::sqrt(squared), from + 0.5 * way, near_rows_);
