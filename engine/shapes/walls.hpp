@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
+#include <utility>
 
 // The walls around a world: up to four half planes that nothing moves. Everything that tells the sides apart
 // is here.
@@ -15,9 +17,26 @@ namespace carom {
 enum WallSide : std::int32_t { kLeft = -1, kRight = -2, kBottom = -3, kTop = -4 };
 inline constexpr std::array kWallSides{kLeft, kRight, kBottom, kTop};
 
+/// Calls fn(side) with each side as a type, so that what is asked of a side is known to the compiler.
+template <class Fn>
+void for_each_wall_side(const Fn& fn) {
+    const auto call = [&]<std::size_t... k>(std::index_sequence<k...>) {
+        (fn(std::integral_constant<std::int32_t, kWallSides[k]>{}), ...);
+    };
+    call(std::make_index_sequence<kWallSides.size()>{});
+}
+
 inline bool has_wall(const Walls& walls, std::int32_t side) {
-    const bool has[] = {walls.left, walls.right, walls.bottom, walls.top};
-    return has[-1 - side];
+    switch (side) {
+        case kLeft:
+            return walls.left;
+        case kRight:
+            return walls.right;
+        case kBottom:
+            return walls.bottom;
+        default:
+            return walls.top;
+    }
 }
 
 /// From a body into the wall; no unit.
@@ -33,8 +52,16 @@ inline Vec2 wall_corner(const Walls& walls, std::int32_t side) {
 
 /// Distance of a point from a wall [m]; negative behind it.
 inline double wall_clearance(const Walls& walls, std::int32_t side, Vec2 x) {
-    const double clearance[] = {x.x - walls.min.x, walls.max.x - x.x, x.y - walls.min.y, walls.max.y - x.y};
-    return clearance[-1 - side];
+    switch (side) {
+        case kLeft:
+            return x.x - walls.min.x;
+        case kRight:
+            return walls.max.x - x.x;
+        case kBottom:
+            return x.y - walls.min.y;
+        default:
+            return walls.max.y - x.y;
+    }
 }
 
 /// What the walls enclose [m]; infinite where there is none.

@@ -103,14 +103,16 @@ void ImpulseSolver<Real>::foresee_walls(std::int32_t row, double from) {
     const Vec2 now = position_at(f, from, flight_q(from, flights.drag()));
     const Vec2 end = position_at(f, flights.end.s, flights.end.q);
     // The path bends by no more than a q between its ends.
+    const Vec2 reach{flights.radius(row) + std::fabs(f.acceleration.x) * flights.end.q,
+                     flights.radius(row) + std::fabs(f.acceleration.y) * flights.end.q};
     const Walls& walls = *flights.walls;
-    for (const std::int32_t side : kWallSides) {
-        const double bend = std::fabs(dot(wall_normal(side), f.acceleration)) * flights.end.q;
+    for_each_wall_side([&](auto side) {
         const double least = std::min(wall_clearance(walls, side, now), wall_clearance(walls, side, end));
-        if (!(least < flights.radius(row) + bend) || !has_wall(walls, side)) continue;
+        const bool is_upright = side == kLeft || side == kRight;
+        if (!(least < (is_upright ? reach.x : reach.y)) || !has_wall(walls, side)) return;
         const double s = time_at_wall(row, f, side, from);
         if (s != kNever) queue({row, side}, from, s);
-    }
+    });
 }
 
 /// Foresees what other bodies a body can hit from clock `from` on.
