@@ -41,10 +41,11 @@ void ContactGraph<Real>::rename_rows() {
             std::int32_t &a = contacts->a[i], &b = contacts->b[i];
             const std::int32_t old_a = a, old_b = b;
             a = now[static_cast<std::size_t>(a)];
-            if (b >= 0) b = now[static_cast<std::size_t>(b)];
-            if (a == RowRenaming::kGone || b == RowRenaming::kGone) {
-                if (contacts->normal_impulse[i] > 0 && a >= 0) lost.push_back({old_b, a});
-                if (contacts->normal_impulse[i] > 0 && b >= 0) lost.push_back({old_a, b});
+            if (Partner(b).is_body()) b = now[static_cast<std::size_t>(b)];
+            const Partner side_a(a), side_b(b);
+            if (side_a.is_gone() || side_b.is_gone()) {
+                if (contacts->normal_impulse[i] > 0 && side_a.is_body()) lost.push_back({old_b, a});
+                if (contacts->normal_impulse[i] > 0 && side_b.is_body()) lost.push_back({old_a, b});
                 contacts->normal_impulse[i] = 0;
             }
             // The impulses of a pair do not depend on the order of its bodies, but for the rolling one:
@@ -61,13 +62,13 @@ template <class Real>
 void ContactGraph<Real>::follow_removed_edges(EdgeStore::Removed gone) {
     if (gone.count == 0) return;
     supports.for_each([&](std::size_t i) {
-        std::int32_t& b = supports.b[i];
-        if (!is_edge_support(b) || b == RowRenaming::kGone) return;
-        const std::int32_t edge = edge_of_support(b);
+        const Partner support = supports.partner(i);
+        if (!support.is_edge()) return;
+        const std::int32_t edge = support.edge_number();
         if (edge >= gone.first + gone.count)
-            b = support_of_edge(edge - gone.count);
+            supports.b[i] = Partner::edge(edge - gone.count).stored();
         else if (edge >= gone.first)
-            b = RowRenaming::kGone;
+            supports.b[i] = Partner::gone().stored();
     });
 }
 
@@ -363,7 +364,7 @@ void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const EdgeCan
     group_pairs(candidates, bodies, executor);
     if (walls) list_walls(candidates, bodies, *walls);
     for (const EdgePair pair : edges.pairs())
-        listed_a_.push_back(pair.row), listed_b_.push_back(support_of_edge(pair.edge));
+        listed_a_.push_back(pair.row), listed_b_.push_back(Partner::edge(pair.edge).stored());
     for (const SleeperPair pair : sleepers)
         if (!bodies.is_immovable(static_cast<std::size_t>(pair.row)))
             listed_a_.push_back(pair.row), listed_b_.push_back(pair.sleeper);
@@ -465,7 +466,7 @@ void ContactGraph<Real>::add(const Candidates<Real>& candidates, const EdgeCandi
             });
     }
     for (const EdgePair pair : edges.new_pairs())
-        new_supports_.push_back({pair.row, support_of_edge(pair.edge), 0, 0, 0});
+        new_supports_.push_back({pair.row, Partner::edge(pair.edge).stored(), 0, 0, 0});
     const auto add_to = [&](ContactRows<Real>& contacts, const std::vector<Late>& added,
                             RollingMemory<Real>& rolling, std::size_t padding_row) {
         if (added.empty()) return;

@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "constraints/partner.hpp"
 #include "kernels/contact_arguments.hpp"
 #include "state/column.hpp"
 
@@ -50,9 +51,8 @@ struct ColumnUse {
 template <class Real>
 struct ContactRows {
     // Lengths are padded to kRowPadding.
-    Column<std::int32_t> a;  // row
-    /// Row; b < 0 is a wall (WallSide) or an edge (state/edges.hpp). Padding: a row beyond the bodies.
-    Column<std::int32_t> b;
+    Column<std::int32_t> a;         // row
+    Column<std::int32_t> b;         // Partner, as stored; of padding a row beyond the bodies
     Column<Real> normal_impulse;    // N s, of a substep
     Column<Real> friction_impulse;  // N s
     Column<Real> rolling_impulse;   // N s
@@ -127,6 +127,9 @@ struct ContactRows {
     Column<std::uint8_t> needs_second_sweep;         // a block: likewise
     Column<Run> run;                                 // those of a group begin at its first block
     std::vector<std::size_t> run_count, live_count;  // a group: runs, contacts that can touch
+
+    /// The other side of a contact of the graph.
+    Partner partner(std::size_t contact) const { return Partner(b[contact]); }
 
     std::size_t colours() const { return begin.size(); }
     std::size_t groups() const { return first_colour.empty() ? 0 : first_colour.size() - 1; }

@@ -4,13 +4,15 @@
 #include <cstdint>
 #include <vector>
 
+#include "constraints/partner.hpp"
+
 namespace carom {
 
 /// Where rows have gone since `start`: they are sorted now and then, and the last row takes the place of a
 /// removed one.
 class RowRenaming {
   public:
-    static constexpr std::int32_t kGone = INT32_MIN;  // a row that no longer exists; no wall, no edge
+    static constexpr std::int32_t kGone = Partner::gone().stored();  // a row that no longer exists
 
     /// Follows the rows [0, rows) from here on.
     void start(std::size_t rows);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "broadphase/edge_candidates.hpp"
+#include "constraints/partner.hpp"
 #include "effects/rolling_resistance.hpp"
 #include "narrowphase/coincident.hpp"
 #include "narrowphase/disc_edge.hpp"
@@ -25,14 +26,14 @@ struct SupportSurface {
 
 /// Of a wall (WallSide) or a static or kinematic disc.
 template <class Real>
-SupportSurface surface_of(const WorldState<Real>& world, std::size_t row, std::int32_t support) {
+SupportSurface surface_of(const WorldState<Real>& world, std::size_t row, Partner support) {
     const Bodies<Real>& bodies = world.bodies;
     const Vec2 x{bodies.position_x[row], bodies.position_y[row]};
     const double radius = bodies.radius[row];
-    if (support < 0) {
+    if (support.is_wall()) {
         const Walls& walls = *world.walls;
-        const Vec2 n = wall_normal(support);
-        const Vec2 corner = wall_corner(walls, support);
+        const Vec2 n = wall_normal(support.side());
+        const Vec2 corner = wall_corner(walls, support.side());
         return {n,
                 dot(corner - x, n) - radius,
                 {},
@@ -42,12 +43,12 @@ SupportSurface surface_of(const WorldState<Real>& world, std::size_t row, std::i
                 0,
                 true};
     }
-    const auto other = static_cast<std::size_t>(support);
+    const auto other = static_cast<std::size_t>(support.row());
     const Vec2 d = Vec2{bodies.position_x[other], bodies.position_y[other]} - x;
     const double distance = std::sqrt(length_squared(d));
     const Vec2 n = distance > 0 ? (1 / distance) * d
                                 : normal_of_coincident(static_cast<std::uint32_t>(row),
-                                                       static_cast<std::uint32_t>(support));
+                                                       static_cast<std::uint32_t>(other));
     const double support_radius = bodies.radius[other];
     Vec2 velocity{bodies.velocity_x[other], bodies.velocity_y[other]};
     const double rim = bodies.has_rotation ? bodies.angular_velocity[other] * support_radius : 0;

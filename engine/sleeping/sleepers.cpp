@@ -23,10 +23,10 @@ void for_each_loaded(const ContactRows<Real>& contacts, const Fn& fn) {
 
 /// Whether a support stands still, so that one can sleep on it.
 template <class Real>
-bool is_steady(const WorldState<Real>& world, std::int32_t support) {
-    if (support < 0) return true;
+bool is_steady(const WorldState<Real>& world, Partner support) {
+    if (!support.is_body()) return true;
     const Bodies<Real>& bodies = world.bodies;
-    const auto row = static_cast<std::size_t>(support);
+    const auto row = static_cast<std::size_t>(support.row());
     if ((bodies.flags_of(row) & kKinematic) == 0) return true;
     return bodies.velocity_x[row] == 0 && bodies.velocity_y[row] == 0 &&
            (!bodies.has_rotation || bodies.angular_velocity[row] == 0);
@@ -65,9 +65,10 @@ void Sleepers<Real>::connect(const WorldState<Real>& world, const ContactGraph<R
         stays_awake_[static_cast<std::size_t>(islands_.island_of(row))] = 1;
     };
     for_each_loaded(graph.supports, [&](std::size_t i) {
-        const std::int32_t row = graph.supports.a[i], support = graph.supports.b[i];
-        if (support >= static_cast<std::int32_t>(bodies.count))
-            leaning_.push_back({row, bodies.island[static_cast<std::size_t>(support)]});
+        const std::int32_t row = graph.supports.a[i];
+        const Partner support = graph.supports.partner(i);
+        if (support.is_sleeper(bodies.count))
+            leaning_.push_back({row, bodies.island[static_cast<std::size_t>(support.row())]});
         else if (!is_steady(world, support))
             keep_awake(row);
     });
@@ -80,13 +81,14 @@ template <class Real>
 void Sleepers<Real>::keep_contact(const WorldState<Real>& world, const ContactRows<Real>& contacts,
                                   std::size_t i, double substep) {
     const std::int32_t a = contacts.a[i], b = contacts.b[i];
+    const bool is_body = contacts.partner(i).is_body();
     const std::int32_t smallest = islands_.island_of(a);
     const auto force = [&](const Column<Real>& impulses) {
         return impulses.empty() ? 0 : static_cast<double>(impulses[i]) / substep;
     };
     const BodyId id_a = world.bodies.id[static_cast<std::size_t>(a)];
     kept_.push_back({label_[static_cast<std::size_t>(smallest)], id_a,
-                     b < 0 ? id_a : world.bodies.id[static_cast<std::size_t>(b)], b < 0 ? b : 0,
+                     is_body ? world.bodies.id[static_cast<std::size_t>(b)] : id_a, is_body ? 0 : b,
                      force(contacts.normal_impulse), force(contacts.friction_impulse),
                      force(contacts.rolling_impulse)});
 }
@@ -173,7 +175,7 @@ template <class Real>
 void Sleepers<Real>::forget_contacts(ContactGraph<Real>& graph, const WorldState<Real>& world) {
     ContactRows<Real>& supports = graph.supports;
     supports.for_each([&](std::size_t i) {
-        if (supports.b[i] >= static_cast<std::int32_t>(world.bodies.count))
+        if (supports.partner(i).is_sleeper(world.bodies.count))
             supports.b[i] = supports.a[i], supports.normal_impulse[i] = 0;
     });
 }
@@ -185,9 +187,9 @@ bool Sleepers<Real>::mark_pressed(const WorldState<Real>& world, const ContactGr
     if (pairs_.empty()) return false;
     const double gravity = std::sqrt(length_squared(world.gravity));
     for_each_loaded(graph.supports, [&](std::size_t i) {
-        const std::int32_t support = graph.supports.b[i];
-        if (support < static_cast<std::int32_t>(bodies.count)) return;
-        const auto sleeper = static_cast<std::size_t>(support);
+        const Partner support = graph.supports.partner(i);
+        if (!support.is_sleeper(bodies.count)) return;
+        const auto sleeper = static_cast<std::size_t>(support.row());
         const double speed =
             static_cast<double>(graph.supports.normal_impulse[i]) * bodies.inverse_mass(sleeper);
         if (speed > kWakingShare * still_speed(gravity, substep, bodies.radius[sleeper]))

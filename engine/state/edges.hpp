@@ -11,21 +11,6 @@
 
 namespace carom {
 
-/// Numbers in the `b` of a contact that are no body's row: walls are -1 ... -4 (WallSide), edges lie beyond.
-inline constexpr std::int32_t kFirstEdgeSupport = -5;
-constexpr bool is_edge_support(std::int32_t b) {
-    return b <= kFirstEdgeSupport;
-}
-constexpr bool is_wall_support(std::int32_t b) {
-    return b < 0 && b > kFirstEdgeSupport;
-}
-constexpr std::int32_t support_of_edge(std::int32_t edge) {
-    return kFirstEdgeSupport - edge;
-}
-constexpr std::int32_t edge_of_support(std::int32_t b) {
-    return kFirstEdgeSupport - b;
-}
-
 /// A line between two points, in the frame of its body.
 struct Edge {
     Vec2 a, b;                   // m

@@ -86,7 +86,7 @@ void SoftSolver<Real>::book_contacts(const ContactRows<Real>& contacts, const Im
 template <class Real>
 void SoftSolver<Real>::book_supports(const Impulses& impulses, Books& books) const {
     const auto is_wall = [&](std::size_t i) {
-        return is_wall_support(graph.supports.b[static_cast<std::size_t>(supports_.candidate[i])]);
+        return graph.supports.partner(static_cast<std::size_t>(supports_.candidate[i])).is_wall();
     };
     double wall_impulse = books.wall_impulse;
     supports_.for_each([&](std::size_t i) { wall_impulse += is_wall(i) ? impulses[i].normal : 0; });

@@ -27,12 +27,11 @@ double SoftSolver<Real>::restitution_of(const ContactRows<Real>& live, std::size
     const double of_a = bodies.restitution[static_cast<std::size_t>(live.a[contact])];
     if (!live.b.empty())
         return pair_restitution(of_a, bodies.restitution[static_cast<std::size_t>(live.b[contact])]);
-    const std::int32_t support = graph.supports.b[static_cast<std::size_t>(live.candidate[contact])];
-    if (is_wall_support(support)) return pair_restitution(of_a, world.walls->material.restitution);
+    const Partner support = graph.supports.partner(static_cast<std::size_t>(live.candidate[contact]));
+    if (support.is_wall()) return pair_restitution(of_a, world.walls->material.restitution);
     const std::size_t row =
-        is_edge_support(support)
-            ? world.handles.row_of_slot(world.edges.body_of(edge_of_support(support)).id.index)
-            : static_cast<std::size_t>(support);
+        support.is_edge() ? world.handles.row_of_slot(world.edges.body_of(support.edge_number()).id.index)
+                          : static_cast<std::size_t>(support.row());
     return pair_restitution(of_a, bodies.restitution[row]);
 }
 

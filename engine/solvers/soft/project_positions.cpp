@@ -70,9 +70,10 @@ bool SoftSolver<Real>::mark_stuck(const WorldState<Real>& world) {
         mark(graph.pairs.a[i]), mark(graph.pairs.b[i]);
     });
     graph.supports.for_each([&](std::size_t i) {
-        if (!is_wall_support(graph.supports.b[i])) return;
+        const Partner support = graph.supports.partner(i);
+        if (!support.is_wall()) return;
         const auto row = static_cast<std::size_t>(graph.supports.a[i]);
-        const PositionProjection::Plane wall = wall_of(*world.walls, graph.supports.b[i]);
+        const PositionProjection::Plane wall = wall_of(*world.walls, support.side());
         if (dot(wall.normal, parting_.place[row]) + (1 - kStuck) * static_cast<double>(bodies.radius[row]) >
             wall.end)
             mark(graph.supports.a[i]);
@@ -220,13 +221,14 @@ void SoftSolver<Real>::list_parted_supports(const WorldState<Real>& world,
                 if (has_wall(*world.walls, side)) add_wall(row, side);
         }
     graph.supports.for_each([&](std::size_t i) {
-        const std::int32_t disc = graph.supports.a[i], support = graph.supports.b[i];
+        const std::int32_t disc = graph.supports.a[i];
+        const Partner support = graph.supports.partner(i);
         const auto row = static_cast<std::size_t>(disc);
         if (!parting_.is_marked[row]) return;
         const double radius = bodies.radius[row];
         const Vec2 x = parting_.place[row];
-        if (is_edge_support(support)) {
-            const Edge& edge = world.edges[edge_of_support(support)];
+        if (support.is_edge()) {
+            const Edge& edge = world.edges[support.edge_number()];
             const EdgePose& pose = edges.pose_of(edge);
             const Vec2 p = rotate_back(pose.end_turn, x - pose.end_position);
             const double share = nearest_share(p, edge.a, edge.b);
@@ -236,10 +238,10 @@ void SoftSolver<Real>::list_parted_supports(const WorldState<Real>& world,
             if (!(distance > 0) || distance > 2 * radius) return;
             const Vec2 n = rotate(pose.end_turn, (1 / distance) * d);
             parting_.planes.push_back({disc, n, dot(n, x) + distance, radius});
-        } else if (is_wall_support(support)) {
-            add_wall(disc, support);
+        } else if (support.is_wall()) {
+            add_wall(disc, support.side());
         } else {
-            const auto other = static_cast<std::size_t>(support);
+            const auto other = static_cast<std::size_t>(support.row());
             const Vec2 place{bodies.position_x[other] + dt_ * bodies.velocity_x[other],
                              bodies.position_y[other] + dt_ * bodies.velocity_y[other]};
             const double of_other = bodies.radius[other], near = radius + of_other;

@@ -82,10 +82,10 @@ void SoftSolver<Real>::find_supports_of(std::size_t group, const WorldState<Real
         std::size_t at = place;
         for (std::size_t i = candidates.begin[c]; i < candidates.begin[c] + candidates.count[c]; ++i) {
             const auto row = static_cast<std::size_t>(candidates.a[i]);
-            const std::int32_t support = candidates.b[i];
-            if (is_edge_support(support) && !(candidates.normal_impulse[i] > 0)) {
+            const Partner support = candidates.partner(i);
+            if (support.is_edge() && !(candidates.normal_impulse[i] > 0)) {
                 const auto [clearance, way] =
-                    clearance_of_edge(world, edges, row, edge_of_support(support), dt_);
+                    clearance_of_edge(world, edges, row, support.edge_number(), dt_);
                 if (clearance >
                     contact_distance_ +
                         std::max(kCrowdedRadii * static_cast<double>(bodies.radius[row]), kBothAxes * way)) {
@@ -93,8 +93,8 @@ void SoftSolver<Real>::find_supports_of(std::size_t group, const WorldState<Real
                     continue;
                 }
             }
-            const SupportSurface s = is_edge_support(support)
-                                         ? surface_of_edge(world, edges, row, edge_of_support(support), dt_)
+            const SupportSurface s = support.is_edge()
+                                         ? surface_of_edge(world, edges, row, support.edge_number(), dt_)
                                          : surface_of(world, row, support);
             const Vec2 dv = s.velocity - Vec2{bodies.velocity_x[row], bodies.velocity_y[row]};
             // A wall is a wall everywhere, so it is kept however slowly a body nears it: in a crowd another
@@ -102,7 +102,7 @@ void SoftSolver<Real>::find_supports_of(std::size_t group, const WorldState<Real
             const double crowd = s.is_flat ? kCrowdedRadii * static_cast<double>(bodies.radius[row]) : 0;
             const double near =
                 contact_distance_ + std::fmax(crowd, dt_ * (std::fabs(dv.x) + std::fabs(dv.y)));
-            const bool is_far = !is_wall_support(support) && s.separation > near;
+            const bool is_far = !support.is_wall() && s.separation > near;
             if (!s.is_contact || is_far) {
                 if (!s.is_contact) note_left_edge(i, group, world);
                 let_go(i);
@@ -121,7 +121,7 @@ void SoftSolver<Real>::note_left_edge(std::size_t candidate, std::size_t group,
     const ContactRows<Real>& candidates = graph.supports;
     if (!(candidates.normal_impulse[candidate] > 0)) return;
     left_edges_of_[group].push_back(
-        {candidates.a[candidate], world.edges[edge_of_support(candidates.b[candidate])].body,
+        {candidates.a[candidate], world.edges[candidates.partner(candidate).edge_number()].body,
          static_cast<std::int32_t>(candidate), candidates.normal_impulse[candidate],
          has_friction_ ? candidates.friction_impulse[candidate] : Real(0),
          rolls_ ? candidates.rolling_impulse[candidate] : Real(0)});
@@ -138,9 +138,9 @@ void SoftSolver<Real>::hand_on_impulses(const WorldState<Real>& world) {
     };
     std::sort(left_edges_.begin(), left_edges_.end(), by_row);
     supports_.for_each([&](std::size_t i) {
-        const std::int32_t support = graph.supports.b[static_cast<std::size_t>(supports_.candidate[i])];
-        if (!is_edge_support(support) || supports_.normal_impulse[i] > 0) return;
-        const LeftEdge wanted{supports_.a[i], world.edges[edge_of_support(support)].body, -1, 0, 0, 0};
+        const Partner support = graph.supports.partner(static_cast<std::size_t>(supports_.candidate[i]));
+        if (!support.is_edge() || supports_.normal_impulse[i] > 0) return;
+        const LeftEdge wanted{supports_.a[i], world.edges[support.edge_number()].body, -1, 0, 0, 0};
         const auto left = std::lower_bound(left_edges_.begin(), left_edges_.end(), wanted, by_row);
         if (left == left_edges_.end() || left->row != wanted.row || left->body != wanted.body) return;
         supports_.normal_impulse[i] = left->normal_impulse;

@@ -57,8 +57,8 @@ void SoftSolver<Real>::find_tunnelled(const WorldState<Real>& world, const EdgeC
     tunnelled_.clear();
     const ContactRows<Real>& supports = graph.supports;
     supports.for_each([&](std::size_t i) {
-        if (is_edge_support(supports.b[i]))
-            note_tunnelled(world, edges, motion, supports.a[i], edge_of_support(supports.b[i]));
+        if (const Partner support = supports.partner(i); support.is_edge())
+            note_tunnelled(world, edges, motion, supports.a[i], support.edge_number());
     });
     const auto edge_count = static_cast<std::int32_t>(world.edges.edges.size());
     for (const std::int32_t row : strayed_)
