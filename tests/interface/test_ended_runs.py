@@ -56,6 +56,20 @@ class InterruptTest(ProgramTest):
     def test_sigterm_does_the_same(self):
         self.check_ended_run(signal.SIGTERM)
 
+    def test_a_terminal_that_hangs_up_does_the_same(self):
+        self.check_ended_run(signal.SIGHUP)
+
+    def test_nohup_keeps_a_run_going(self):
+        program = subprocess.Popen([PROGRAM, "run", self.write_scene(gas(6, steps=ENDLESS)), "--out", "out", "--quiet"],
+                                   cwd=self.folder, stderr=subprocess.DEVNULL,
+                                   preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+        self.wait_until_running(program)
+        program.send_signal(signal.SIGHUP)
+        time.sleep(0.3)
+        self.assertIsNone(program.poll())
+        program.send_signal(signal.SIGTERM)
+        self.assertEqual(program.wait(timeout=60), 0)
+
     def test_a_run_that_is_interrupted_gives_the_state_of_a_shorter_one(self):
         program = self.start(gas(6, steps=ENDLESS, every=1000), "--quiet")
         self.wait_until_running(program)
@@ -65,6 +79,47 @@ class InterruptTest(ProgramTest):
         whole = self.run_scene(gas(6, steps=interrupted["steps"], every=1000), out="whole").summary
         self.assertEqual(whole["state_hash"], interrupted["state_hash"])
         self.assertFalse(whole["interrupted"])
+
+
+class ClosedOutputTest(ProgramTest):
+    """The table is lost, the results are not."""
+
+    def check_complete(self, redirection="", **streams):
+        """Runs a scene in a shell; returns what stands on standard error."""
+        scene = self.write_scene(gas(3, steps=20))
+        whole = self.run_scene(scene, out="whole")
+        streams = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE, **streams}
+        done = subprocess.run(["bash", "-c", f'"$1" run "$2" --out out {redirection}', "bash", PROGRAM, scene],
+                              cwd=self.folder, text=True, timeout=60, **streams)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.files_in("out"), ALL_FILES)
+        results = Results(self.folder / "out")
+        self.assertEqual(results.summary["state_hash"], whole.summary["state_hash"])
+        self.assertEqual(results.final, whole.final)
+        self.assertEqual(len(results.trajectory()["time"]), 21)
+        self.assertEqual(len(results.ledger()["time"]), 20)
+        return done.stderr
+
+    def check_told(self, errors):
+        self.assertIn("standard output could not be written", errors)
+        self.assertIn("the results are complete in out", errors)
+
+    def test_a_reader_who_has_gone(self):
+        read, write = os.pipe()
+        os.close(read)
+        try:
+            self.check_told(self.check_complete(stdout=write))
+        finally:
+            os.close(write)
+
+    def test_a_full_disk_for_the_table(self):
+        self.check_told(self.check_complete("> /dev/full"))
+
+    def test_a_closed_standard_output(self):
+        self.check_told(self.check_complete(">&-"))
+
+    def test_closed_standard_streams_all_of_them(self):
+        self.check_complete("<&- >&- 2>&-")
 
 
 class KilledTest(ProgramTest):

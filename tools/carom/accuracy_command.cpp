@@ -18,6 +18,7 @@
 #include "report/kinds.hpp"
 #include "results/page_file.hpp"
 #include "results/text_file.hpp"
+#include "standard_output.hpp"
 
 namespace carom::tool {
 namespace {
@@ -109,6 +110,7 @@ int run_accuracy(const Accuracy& asked) {
     write_text(asked.out / "accuracy.csv", accuracy::to_csv(measured.results));
     write_page(asked.out / "report.html", report::page_of({file}));
     accuracy::forget_points(asked.out);
+    note_results_in(asked.out);
     if (asked.json) {
         const std::string text = json.dump(1) + '\n';
         std::fwrite(text.data(), 1, text.size(), stdout);

@@ -10,7 +10,7 @@ enum ExitCode : int {
     kDone = 0,           ///< done, also when ended early by Ctrl-C
     kDoubtful = 1,       ///< the run finished, but something is wrong with the result
     kWrongInput = 2,     ///< scene, options or output folder cannot be used: nothing was written
-    kInternalError = 3,  ///< the run could not be finished: disk full, out of memory, a fault of the program
+    kInternalError = 3,  ///< not finished, or the answer not printed: disk full, out of memory, a fault
 };
 
 /// The command line asks for something that cannot be: ends the program with `kWrongInput`.

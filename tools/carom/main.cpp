@@ -8,6 +8,7 @@
 #include "commands.hpp"
 #include "exit_codes.hpp"
 #include "format.hpp"
+#include "standard_output.hpp"
 
 namespace carom::tool {
 namespace {
@@ -44,19 +45,14 @@ int run_program(int argc, char** argv) {
     return action();
 }
 
-/// Results printed to a full disk or a closed pipe are lost; whoever reads them must know.
-int checked(int code) {
-    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-    return complain("standard output could not be written", kInternalError);
-}
-
 }  // namespace
 }  // namespace carom::tool
 
 int main(int argc, char** argv) {
     using namespace carom::tool;
+    hold_standard_streams();
     try {
-        return checked(run_program(argc, argv));
+        return checked_output(run_program(argc, argv));
     } catch (const carom::Error& error) {
         return complain(error.what(), kWrongInput);
     } catch (const UsageError& error) {

@@ -10,6 +10,7 @@
 #include "option_values.hpp"
 #include "report/kinds.hpp"
 #include "results/page_file.hpp"
+#include "standard_output.hpp"
 
 namespace carom::tool {
 namespace {
@@ -39,6 +40,7 @@ int report(const Report& asked) {
     } catch (const WriteError& error) {
         throw OutputError(error.what());
     }
+    note_results_in(out);
     std::printf("Report in %s\n", out.c_str());
     return kDone;
 }

@@ -10,6 +10,7 @@
 #include "pictures.hpp"
 #include "run_scene.hpp"
 #include "scene_reader.hpp"
+#include "standard_output.hpp"
 #include "summary_table.hpp"
 
 namespace carom::tool {
@@ -48,6 +49,7 @@ int run(Run& asked) {
     catch_interrupts();
     const RunOutcome outcome = run_scene(scene, *simulation, folder, asked.choices);
     write_pictures(asked.pictures, folder.path() / "trajectory.h5");
+    note_results_in(*asked.out);
     if (!asked.choices.quiet) print_results(asked, scene, *simulation, outcome);
     for (const std::string& message : outcome.messages) std::fprintf(stderr, "carom: %s\n", message.c_str());
     return outcome.quarantined.empty() ? kDone : kDoubtful;
