@@ -13,7 +13,7 @@ from program import PROGRAM, SOURCE, ProgramTest
 BUILD = pathlib.Path(PROGRAM).parents[1]
 IS_RELEASE = BUILD.name == "release"
 BUILDING = ("cmake --preset", "cmake --build --preset")  # done before tests run
-EMBEDDING = ("cmake --install", "cmake -S", "cmake --build hello", "hello/")
+EMBEDDING = ("cmake --install", "cmake -G Ninja -S hello", "cmake --build hello", "hello/")
 SCRIPTS = ("tools/demo", "tools/test")
 
 
@@ -37,6 +37,9 @@ class DocumentsTest(ProgramTest):
         (self.folder / "build/release").symlink_to(BUILD)
         (self.folder / "bin").mkdir()
         (self.folder / "bin/python3").symlink_to(sys.executable)
+        for name in ("gmake", "make"):  # CMake's own choice, where it is installed: tools/setup does not install it
+            (self.folder / "bin" / name).write_text("#!/bin/sh\necho 'tools/setup installs no make' >&2\nexit 1\n")
+            (self.folder / "bin" / name).chmod(0o755)
 
     def shell(self, command):
         path = f"{self.folder / 'bin'}:{os.environ['PATH']}"
