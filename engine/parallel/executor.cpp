@@ -36,7 +36,12 @@ int usable_threads(int wanted, bool embedding_program_has_threads) {
 
 Executor::Executor(int threads, ParallelFor parallel_for)
     : threads_(usable_threads(threads, static_cast<bool>(parallel_for))),
-      parallel_for_(std::move(parallel_for)) {}
+      parallel_for_(std::move(parallel_for)),
+      host_loop_(parallel_for_ ? std::make_unique<HostLoop>() : nullptr) {}
+
+void Executor::rethrow_host_error() const {
+    if (host_error_) std::rethrow_exception(std::exchange(host_error_, nullptr));
+}
 
 /// Whether the machine has been too busy of late for more than one thread.
 bool Executor::is_left_alone() const {
@@ -103,11 +108,11 @@ double Executor::run_on_threads(int threads, const Team::Call& call) const {
 }
 
 void Executor::run(std::size_t chunks, Call call) const {
-    if (parallel_for_) {
-        parallel_for_(chunks, [call](std::size_t c) { call.invoke(call.function, c); });
+    if (parallel_for_ && !host_error_) {
+        host_error_ = host_loop_->run(parallel_for_, chunks, {call.function, call.invoke});
         return;
     }
-    if (threads_ < 2 || is_left_alone()) {
+    if (parallel_for_ || threads_ < 2 || is_left_alone()) {
         for (std::size_t c = 0; c < chunks; ++c) call.invoke(call.function, c);
         return;
     }

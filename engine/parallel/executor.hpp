@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <exception>
+#include <memory>
 #include <span>
 
+#include "parallel/host_loop.hpp"
 #include "parallel/phases.hpp"
 #include "parallel/team.hpp"
 
@@ -23,10 +26,13 @@ inline constexpr double kShortestParallelLoop = 4000;
 class Executor {
   public:
     /// @param threads  0: as many as OpenMP gives; 1: the caller's alone.
-    /// @param parallel_for  an embedding program's own threads in place of OpenMP
+    /// @param parallel_for  an embedding program's own threads in place of OpenMP. If it throws, the loop is
+    /// finished on the caller's thread, and so are all others until rethrow_host_error.
     explicit Executor(int threads = 1, ParallelFor parallel_for = {});
 
     int threads() const noexcept { return threads_; }
+    /// Throws what the embedding program's parallel-for has thrown since the last call, if it has.
+    void rethrow_host_error() const;
 
     /// Calls fn(chunk, first, last) for every chunk of [0, rows). fn must not throw; chunks must not write
     /// each other's rows. On one thread they run in order.
@@ -129,6 +135,8 @@ class Executor {
 
     int threads_;  // 0: the embedding program knows
     ParallelFor parallel_for_;
+    std::unique_ptr<HostLoop> host_loop_;  // only with such threads
+    mutable std::exception_ptr host_error_;
     mutable int loops_alone_ = 0;       // that still run on one thread, because the machine is busy
     mutable int loops_next_time_ = 32;  // half of what the first wait that is too long costs
     mutable Phases phases_;

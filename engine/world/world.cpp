@@ -250,6 +250,7 @@ void BasicWorld<Real>::step(double dt) {
         sim.executor.with_team(step);
     else
         step();
+    sim.executor.rethrow_host_error();
 }
 
 template <class Real>
@@ -413,7 +414,9 @@ Plan BasicWorld<Real>::plan() const {
 
 template <class Real>
 OverlapReport BasicWorld<Real>::overlaps() const {
-    return measure_overlaps(implementation_->sim());
+    const OverlapReport report = measure_overlaps(implementation_->sim());
+    implementation_->sim().executor.rethrow_host_error();
+    return report;
 }
 
 template <class Real>

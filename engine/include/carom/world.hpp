@@ -15,7 +15,11 @@
 
 namespace carom {
 
-/// Runs task(0) ... task(count - 1), in any order and on any threads, and returns when all are done.
+/// Runs task(0) ... task(count - 1), in any order and on any threads, and returns when all are done. It may
+/// throw once no thread is in a task any more: the world then carries out what is left, and all else of the
+/// call, on the caller's thread, with the same bits, and throws that exception at the end. The step has been
+/// taken then; the next one asks again. `World::step` and `World::overlaps` throw; after any other call the
+/// next of these does.
 using ParallelFor = std::function<void(std::size_t count, const std::function<void(std::size_t)>& task)>;
 
 /// How a world runs; what is left out comes from the scene, then from the defaults.
@@ -79,7 +83,8 @@ class BasicWorld {
 
     /// Advances the world by dt.
     /// @param dt  s: 0, which changes no bit of any body, or kSmallestStep ... kLargestStep.
-    /// @throws Error if dt is out of range; the world is then unchanged.
+    /// @throws Error if dt is out of range; the world is then unchanged. What `parallel_for` throws; the
+    /// step has been taken then.
     /// Cost: O(bodies + candidate pairs); no allocation once the world has reached its largest size.
     void step(double dt);
 
