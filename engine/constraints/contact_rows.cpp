@@ -53,7 +53,8 @@ ContactColumns<Real> ContactRows<Real>::columns() {
             .rolling_impulse = data(rolling_impulse),
             .rolling = data(rolling),
             .rolling_share = data(rolling_share),
-            .surface_rolling = data(surface_rolling)};
+            .surface_rolling = data(surface_rolling),
+            .smaller = data(smaller)};
 }
 
 template <class Real>

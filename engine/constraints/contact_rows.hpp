@@ -16,10 +16,11 @@ struct ContactEffects {
     bool friction = false, restitution = false, rolling = false;
     /// Whether contacts differ in it, so that one number does not serve all.
     bool friction_varies = false, rolling_varies = false, radius_varies = false;
+    bool rolling_share_varies = false;  // where radii vary
 
     /// Supports have other materials and radii than bodies have, so they have all columns of an effect.
     ContactEffects of_supports() const {
-        return {friction, restitution, rolling, friction, rolling, rolling};
+        return {friction, restitution, rolling, friction, rolling, radius_varies, rolling};
     }
 };
 
@@ -60,6 +61,7 @@ struct ContactRows {
     // What the kernels stream besides: kernels/contact_arguments.hpp.
     Column<Real> normal_x, normal_y, separation, mass, friction, floor, largest_impulse;
     Column<Real> surface_normal, surface_tangent, rolling, rolling_share, surface_rolling;
+    Column<Real> smaller;  // m
     // Once a step, or a step with restitution.
     Column<Real> reach;              // m, sum of the radii
     Column<std::int32_t> candidate;  // place in the contact graph
@@ -90,8 +92,9 @@ struct ContactRows {
         fn(rows.surface_normal, ColumnUse{kSupports, kStep});
         fn(rows.surface_tangent, ColumnUse{kSupports, kStep});
         fn(rows.rolling, ColumnUse{kAll, kDescribed, {&E::rolling, &E::rolling_varies}});
-        fn(rows.rolling_share, ColumnUse{kAll, kDescribed, {&E::rolling, &E::radius_varies}});
+        fn(rows.rolling_share, ColumnUse{kAll, kDescribed, {&E::rolling, &E::rolling_share_varies}});
         fn(rows.surface_rolling, ColumnUse{kSupports, kStep, {&E::rolling}});
+        fn(rows.smaller, ColumnUse{kAll, kDescribed, {&E::radius_varies}});
         fn(rows.reach, ColumnUse{kPairs, kDescribed});
         fn(rows.candidate, ColumnUse{kSupports, kStep});
         fn(rows.approach, ColumnUse{kAll, kStep, {&E::restitution}});

@@ -39,6 +39,9 @@ struct ContactColumns {
     Real* rolling;          // coefficient; null: uniform_rolling serves all
     Real* rolling_share;    // weight of a's rim speed; null: one half, as for two discs of the same radius
     Real* surface_rolling;  // m/s, b's share of the rolling velocity; only where b is null
+    // Only where radii vary.
+    const Real*
+        smaller;  // m, the smaller radius of the two, or that of a where b is null; null: `push` is in m
 };
 
 /// One Gauss-Seidel sweep over the contacts of a colour.
@@ -53,7 +56,7 @@ struct SolveContacts {
     Real h;          // s
     Real elapsed;    // s, since the start of the step, at the start of the substep
     Real recovery;   // share of an overlap that one sweep takes away, by displacement
-    Real push;       // m, largest displacement of that kind
+    Real push;       // largest displacement of that kind: m, or of contacts.smaller
     // Of pairs, in the first sweep.
     Real calm;  // m/s: a contact that changes by no more needs no second sweep; below zero: all need one
     Real over_relaxation;       // of normal impulses, 1 ... 2
@@ -79,6 +82,7 @@ struct FindContacts {
     const std::int32_t* a;   // rows
     const std::int32_t* b;   //
     const Real* reach;       // m, sum of the radii; zero for padding
+    const Real* smaller;     // m, the smaller of the radii; null where all are the same
     Real* normal_impulse;    // N s, from the step before; zeroed where bodies cannot touch
     Real* friction_impulse;  // likewise
     Real* rolling_impulse;   // likewise; null without rolling resistance
@@ -88,9 +92,10 @@ struct FindContacts {
     Real* approach;          // out: m/s, relative normal velocity at the start; null without restitution
     Real dt;                 // s, of the step
     Real near;               // m, separation up to which slow bodies are in contact
-    Real deep;               // m, below zero: separation of bodies that are deep in each other
-    std::uint8_t* is_live;   // out, [last / kContactBlock]: whether a contact of the block can touch: 0, 1,
-                             // or kDeepBlock
+    Real near_of_smaller;    // besides, of `smaller`
+    Real deep;  // below zero: separation of bodies that are deep in each other: m, or of `smaller`
+    std::uint8_t* is_live;  // out, [last / kContactBlock]: whether a contact of the block can touch: 0, 1,
+                            // or kDeepBlock
 };
 
 /// Velocities at the start of a substep. Nobody asks for those of single bodies, so they are columns.

@@ -54,7 +54,12 @@ std::size_t find_contacts(const FindContacts<Real>& k, std::size_t first, std::s
             // Each by its own speed, not by the relative one: two that fly side by side meet in this step if
             // a third body stops one of them.
             const F ways = simd::abs(a[2]) + simd::abs(a[3]) + simd::abs(b[2]) + simd::abs(b[3]);
-            const F near = reach + F(k.near) + F(k.dt) * ways;
+            F at_rest = F(k.near), deep = F(k.deep);
+            if (k.smaller) {
+                const F smaller = Lanes::load(k.smaller + p);
+                at_rest += F(k.near_of_smaller) * smaller, deep *= smaller;
+            }
+            const F near = reach + at_rest + F(k.dt) * ways;
             const auto is_contact = reach > F(0);
             const auto live = is_contact & (squared < near * near);
             Lanes::store(k.normal_impulse + p, simd::select(live, Lanes::load(k.normal_impulse + p), F(0)));
@@ -77,7 +82,7 @@ std::size_t find_contacts(const FindContacts<Real>& k, std::size_t first, std::s
             Lanes::store(k.normal_y + p, ny);
             const F separation = dx * nx + dy * ny - reach;
             Lanes::store(k.separation + p, separation);
-            is_deep |= simd::any(is_contact & (separation < F(k.deep)));
+            is_deep |= simd::any(is_contact & (separation < deep));
             if (k.approach) Lanes::store(k.approach + p, dvx * nx + dvy * ny);
             live_in_block += static_cast<unsigned>(__builtin_popcount(simd::bitmask(live)));
         }

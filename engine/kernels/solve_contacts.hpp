@@ -57,20 +57,30 @@ template <unsigned kVariant, class Lanes, class Real>
     if constexpr ((kVariant & kRolling) != 0) Lanes::store(k.contacts.rolling_impulse + c, impulses.rolling);
 }
 
-/// The first sweep over contacts also takes overlaps away, by displacement alone, and notes the floor: bodies
-/// that are still apart may approach until they touch. `separation`: now. Returns the push [m] times the
-/// effective mass, zero where there is no overlap.
+/// The first sweep notes the floor: bodies that are still apart may approach until they touch.
+/// @param separation  m, now
+/// @return how deep they are in each other [m]
 template <class Lanes, class Real>
-typename Lanes::Batch begin_contact(const SolveContacts<Real>& k, std::size_t c, typename Lanes::Batch mass,
+typename Lanes::Batch begin_contact(const SolveContacts<Real>& k, std::size_t c,
                                     typename Lanes::Batch separation, typename Lanes::Batch& floor) {
     using F = typename Lanes::Batch;
     floor = simd::min(-separation * F(k.inverse_h), F(0));
     Lanes::store(k.contacts.floor + c, floor);
-    const F depth = simd::max(-separation, F(0));
+    return simd::max(-separation, F(0));
+}
+
+/// How far the first sweep pushes bodies apart that are in each other, by displacement alone [m], times the
+/// effective mass.
+template <class Lanes, class Real>
+typename Lanes::Batch push_of(const SolveContacts<Real>& k, std::size_t c, typename Lanes::Batch mass,
+                              typename Lanes::Batch depth) {
+    using F = typename Lanes::Batch;
     // The cap on the push grows with the load: what lies deep in a pile may recover as fast as its load
     // moves.
     const F load = Lanes::load(k.contacts.normal_impulse + c);
-    return simd::min(mass * (F(k.recovery) * depth), mass * F(k.push) + F(k.h) * load);
+    F largest = F(k.push);
+    if (k.contacts.smaller) largest *= Lanes::load(k.contacts.smaller + c);
+    return simd::min(mass * (F(k.recovery) * depth), mass * largest + F(k.h) * load);
 }
 
 /// For restitution: a contact that pushed in some substep has had an impact. At the start of a substep, the
@@ -107,8 +117,9 @@ template <class Lanes, class Real, class A, class B>
         auto moved_b = Lanes::load_rows2(k.displacement, k.contacts.b + c);
         const F now = Lanes::load(k.contacts.separation + c) + (moved_b[0] - moved_a[0]) * nx +
                       (moved_b[1] - moved_a[1]) * ny;
-        const F push = begin_contact<Lanes>(k, c, mass, now, floor);
-        if (!simd::any(push > F(0))) return floor;
+        const F depth = begin_contact<Lanes>(k, c, now, floor);
+        if (!simd::any(depth > F(0))) return floor;
+        const F push = push_of<Lanes>(k, c, mass, depth);
         const F push_a = push * a.inverse_mass(), push_b = push * b.inverse_mass();
         moved_a[0] -= push_a * nx, moved_a[1] -= push_a * ny;
         moved_b[0] += push_b * nx, moved_b[1] += push_b * ny;
@@ -118,8 +129,9 @@ template <class Lanes, class Real, class A, class B>
         auto moved = Lanes::load_rows2(k.displacement, k.contacts.a + c);
         const F now = Lanes::load(k.contacts.separation + c) + b.normal * F(k.elapsed) -
                       (moved[0] * nx + moved[1] * ny);
-        const F push = begin_contact<Lanes>(k, c, mass, now, floor);
-        if (!simd::any(push > F(0))) return floor;
+        const F depth = begin_contact<Lanes>(k, c, now, floor);
+        if (!simd::any(depth > F(0))) return floor;
+        const F push = push_of<Lanes>(k, c, mass, depth);
         const F push_a = push * a.inverse_mass();
         moved[0] -= push_a * nx, moved[1] -= push_a * ny;
         Lanes::store_rows2(k.displacement, k.contacts.a + c, moved);

@@ -46,10 +46,10 @@ constexpr Golden kGolden[] = {
     {"falling sizes", 0x4fe0c9b61ea50e9c, 0xc84f698047eb650e},
     {"moving obstacles", 0x9450532e75523df8, 0x81f8d27062c9d725},
     {"stack at rest", 0xa436021f760768ad, 0xfd75b447dc578a50},
-    {"rough sizes", 0xe205a815944fe984, 0x23ea3ec6377d430c},
-    {"rolling sizes", 0x3c3992b72d7e76e5, 0x32b2ce6148eb257d},
-    {"turning chain", 0xa170b92b5d1fd58a, 0x9c0312f4b30d2d38},
-    {"woken sleepers", 0x6ab2e75856d9e0e5, 0x3a95da24a3804626},
+    {"rough sizes", 0x5b84d5aeec79b036, 0x67345ee099d21aac},
+    {"rolling sizes", 0x360d6825b814e24f, 0xd3f1ada2e48f9255},
+    {"turning chain", 0xa170b92b5d1fd58a, 0xa12dd00a62e5078a},
+    {"woken sleepers", 0xc96d16ac37412fb, 0x73b51f7b255f0ebe},
 };
 
 }  // namespace

@@ -192,4 +192,34 @@ TEST_SUITE("hard cases/size ratios") {
         for (int i = 0; i < 60; ++i) CHECK(substeps_of_step(world) == 4);
         CHECK(world.state({1, 0}).position.y == doctest::Approx(1));
     }
+
+    // What is near, what is deep and how fast overlaps are pushed apart is a matter of the two bodies alone.
+    TEST_CASE_TEMPLATE(
+        "overlaps come apart alike with and without a disc of a thousandth of the size far away", Real, float,
+        double) {
+        const auto overlapping = [](bool has_stranger) {
+            Scene scene;
+            scene.accuracy.solver = Solver::soft;
+            scene.walls = Walls{.min = {-20, -1}, .max = {20, 60}};
+            for (int i = 0; i < 4; ++i)  // two and two, so that it does not matter who comes first
+                scene.add(disc(1, 1, {-9 + 0.7 * i + 5 * (i / 2), 5 + 0.3 * i}));
+            scene.add(disc(1, 1, {3, -0.3}));
+            scene.add({.type = BodyType::static_body, .shape = Disc{1}, .position = {10, 3}});
+            scene.add(disc(1, 1, {11, 3.5}));
+            if (has_stranger) scene.add(disc(1e-3, 1e-6, {-15, 50}, {0, -2}));
+            return scene;
+        };
+        BasicWorld<Real> alone(overlapping(false)), together(overlapping(true));
+        double off = 0;
+        for (int i = 0; i < 60; ++i) {
+            alone.step(kStep), together.step(kStep);
+            for (std::uint32_t b = 0; b < 7; ++b) {
+                const Vec2 x = alone.state({b, 0}).position, y = together.state({b, 0}).position;
+                off = std::fmax(off, std::hypot(x.x - y.x, x.y - y.y));
+            }
+        }
+        report("off by ", off, " m");
+        CHECK(off < (sizeof(Real) == sizeof(float) ? 1e-5 : 1e-12));
+        CHECK(alone.overlaps().max < 0.01);
+    }
 }

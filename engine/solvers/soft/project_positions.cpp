@@ -12,7 +12,8 @@
 namespace carom {
 namespace {
 
-/// Bodies are asked one by one if the fastest moves farther than this in a step, of the smallest radius.
+/// Who is hit by the fastest body may be thrown about. Bodies are looked at if that moves farther than this
+/// in a step, in radii of theirs.
 constexpr double kSwiftWay = 4;
 /// Of its own radius: who ends a step so far from where it would have flown may be in somebody.
 constexpr double kDeflected = 0.05;
@@ -34,17 +35,27 @@ PositionProjection::Plane wall_of(const Walls& walls, std::int32_t side) {
 
 }  // namespace
 
-/// Marks who has not ended where free flight or rest would have taken it. @return whether anybody was.
+/// Where a body is at the end of the step, before anything is parted.
 template <class Real>
-bool SoftSolver<Real>::mark_deflected(const WorldState<Real>& world, const Column<Real>& motion) {
+Vec2 SoftSolver<Real>::place_of(std::size_t row, const Column<Real>& motion) const {
+    return Vec2{motion[4 * row], motion[4 * row + 1]} +
+           Vec2{displacement_[2 * row], displacement_[2 * row + 1]};
+}
+
+/// Marks who has not ended where free flight or rest would have taken it, among discs of less than `largest`
+/// [m]. @return whether anybody was.
+template <class Real>
+bool SoftSolver<Real>::mark_deflected(const WorldState<Real>& world, const Column<Real>& motion,
+                                      double largest) {
     bool any = false;
     const Vec2 fall = 0.5 * dt_ * dt_ * world.gravity;
     for (std::size_t row = 0; row < count_; ++row) {
-        if (world.bodies.is_immovable(row)) continue;
+        const double radius = world.bodies.radius[row];
+        if (radius >= largest || world.bodies.is_immovable(row)) continue;
         const Vec2 off{
             static_cast<double>(displacement_[2 * row]) - dt_ * static_cast<double>(motion[4 * row + 2]),
             static_cast<double>(displacement_[2 * row + 1]) - dt_ * static_cast<double>(motion[4 * row + 3])};
-        const double least = kDeflected * static_cast<double>(world.bodies.radius[row]);
+        const double least = kDeflected * radius;
         // Neither at rest nor in free flight.
         if (std::min(length_squared(off), length_squared(off - fall)) < least * least) continue;
         parting_.is_marked[row] = kDeflectedMark, any = true;
@@ -52,9 +63,11 @@ bool SoftSolver<Real>::mark_deflected(const WorldState<Real>& world, const Colum
     return any;
 }
 
-/// Marks who is deep in somebody or in a wall now. @return whether anybody is.
+/// Marks who is deep in another one or in a wall now, where one of the two is a disc of less than `largest`
+/// [m].
+/// @return whether anybody is.
 template <class Real>
-bool SoftSolver<Real>::mark_stuck(const WorldState<Real>& world) {
+bool SoftSolver<Real>::mark_stuck(const WorldState<Real>& world, const Column<Real>& motion, double largest) {
     bool any = false;
     const Bodies<Real>& bodies = world.bodies;
     const auto mark = [&](std::int32_t row) {
@@ -62,20 +75,22 @@ bool SoftSolver<Real>::mark_stuck(const WorldState<Real>& world) {
         any = true;
     };
     graph.pairs.for_each([&](std::size_t i) {
+        if (smaller_radius(i) >= largest) return;
         const auto a = static_cast<std::size_t>(graph.pairs.a[i]),
                    b = static_cast<std::size_t>(graph.pairs.b[i]);
         const double of_a = bodies.radius[a], of_b = bodies.radius[b];
         const double reach = of_a + of_b - kStuck * std::min(of_a, of_b);
-        if (length_squared(parting_.place[b] - parting_.place[a]) > reach * reach) return;
+        if (length_squared(place_of(b, motion) - place_of(a, motion)) > reach * reach) return;
         mark(graph.pairs.a[i]), mark(graph.pairs.b[i]);
     });
     graph.supports.for_each([&](std::size_t i) {
         const Partner support = graph.supports.partner(i);
         if (!support.is_wall()) return;
         const auto row = static_cast<std::size_t>(graph.supports.a[i]);
+        const double radius = bodies.radius[row];
+        if (radius >= largest) return;
         const PositionProjection::Plane wall = wall_of(*world.walls, support.side());
-        if (dot(wall.normal, parting_.place[row]) + (1 - kStuck) * static_cast<double>(bodies.radius[row]) >
-            wall.end)
+        if (dot(wall.normal, place_of(row, motion)) + (1 - kStuck) * radius > wall.end)
             mark(graph.supports.a[i]);
     });
     return any;
@@ -83,10 +98,10 @@ bool SoftSolver<Real>::mark_stuck(const WorldState<Real>& world) {
 
 /// Marks the bodies of pairs that were deep in each other at the start of the step.
 template <class Real>
-void SoftSolver<Real>::mark_deep(double deep) {
+void SoftSolver<Real>::mark_deep() {
     graph.pairs.for_each([&](std::size_t i) {
         if (!graph.pairs.is_live[i / kContactBlock] ||
-            static_cast<double>(graph.pairs.separation[i]) > -deep || is_loaded(i))
+            static_cast<double>(graph.pairs.separation[i]) > -deep_overlap(smaller_radius(i)) || is_loaded(i))
             return;
         for (const std::int32_t row : {graph.pairs.a[i], graph.pairs.b[i]})
             parting_.is_marked[static_cast<std::size_t>(row)] |= 1;
@@ -153,8 +168,9 @@ void SoftSolver<Real>::list_pairs_of_thrown(const Bodies<Real>& bodies, const Co
 /// Whether a contact carries more than the cap on pushes stands for.
 template <class Real>
 bool SoftSolver<Real>::is_loaded(std::size_t pair) const {
+    const double push = radius_varies_ ? push_ * smaller_radius(pair) : push_;
     return static_cast<double>(graph.pairs.normal_impulse[pair]) * substep_dt_ >
-           static_cast<double>(graph.pairs.mass[pair]) * push_;
+           static_cast<double>(graph.pairs.mass[pair]) * push;
 }
 
 /// Lists who is near somebody marked.
@@ -255,19 +271,17 @@ template <class Real>
 void SoftSolver<Real>::project_positions(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
                                          const Column<Real>& motion, const Candidates<Real>& candidates,
                                          double fastest) {
-    const double smallest_radius = candidates.smallest_radius();
-    const bool is_fast = fastest * dt_ > kSwiftWay * smallest_radius;
-    if (!is_fast && !is_crowded_) return;
+    const double largest = fastest * dt_ / kSwiftWay;  // m, of discs that may be thrown about
+    const bool any_small = largest > candidates.smallest_radius();
+    if (!any_small && !is_crowded_) return;
     parting_.is_marked.assign(count_, 0);
-    parting_.place.resize(count_);
-    parting_.is_moved.assign(count_, 0);
-    for (std::size_t row = 0; row < count_; ++row)
-        parting_.place[row] = Vec2{motion[4 * row], motion[4 * row + 1]} +
-                              Vec2{displacement_[2 * row], displacement_[2 * row + 1]};
-    const bool any_deflected = is_fast && mark_deflected(world, motion);
-    const bool any_stuck = is_fast && mark_stuck(world);
-    if (is_crowded_) mark_deep(deep_);
+    const bool any_deflected = any_small && mark_deflected(world, motion, largest);
+    const bool any_stuck = any_small && mark_stuck(world, motion, largest);
+    if (is_crowded_) mark_deep();
     if (!any_deflected && !any_stuck && !is_crowded_) return;
+    parting_.is_moved.assign(count_, 0);
+    parting_.place.resize(count_);
+    for (std::size_t row = 0; row < count_; ++row) parting_.place[row] = place_of(row, motion);
     for (int round = 0; round < kRounds; ++round) {
         parting_.pairs.clear(), parting_.planes.clear();
         find_thrown(world.bodies, candidates);
@@ -297,14 +311,16 @@ template void SoftSolver<float>::put_back_thrown(const Bodies<float>&, const Col
                                                  const Candidates<float>&);
 template void SoftSolver<double>::put_back_thrown(const Bodies<double>&, const Column<double>&,
                                                   const Candidates<double>&);
-template bool SoftSolver<float>::mark_stuck(const WorldState<float>&);
-template bool SoftSolver<double>::mark_stuck(const WorldState<double>&);
+template Vec2 SoftSolver<float>::place_of(std::size_t, const Column<float>&) const;
+template Vec2 SoftSolver<double>::place_of(std::size_t, const Column<double>&) const;
+template bool SoftSolver<float>::mark_stuck(const WorldState<float>&, const Column<float>&, double);
+template bool SoftSolver<double>::mark_stuck(const WorldState<double>&, const Column<double>&, double);
 template bool SoftSolver<float>::is_loaded(std::size_t) const;
 template bool SoftSolver<double>::is_loaded(std::size_t) const;
-template bool SoftSolver<float>::mark_deflected(const WorldState<float>&, const Column<float>&);
-template bool SoftSolver<double>::mark_deflected(const WorldState<double>&, const Column<double>&);
-template void SoftSolver<float>::mark_deep(double);
-template void SoftSolver<double>::mark_deep(double);
+template bool SoftSolver<float>::mark_deflected(const WorldState<float>&, const Column<float>&, double);
+template bool SoftSolver<double>::mark_deflected(const WorldState<double>&, const Column<double>&, double);
+template void SoftSolver<float>::mark_deep();
+template void SoftSolver<double>::mark_deep();
 template void SoftSolver<float>::list_parted_pair(const Bodies<float>&, const Column<float>&, std::int32_t,
                                                   std::int32_t, bool);
 template void SoftSolver<double>::list_parted_pair(const Bodies<double>&, const Column<double>&, std::int32_t,

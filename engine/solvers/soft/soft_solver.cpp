@@ -20,10 +20,10 @@ constexpr double kOverRelaxation = 1.7;  // of normal impulses
 constexpr double kCalmOverRelaxation = 1.3;
 /// A contact is calm if the first sweep changes it by less than gravity does in this share of a substep.
 constexpr double kCalm = 1;
-/// Bodies as near as this, in radii of the smallest, are solved together even if they hardly move: what
+/// Bodies as near as this, in radii of the smaller one, are solved together even if they hardly move: what
 /// pushes one of them in the middle of a step is felt by the other.
 constexpr double kNearFraction = 0.04;
-/// Of the smallest radius: bodies that start a step as deep in each other are parted at its end.
+/// Of the smaller radius: bodies that start a step as deep in each other are parted at its end.
 constexpr double kDeep = 0.1;
 /// Second sweeps of the first substep if there are no impulses to start from.
 constexpr int kFirstSweeps = 32;
@@ -93,6 +93,7 @@ void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Colum
     rolling_varies_ = rolls_ && !bodies.rolling_resistance.is_uniform();
     uniform_rolling_ = static_cast<double>(bodies.rolling_resistance.uniform_value());
     radius_varies_ = !bodies.radius.is_uniform();
+    uniform_radius_ = radius_varies_ ? 1 : static_cast<double>(bodies.radius.uniform_value());
     derive_masses(bodies);
     const FlightClock clock = flight_clock_at(h, world.drag.linear);
     gravity_change_ = clock.s * gravity, decay_ = clock.u;
@@ -127,7 +128,8 @@ void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Colum
 
 template <class Real>
 ContactEffects SoftSolver<Real>::contact_effects() const {
-    return {has_friction_, bounces_, rolls_, friction_varies_, rolling_varies_, radius_varies_};
+    return {has_friction_,   bounces_,       rolls_,        friction_varies_,
+            rolling_varies_, radius_varies_, radius_varies_};
 }
 
 template <class Real>
@@ -148,27 +150,50 @@ SolveContacts<Real> SoftSolver<Real>::arguments(ContactRows<Real>& live) {
     return k;
 }
 
+template <class Real>
+double SoftSolver<Real>::contact_distance(double radius) const {
+    return kNearFraction * radius + fall_;
+}
+
+template <class Real>
+double SoftSolver<Real>::deep_overlap(double radius) const {
+    return kDeep * radius;
+}
+
+template <class Real>
+double SoftSolver<Real>::smaller_radius(std::size_t pair) const {
+    return radius_varies_ ? static_cast<double>(graph.pairs.smaller[pair]) : uniform_radius_;
+}
+
 /// What stays the same until the pairs change.
 template <class Real>
 void SoftSolver<Real>::describe_group(const Bodies<Real>& bodies, std::size_t group) {
-    const std::size_t first = graph.pairs.first_place(group), last = graph.pairs.first_place(group + 1);
-    for (Column<Real>* column : {&graph.pairs.mass, &graph.pairs.reach, &graph.pairs.friction,
-                                 &graph.pairs.rolling, &graph.pairs.rolling_share})
-        if (!column->empty())
-            std::fill(column->data() + first, column->data() + last, Real(0));  // of padding
-    const Real same = static_cast<Real>(bodies.inverse_mass(0));
-    graph.pairs.for_each(group, group + 1, [&](std::size_t i) {
-        const auto a = static_cast<std::size_t>(graph.pairs.a[i]),
-                   b = static_cast<std::size_t>(graph.pairs.b[i]);
-        graph.pairs.reach[i] = bodies.radius[a] + bodies.radius[b];
-        const Real of_a = masses_vary_ ? std::fabs(inverse_mass_[a]) : same,
-                   of_b = masses_vary_ ? std::fabs(inverse_mass_[b]) : same;
-        graph.pairs.mass[i] = Real(1) / (of_a + of_b);
-        if (friction_varies_) graph.pairs.friction[i] = std::sqrt(bodies.friction[a] * bodies.friction[b]);
-        if (!graph.pairs.rolling.empty())
-            graph.pairs.rolling[i] = std::max(bodies.rolling_resistance[a], bodies.rolling_resistance[b]);
-        if (!graph.pairs.rolling_share.empty())
-            graph.pairs.rolling_share[i] = bodies.radius[b] / graph.pairs.reach[i];
+    ContactRows<Real>& pairs = graph.pairs;
+    for (std::size_t c = pairs.first_colour[group]; c < pairs.first_colour[group + 1]; ++c) {
+        const std::size_t end = pairs.begin[c] + padded(pairs.length(c)),
+                          from = pairs.stride(c) > 1 ? pairs.begin[c] : pairs.begin[c] + pairs.count[c];
+        for (Column<Real>* column : {&pairs.mass, &pairs.reach, &pairs.smaller, &pairs.friction,
+                                     &pairs.rolling, &pairs.rolling_share})
+            if (!column->empty()) std::fill(column->data() + from, column->data() + end, Real(0));  // padding
+    }
+    const Real same = static_cast<Real>(bodies.inverse_mass(0)), same_radius = bodies.radius.uniform_value();
+    // Locals, which no store of a number can change.
+    const std::int32_t *row_a = pairs.a.data(), *row_b = pairs.b.data();
+    const Real *radius = bodies.radius.data(), *inverse = masses_vary_ ? inverse_mass_.data() : nullptr;
+    Real *reach = pairs.reach.data(), *mass = pairs.mass.data(),
+         *smaller = radius_varies_ ? pairs.smaller.data() : nullptr;
+    pairs.for_each(group, group + 1, [&](std::size_t i) {
+        const auto a = static_cast<std::size_t>(row_a[i]), b = static_cast<std::size_t>(row_b[i]);
+        const Real radius_a = radius ? radius[a] : same_radius, radius_b = radius ? radius[b] : same_radius;
+        reach[i] = radius_a + radius_b;
+        if (smaller) smaller[i] = std::min(radius_a, radius_b);
+        const Real of_a = inverse ? std::fabs(inverse[a]) : same,
+                   of_b = inverse ? std::fabs(inverse[b]) : same;
+        mass[i] = Real(1) / (of_a + of_b);
+        if (friction_varies_) pairs.friction[i] = std::sqrt(bodies.friction[a] * bodies.friction[b]);
+        if (!pairs.rolling.empty())
+            pairs.rolling[i] = std::max(bodies.rolling_resistance[a], bodies.rolling_resistance[b]);
+        if (!pairs.rolling_share.empty()) pairs.rolling_share[i] = radius_b / reach[i];
     });
 }
 
@@ -203,8 +228,11 @@ void SoftSolver<Real>::find_pairs(const Bodies<Real>& bodies, const Column<Real>
     k.normal_x = graph.pairs.normal_x.data(), k.normal_y = graph.pairs.normal_y.data();
     k.separation = graph.pairs.separation.data(),
     k.approach = bounces_ ? graph.pairs.approach.data() : nullptr;
-    k.dt = static_cast<Real>(dt_), k.near = static_cast<Real>(contact_distance_);
-    k.deep = static_cast<Real>(-deep_);
+    k.smaller = radius_varies_ ? graph.pairs.smaller.data() : nullptr;
+    k.dt = static_cast<Real>(dt_);
+    k.near = static_cast<Real>(contact_distance(radius_varies_ ? 0 : uniform_radius_));
+    k.near_of_smaller = static_cast<Real>(kNearFraction);
+    k.deep = static_cast<Real>(-deep_overlap(uniform_radius_));
     k.is_live = graph.pairs.is_live.data();
     const double work = kNanosecondsToFind * static_cast<double>(graph.pairs.a.size());
     executor_->for_each_task(graph.groups.count(), work, [&](std::size_t group) {
@@ -236,14 +264,11 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const Candid
                                      const EdgeCandidates<Real>& edges, Column<Real>& motion, double dt) {
     motion.resize(4 * padded(count_ + ContactGraph<Real>::padding_rows(graph.groups)));
     dt_ = dt;
-    const double smallest = candidates.smallest_radius();
     largest_radius_ = candidates.largest_radius();
     // A body that falls from rest, in substeps h of g h each, beside one that is held, comes nearer by
     // g dt (dt + h) / 2 at most.
-    const double fall = 0.5 * std::sqrt(length_squared(gravity_change_)) * dt * (dt / substep_dt_ + 1);
-    contact_distance_ = kNearFraction * smallest + fall;
-    deep_ = kDeep * smallest;
-    push_ = kPushRadiiPerSecond * smallest * substep_dt_;
+    fall_ = 0.5 * std::sqrt(length_squared(gravity_change_)) * dt * (dt / substep_dt_ + 1);
+    push_ = kPushRadiiPerSecond * uniform_radius_ * substep_dt_;
     are_impulses_known_ =
         substep_dt_ < kOtherLength * impulses_of_h_ && impulses_of_h_ < kOtherLength * substep_dt_;
     rescale_impulses(graph.pairs), rescale_impulses(graph.supports);

@@ -87,7 +87,9 @@ class SoftSolver {
     void end_contacts();
     /// Parts who has ended the step deep in somebody else (project_positions.cpp): by displacement alone.
     /// @param fastest  m/s, of all bodies at the start
-    /// Cost: nothing unless somebody moved by four of the smallest radius or started deep in another one.
+    /// Cost: nothing unless the fastest moves by four radii of the smallest disc, or a pair started deep in
+    /// each other; O(bodies + pairs), to look for discs that are small enough, unless one of them was
+    /// deflected.
     void project_positions(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
                            const Column<Real>& motion, const Candidates<Real>& candidates, double fastest);
     /// Columns from records.
@@ -162,9 +164,10 @@ class SoftSolver {
     void put_back(WorldState<Real>& world, const EdgeCandidates<Real>& edges, const Tunnelled& passed,
                   bool to_start);
 
-    bool mark_deflected(const WorldState<Real>& world, const Column<Real>& motion);
-    bool mark_stuck(const WorldState<Real>& world);
-    void mark_deep(double deep);
+    Vec2 place_of(std::size_t row, const Column<Real>& motion) const;
+    bool mark_deflected(const WorldState<Real>& world, const Column<Real>& motion, double largest);
+    bool mark_stuck(const WorldState<Real>& world, const Column<Real>& motion, double largest);
+    void mark_deep();
     void list_parted_pair(const Bodies<Real>& bodies, const Column<Real>& motion, std::int32_t row_a,
                           std::int32_t row_b, bool is_loaded);
     bool is_loaded(std::size_t pair) const;
@@ -176,6 +179,12 @@ class SoftSolver {
     void list_parted_pairs(const Bodies<Real>& bodies, const Column<Real>& motion);
     void list_parted_supports(const WorldState<Real>& world, const EdgeCandidates<Real>& edges);
 
+    /// Separation up to which bodies at rest are in contact [m], whose smaller radius is `radius`.
+    double contact_distance(double radius) const;
+    /// Overlap that the sweeps do not take away soon enough [m].
+    double deep_overlap(double radius) const;
+    /// Of the two bodies of a pair [m].
+    double smaller_radius(std::size_t pair) const;
     void rescale_impulses(ContactRows<Real>& candidates) const;
     void derive_masses(const Bodies<Real>& bodies);
     void find_pairs(const Bodies<Real>& bodies, const Column<Real>& motion);
@@ -224,7 +233,10 @@ class SoftSolver {
     const KernelTable<Real>* kernels_ = nullptr;
     const Executor* executor_ = nullptr;
     std::size_t count_ = 0;
-    double substep_dt_ = 0, dt_ = 0, elapsed_ = 0, contact_distance_ = 0, push_ = 0, largest_radius_ = 0;
+    double substep_dt_ = 0, dt_ = 0, elapsed_ = 0, largest_radius_ = 0;
+    double uniform_radius_ = 1;  // m, of all; 1 where radii vary, so that what follows is a share of them
+    double push_ = 0;            // m, or a share of the smaller radius: largest displacement by an overlap
+    double fall_ = 0;            // m, what a body falls from rest in a step, by substeps
     Vec2 gravity_change_;
     double decay_ = 1, spin_decay_ = 1;
     bool has_friction_ = false, has_rotation_ = false, some_are_fixed_ = false, bounces_ = false;
@@ -247,8 +259,7 @@ class SoftSolver {
     std::vector<Tunnelled> tunnelled_;                  // likewise
     std::vector<std::int32_t> strayed_;                 // rows that have left their margins in this step
     ChunkedList lost_rows_;
-    double deep_ = 0;          // m, an overlap that the sweeps do not take away soon enough
-    bool is_crowded_ = false;  // there was one at the start of the step
+    bool is_crowded_ = false;  // some pair started the step deeper than the sweeps take away soon enough
     PositionProjection parting_;
     std::vector<std::int32_t> thrown_;  // rows, by x
     Column<std::int32_t> near_rows_;

@@ -32,6 +32,7 @@ void SoftSolver<Real>::add_support(const SupportSurface& surface, std::size_t ca
     supports_.normal_x[at] = real(n.x), supports_.normal_y[at] = real(n.y);
     supports_.separation[at] = real(surface.separation);
     supports_.mass[at] = real(1 / bodies.inverse_mass(row));
+    if (radius_varies_) supports_.smaller[at] = bodies.radius[row];
     supports_.normal_impulse[at] = candidates.normal_impulse[candidate];
     supports_.surface_normal[at] = real(dot(surface.velocity, n));
     supports_.surface_tangent[at] = real(cross(n, surface.velocity));
@@ -83,12 +84,11 @@ void SoftSolver<Real>::find_supports_of(std::size_t group, const WorldState<Real
         for (std::size_t i = candidates.begin[c]; i < candidates.begin[c] + candidates.count[c]; ++i) {
             const auto row = static_cast<std::size_t>(candidates.a[i]);
             const Partner support = candidates.partner(i);
+            const double radius = bodies.radius[row], at_rest = contact_distance(radius);
             if (support.is_edge() && !(candidates.normal_impulse[i] > 0)) {
                 const auto [clearance, way] =
                     clearance_of_edge(world, edges, row, support.edge_number(), dt_);
-                if (clearance >
-                    contact_distance_ +
-                        std::max(kCrowdedRadii * static_cast<double>(bodies.radius[row]), kBothAxes * way)) {
+                if (clearance > at_rest + std::max(kCrowdedRadii * radius, kBothAxes * way)) {
                     let_go(i);
                     continue;
                 }
@@ -99,9 +99,8 @@ void SoftSolver<Real>::find_supports_of(std::size_t group, const WorldState<Real
             const Vec2 dv = s.velocity - Vec2{bodies.velocity_x[row], bodies.velocity_y[row]};
             // A wall is a wall everywhere, so it is kept however slowly a body nears it: in a crowd another
             // one may yet throw it there within this step. What is round only holds where it is met.
-            const double crowd = s.is_flat ? kCrowdedRadii * static_cast<double>(bodies.radius[row]) : 0;
-            const double near =
-                contact_distance_ + std::fmax(crowd, dt_ * (std::fabs(dv.x) + std::fabs(dv.y)));
+            const double crowd = s.is_flat ? kCrowdedRadii * radius : 0;
+            const double near = at_rest + std::fmax(crowd, dt_ * (std::fabs(dv.x) + std::fabs(dv.y)));
             const bool is_far = !support.is_wall() && s.separation > near;
             if (!s.is_contact || is_far) {
                 if (!s.is_contact) note_left_edge(i, group, world);

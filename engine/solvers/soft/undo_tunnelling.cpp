@@ -18,7 +18,7 @@ namespace {
 /// Whose centre moves less than this share of its radius past an edge is still held by its contact.
 constexpr double kSmallestWay = 0.5;
 
-/// Discs are looked at one by one if the fastest body moves more than this share of the smallest radius.
+/// A disc is looked at by itself if the fastest body moves more than this share of the disc's radius.
 constexpr double kFastWay = 0.25;
 
 /// Whoever is put back may get behind another edge by that.
@@ -76,12 +76,14 @@ void SoftSolver<Real>::undo_tunnelling(WorldState<Real>& world, const EdgeCandid
     strayed_.clear();
     const Bodies<Real>& bodies = world.bodies;
     // Nobody is made faster than the fastest by much, and only who is fast can pass.
-    if (fastest * dt_ > kFastWay * candidates.smallest_radius())
+    const double largest = fastest * dt_ / kFastWay;  // m, of discs that are fast
+    if (largest > candidates.smallest_radius())
         for (std::size_t row = 0; row < count_; ++row) {
+            const double radius = bodies.radius[row];
+            if (radius >= largest) continue;
             const Vec2 way = Vec2{bodies.position_x[row], bodies.position_y[row]} -
                              Vec2{candidates.built_x()[row], candidates.built_y()[row]};
-            const double margin =
-                static_cast<double>(candidates.reach()[row]) - static_cast<double>(bodies.radius[row]);
+            const double margin = static_cast<double>(candidates.reach()[row]) - radius;
             const double squared = length_squared(way);
             if (squared <= margin * margin || bodies.is_immovable(row)) continue;
             // Edges somewhat beyond its margin are among the supports, too.
