@@ -65,7 +65,8 @@ struct PressedPairs {
                              .rolling_impulse = nullptr,
                              .rolling = nullptr,
                              .rolling_share = nullptr,
-                             .surface_rolling = nullptr},
+                             .surface_rolling = nullptr,
+                             .smaller = nullptr},
                 .velocity = velocity.data(),
                 .displacement = displacement.data(),
                 .uniform_friction = Real(0.5),
@@ -123,6 +124,7 @@ void find_contacts(benchmark::State& state, const KernelTable<Real>& table) {
                                        .a = a.data(),
                                        .b = b.data(),
                                        .reach = reach.data(),
+                                       .smaller = nullptr,
                                        .normal_impulse = out.normal_impulse.data(),
                                        .friction_impulse = out.friction_impulse.data(),
                                        .rolling_impulse = nullptr,
@@ -132,6 +134,7 @@ void find_contacts(benchmark::State& state, const KernelTable<Real>& table) {
                                        .approach = nullptr,
                                        .dt = static_cast<Real>(kStep),
                                        .near = Real(0.005),
+                                       .near_of_smaller = 0,
                                        .deep = Real(-1),
                                        .is_live = is_live.data()};
     const auto kernel = table.find_contacts;
