@@ -56,7 +56,7 @@ void SolverFacts::add(const Body& body, std::string_view label) {
         dull = join(label, " has restitution ", body.material.restitution, ", below ", kBouncy);
 }
 
-SolverFacts facts_of(const Scene& scene) {
+SolverFacts facts_of(const Scene& scene, std::optional<int> iterations) {
     SolverFacts facts;
     facts.has_walls = scene.walls.has_value();
     facts.has_gravity = scene.gravity != Vec2{};
@@ -68,6 +68,8 @@ SolverFacts facts_of(const Scene& scene) {
         facts.forced = "rolling resistance is forced on";
     else if (scene.effects.sleep == true)
         facts.forced = "sleeping is asked for";
+    else if (iterations.value_or(1) > 1)
+        facts.forced = join(*iterations, " iterations are asked for");
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
         const bool is_news = facts.would_change(scene.bodies[i]);
         facts.add(scene.bodies[i], is_news ? join("body ", i) : "");
@@ -90,9 +92,17 @@ SolverChoice choose_solver(const SolverFacts& facts) {
     return {Solver::soft, join("gravity brings bodies to rest on each other: ", facts.dull)};
 }
 
-SolverChoice choose_solver(const Scene& scene, Solver asked_for) {
-    if (asked_for == Solver::automatic) return choose_solver(facts_of(scene));
-    return {asked_for, "asked for"};
+SolverChoice choose_solver(const Scene& scene, const Accuracy& asked_for) {
+    if (asked_for.solver == Solver::automatic) return choose_solver(facts_of(scene, asked_for.iterations));
+    return {asked_for.solver, "asked for"};
+}
+
+std::optional<Problem> find_iterations_problem(std::optional<int> iterations, Solver solver) {
+    if (solver == Solver::soft || iterations.value_or(1) == 1) return std::nullopt;
+    return problem(ErrorCode::inconsistent, {"the accuracy has", "/accuracy", -1, ""}, "/iterations",
+                   "iterations ", *iterations, ", but the solver ", quoted(name_of(solver)),
+                   " does no sweeps that could be repeated; expected 1. Use \"soft\" or \"auto\", or leave "
+                   "\"iterations\" out.");
 }
 
 std::optional<Problem> find_solver_problem(const EffectOverrides& effects, Solver solver) {

@@ -22,7 +22,7 @@ struct SolverFacts {
     bool has_walls = false, has_gravity = false;
     std::string lines;   ///< of a segment or chain
     std::string rough;   ///< of what has friction or rolling resistance
-    std::string forced;  ///< of an effect that was asked for
+    std::string forced;  ///< of an effect, or of sweeps, that were asked for
     std::string dull;    ///< of a body that hardly bounces
 
     template <class Self, class Archive>
@@ -36,18 +36,21 @@ struct SolverFacts {
     /// @param label  how reasons name the body, if it brings one
     void add(const Body& body, std::string_view label);
 };
-SolverFacts facts_of(const Scene& scene);
+/// @param iterations  asked for, the scene's own or in their place
+SolverFacts facts_of(const Scene& scene, std::optional<int> iterations);
 
 /// The solver that suits them. It grows from `impulse` to `soft` as bodies are added, never back.
 SolverChoice choose_solver(const SolverFacts& facts);
 
 /// The solver asked for; for `automatic` the one that suits the scene. Cost: O(bodies) then.
-SolverChoice choose_solver(const Scene& scene, Solver asked_for);
+SolverChoice choose_solver(const Scene& scene, const Accuracy& asked_for);
 
 /// The first thing in the scene that `solver`, as chosen, cannot do. Cost: O(bodies).
 std::optional<Problem> find_solver_problem(const Scene& scene, Solver solver);
 /// The first effect that is forced on and that `solver` does not have.
 std::optional<Problem> find_solver_problem(const EffectOverrides& effects, Solver solver);
+/// Sweeps that `solver`, as chosen, does not do.
+std::optional<Problem> find_iterations_problem(std::optional<int> iterations, Solver solver);
 /// The first thing about one body that `solver` cannot do, for a body that is added to a running world.
 std::optional<Problem> find_solver_problem(const Item& item, const Body& body, Solver solver);
 

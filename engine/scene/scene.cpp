@@ -59,7 +59,9 @@ std::optional<Problem> Scene::find_problem() const {
     if (auto found = find_spread_problem(spread)) return found;
     if (auto found = find_duplicate_name(bodies)) return found;
     if (auto found = find_effects_problem(*this, effects)) return found;
-    return find_solver_problem(*this, choose_solver(*this, accuracy.solver).solver);
+    const Solver solver = choose_solver(*this, accuracy).solver;
+    if (auto found = find_iterations_problem(accuracy.iterations, solver)) return found;
+    return find_solver_problem(*this, solver);
 }
 
 void Scene::validate() const {

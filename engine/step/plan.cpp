@@ -35,7 +35,7 @@ Plan describe_plan(Simulation<Real>& sim, const CalledEffects& called) {
     Plan plan;
     plan.solver = std::string(name_of(sim.solver()));
     plan.solver_reason = called.solver_reason;
-    plan.substeps = sim.substeps_asked_for;
+    plan.substeps = sim.substeps_asked_for, plan.iterations = sim.iterations();
     plan.precision = sizeof(Real) == sizeof(float) ? "float" : "double";
     plan.isa = std::string(sim.kernels->isa);
     plan.threads = sim.executor.threads();

@@ -10,18 +10,20 @@ namespace carom {
 
 Accuracy accuracy_of(const Scene& scene, const WorldOptions& options) {
     Accuracy accuracy = scene.accuracy;
-    accuracy.solver = choose_solver(scene, options.solver.value_or(accuracy.solver)).solver;
     if (options.substeps) accuracy.substeps = options.substeps;
     if (options.iterations) accuracy.iterations = options.iterations;
+    if (options.solver) accuracy.solver = *options.solver;
+    accuracy.solver = choose_solver(scene, accuracy).solver;
     return accuracy;
 }
 
 template <class Real>
 void set_up(Simulation<Real>& sim, const Scene& scene, const WorldOptions& options, const Effects& effects) {
-    const std::optional<int> substeps = accuracy_of(scene, options).substeps;
+    const Accuracy accuracy = accuracy_of(scene, options);
     sim.kernels = &select_kernels(options.isa).template of<Real>();
     sim.executor = Executor(options.threads, options.parallel_for);
-    sim.substeps_asked_for = substeps.value_or(default_substeps(sim.solver()));
+    sim.substeps_asked_for = accuracy.substeps.value_or(default_substeps(sim.solver()));
+    sim.set_iterations(accuracy.iterations);
     WorldState<Real>& world = sim.world;
     world.effects = effects;
     world.gravity = scene.gravity;

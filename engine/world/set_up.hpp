@@ -10,7 +10,7 @@ namespace carom {
 Accuracy accuracy_of(const Scene& scene, const WorldOptions& options);
 
 /// Fills a simulation that was just made (step/make_simulation.hpp) as a world needs it: kernels, threads,
-/// substeps, and columns of the scene's bodies.
+/// substeps, iterations, and columns of the scene's bodies.
 /// @param scene, options  valid together
 /// @param effects  that the scene calls for (scene/call_effects.hpp)
 /// Cost: O(bodies).

@@ -53,7 +53,7 @@ void visit_settings(Settings& settings, Archive& archive) {
     for (auto& report : settings.called.reports) archive(report.name, report.on, report.reason);
     archive(settings.called.effects, settings.called.solver_reason, settings.overrides,
             settings.angular_drag);
-    archive(settings.asked_for, settings.facts, settings.substeps);
+    archive(settings.asked_for, settings.facts, settings.substeps, settings.iterations);
 }
 
 template <class Sim, class Settings, class Archive>
@@ -124,6 +124,7 @@ template <class Real>
 void restore_snapshot(Simulation<Real>& sim, WorldSettings& settings, std::span<const std::byte> state) {
     StateReader reader(state.data() + sizeof(Header));
     visit_all(sim, settings, reader);
+    sim.set_iterations(settings.iterations);
 }
 
 template std::size_t snapshot_bytes(const Simulation<float>&, const WorldSettings&);

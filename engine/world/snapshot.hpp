@@ -18,8 +18,8 @@ struct WorldSettings {
     EffectOverrides overrides;  ///< of the scene and of the options
     double angular_drag = 0;    ///< 1/s, of the scene; in force once something turns
     Solver asked_for = Solver::automatic;
-    SolverFacts facts;            ///< of all bodies there ever were
-    std::optional<int> substeps;  ///< that were asked for
+    SolverFacts facts;                        ///< of all bodies there ever were
+    std::optional<int> substeps, iterations;  ///< that were asked for
 };
 
 // A snapshot is a header and the state as archives list it (state/archive.hpp), for programs of the same

@@ -25,6 +25,7 @@ void check_options(const Scene& scene, const WorldOptions& options) {
             ErrorCode::inconsistent,
             "World: solver \"pairwise\" is the naive reference engine, class carom::Pairwise "
             "(<carom/pairwise.hpp>), not a solver of World. Use \"auto\", \"impulse\" or \"soft\" here.");
+    raise_if("World", find_iterations_problem(accuracy.iterations, accuracy.solver));
     raise_if("World", find_solver_problem(scene, accuracy.solver));
     raise_if("World: option effects", find_solver_problem(options.effects, accuracy.solver));
     validate_effects(scene, scene.effects, "World");
@@ -107,6 +108,7 @@ struct BasicWorld<Real>::Implementation : WorldSettings {
         next->kernels = old.kernels, next->executor = std::move(old.executor);
         next->step_count = old.step_count;
         next->substeps_asked_for = substeps.value_or(default_substeps(solver));
+        next->set_iterations(iterations);
         next->world = std::move(old.world);
         simulation = std::move(next);
     }
@@ -207,9 +209,11 @@ BasicWorld<Real>::BasicWorld(const Scene& scene, const WorldOptions& options) {
         either(options.effects.rolling_resistance, scene.effects.rolling_resistance);
     implementation_->angular_drag = scene.drag.angular;
     implementation_->asked_for = options.solver.value_or(scene.accuracy.solver);
-    implementation_->substeps = accuracy.substeps;
-    implementation_->called.solver_reason = choose_solver(scene, implementation_->asked_for).reason;
-    implementation_->facts = facts_of(scene);
+    implementation_->substeps = accuracy.substeps, implementation_->iterations = accuracy.iterations;
+    implementation_->facts = facts_of(scene, accuracy.iterations);
+    implementation_->called.solver_reason = implementation_->asked_for == Solver::automatic
+                                                ? choose_solver(implementation_->facts).reason
+                                                : "asked for";
     implementation_->threads = options.threads, implementation_->parallel_for = options.parallel_for;
 
     set_up(sim, scene, options, implementation_->called.effects);
@@ -328,6 +332,7 @@ void BasicWorld<Real>::set_solver(Solver solver) {
     const std::string reason_before = implementation_->called.solver_reason;
     SolverChoice choice{solver, "asked for"};
     if (solver == Solver::automatic) choice = choose_solver(implementation_->facts);
+    raise_if("World::set_solver", find_iterations_problem(implementation_->iterations, choice.solver));
     raise_if("World::set_solver", find_solver_problem(implementation_->as_scene(), choice.solver));
     implementation_->change_solver(choice.solver, choice.reason);
     implementation_->undo_if_refused("World::set_solver",

@@ -414,7 +414,7 @@ TEST_SUITE("interface/scene_reader") {
                           "type": "static", "material": "soft", "fixed_rotation": true, "color": "#000000"}}],
             "joints": [],
             "step": {"dt": 0.016, "count": 500},
-            "accuracy": {"solver": "impulse", "substeps": 4, "iterations": 2, "precision": "double"},
+            "accuracy": {"solver": "soft", "substeps": 4, "iterations": 3, "precision": "double"},
             "effects": {"sleep": false, "continuous": true, "ledger": true, "gravity": true, "drag": true,
                         "rotation": true, "restitution": true},
             "record": {"every": 3, "trail": 80}})",
@@ -451,9 +451,9 @@ TEST_SUITE("interface/scene_reader") {
         CHECK(scene.bodies[4].color == "#000000");
         CHECK(scene.step.dt == 0.016);
         CHECK(scene.step.count == 500);
-        CHECK(scene.accuracy.solver == Solver::impulse);
+        CHECK(scene.accuracy.solver == Solver::soft);
         CHECK(scene.accuracy.substeps == 4);
-        CHECK(scene.accuracy.iterations == 2);
+        CHECK(scene.accuracy.iterations == 3);
         CHECK(scene.accuracy.precision == Precision::double_);
         CHECK(scene.effects.sleep == false);
         CHECK(scene.effects.ledger == true);

@@ -21,7 +21,6 @@ Scene with_setting(Scene scene, const Setting& setting) {
     scene.accuracy.solver = setting.solver;
     scene.accuracy.precision = setting.precision;
     scene.accuracy.substeps = setting.substeps;
-    scene.accuracy.iterations = setting.iterations;
     return scene;
 }
 

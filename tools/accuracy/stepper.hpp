@@ -24,7 +24,7 @@ struct Setting {
     Precision precision = Precision::single_;
     double dt = 0;  ///< s
     int substeps = 1;
-    int iterations = 1;
+    int iterations = 1;    ///< of another engine; solvers of ours have their own number and say 1
     std::string engine{};  ///< another engine, in place of the solver; empty: ours
 
     friend bool operator==(const Setting&, const Setting&) = default;

@@ -34,9 +34,10 @@ Json to_json(const Plan& plan, const std::string& scene, std::size_t bodies) {
 
 std::string to_text(const Plan& plan, const std::string& scene, std::size_t bodies) {
     std::string text = format(
-        "%s: %zu bodies\n\nsolver     %s (%s)\nsubsteps   %d\nprecision  %s\nisa        %s\nthreads    %d\n",
+        "%s: %zu bodies\n\nsolver     %s (%s)\nsubsteps   %d\niterations %d\nprecision  %s\nisa        "
+        "%s\nthreads    %d\n",
         printable(scene).c_str(), bodies, plan.solver.c_str(), plan.solver_reason.c_str(), plan.substeps,
-        plan.precision.c_str(), plan.isa.c_str(), plan.threads);
+        plan.iterations, plan.precision.c_str(), plan.isa.c_str(), plan.threads);
     text += "\neffects\n";
     for (const EffectReport& effect : plan.effects)
         text += format("  %-3s  %-20s  %s\n", effect.on ? "on" : "off", effect.name.c_str(),

@@ -23,7 +23,6 @@ struct RunOutcome {
     bool interrupted = false;
     double dt = 0;    // s
     double time = 0;  // s, simulated
-    std::optional<int> iterations;
 
     Plan plan;
     Profile profile;

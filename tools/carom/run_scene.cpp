@@ -73,6 +73,7 @@ std::string settings_text(const Scene& scene, const Plan& plan) {
                                 {"edges", edges_json(scene.bodies)},
                                 {"solver", plan.solver},
                                 {"substeps", plan.substeps},
+                                {"iterations", plan.iterations},
                                 {"precision", plan.precision},
                                 {"isa", plan.isa},
                                 {"threads", plan.threads}};
@@ -153,7 +154,6 @@ void describe_end(const Scene& scene, const Simulation& simulation, RunOutcome& 
     run.steps_asked = scene.step.count;
     run.dt = scene.step.dt;
     run.time = simulation.time();
-    run.iterations = scene.accuracy.iterations;
     run.profile = simulation.profile();
     run.ledger = simulation.ledger();
     run.keeps_ledger = simulation.keeps_ledger();

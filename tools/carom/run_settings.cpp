@@ -59,16 +59,19 @@ void add(CLI::App& command, const char* option, const char* value, const char* h
 }
 
 void add_accuracy_options(CLI::App& command, RunSettings& settings) {
-    add(command, "--solver", "NAME", "auto, impulse or pairwise", [&settings](const std::string& text) {
-        known_value("--solver", text, {"auto", "pairwise", "impulse", "soft", "rigid", "event", "rattle"});
-        settings.solver = solver_named(text);
-    });
+    add(command, "--solver", "NAME", "auto, impulse, soft, event or pairwise",
+        [&settings](const std::string& text) {
+            known_value("--solver", text,
+                        {"auto", "pairwise", "impulse", "soft", "rigid", "event", "rattle"});
+            settings.solver = solver_named(text);
+        });
     add(command, "--substeps", "N", "Parts a step is cut into", [&settings](const std::string& text) {
         settings.substeps = static_cast<int>(whole_number("--substeps", text, 1, kMostParts));
     });
-    add(command, "--iterations", "N", "Passes of the solver", [&settings](const std::string& text) {
-        settings.iterations = static_cast<int>(whole_number("--iterations", text, 1, kMostParts));
-    });
+    add(command, "--iterations", "N", "Sweeps over the contacts a substep (solver soft)",
+        [&settings](const std::string& text) {
+            settings.iterations = static_cast<int>(whole_number("--iterations", text, 1, kMostParts));
+        });
     add(command, "--precision", "NAME", "float or double", [&settings](const std::string& text) {
         known_value("--precision", text, {"float", "double"});
         settings.precision = text == "float" ? Precision::single_ : Precision::double_;

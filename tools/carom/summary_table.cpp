@@ -18,8 +18,10 @@ std::string heading(const RunOutcome& run) {
     if (run.interrupted)
         text += format(" (interrupted; %lld steps asked)", static_cast<long long>(run.steps_asked));
     text += format("\n  solver %s (%s)\n", run.plan.solver.c_str(), run.plan.solver_reason.c_str());
-    text += format("  %d substep%s, %s precision, %s, %d thread%s\n", run.plan.substeps,
-                   run.plan.substeps == 1 ? "" : "s", run.plan.precision.c_str(), run.plan.isa.c_str(),
+    text += format("  %d substep%s", run.plan.substeps, run.plan.substeps == 1 ? "" : "s");
+    if (run.plan.solver == "soft")
+        text += format(" of %d iteration%s", run.plan.iterations, run.plan.iterations == 1 ? "" : "s");
+    text += format(", %s precision, %s, %d thread%s\n", run.plan.precision.c_str(), run.plan.isa.c_str(),
                    run.plan.threads, run.plan.threads == 1 ? "" : "s");
     return text;
 }

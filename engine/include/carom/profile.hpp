@@ -69,6 +69,7 @@ struct Plan {
     std::string solver;
     std::string solver_reason;
     int substeps = 1;
+    int iterations = 1;  ///< sweeps over the contacts a substep (solver `soft`); 1: the solver does none
     std::string precision;
     std::string isa;
     int threads = 1;

@@ -26,6 +26,9 @@ std::size_t Simulation<Real>::wake_body(std::size_t row) {
 }
 
 template <class Real>
+void Simulation<Real>::set_iterations(std::optional<int>) {}
+
+template <class Real>
 int Simulation<Real>::substeps_for_drag(double dt) const {
     // So that the series of effects/flight.hpp stay exact.
     const double largest_drag = std::fmax(world.drag.linear, world.drag.angular);

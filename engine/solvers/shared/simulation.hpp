@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -59,8 +60,13 @@ class Simulation {
     /// Wakes the island of a row, if it sleeps. @return the row it has then
     virtual std::size_t wake_body(std::size_t row);
 
+    /// Sweeps over the contacts a substep, where the solver does any. @param wanted  >= 1; none: its own
+    virtual void set_iterations(std::optional<int> wanted);
+
     // Reports.
 
+    /// Those sweeps; 1 for a solver that does none.
+    virtual int iterations() const { return 1; }
     /// Adds what the solver has counted.
     virtual void report(Profile& profile) const = 0;
     /// Calls visit for each of its stages, in the order of the step.

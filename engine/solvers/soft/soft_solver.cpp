@@ -25,7 +25,7 @@ constexpr double kCalm = 1;
 constexpr double kNearFraction = 0.04;
 /// Of the smaller radius: bodies that start a step as deep in each other are parted at its end.
 constexpr double kDeep = 0.1;
-/// Second sweeps of the first substep if there are no impulses to start from.
+/// Next sweeps of the first substep if there are no impulses to start from, unless none are asked for.
 constexpr int kFirstSweeps = 32;
 /// Impulses of substeps that were longer or shorter by this factor are of no use.
 constexpr double kOtherLength = 2;
@@ -144,8 +144,9 @@ SolveContacts<Real> SoftSolver<Real>::arguments(ContactRows<Real>& live) {
     k.recovery = static_cast<Real>(kRecovery), k.push = static_cast<Real>(push_);
     const double fall = std::sqrt(length_squared(gravity_change_));
     k.calm = static_cast<Real>(fall > 0 ? kCalm * fall : -1);
-    k.over_relaxation = static_cast<Real>(kOverRelaxation);
-    k.calm_over_relaxation = static_cast<Real>(kCalmOverRelaxation);
+    const bool has_next = iterations > 1;  // which takes back what was too much
+    k.over_relaxation = has_next ? static_cast<Real>(kOverRelaxation) : Real(1);
+    k.calm_over_relaxation = has_next ? static_cast<Real>(kCalmOverRelaxation) : Real(1);
     k.needs_second_sweep = live.needs_second_sweep.data();
     return k;
 }
@@ -392,12 +393,16 @@ void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
     if (number == 0)  // what contacts hold is of the step before
         on_supports.contacts.largest_impulse = on_pairs.contacts.largest_impulse = nullptr;
     const bool starts_anew = number == 0 && !are_impulses_known_;
-    const bool only_restless = !starts_anew && !is_last && !is_unloaded_;
+    // Who asks for more sweeps asks for contacts to be solved better: then none is left out.
+    const bool only_restless = !starts_anew && !is_last && !is_unloaded_ && iterations == kDefaultIterations;
+    const int next = iterations - 1;
     const std::array sweeps{Sweep{kernels.first_pairs, kernels.first_supports, Sweep::Blocks::all_and_mark},
                             next_sweep(only_restless ? Sweep::Blocks::restless : Sweep::Blocks::all,
-                                       starts_anew ? kFirstSweeps : 1)};
-    is_correction_due_ = is_last && length_squared(gravity_change_) > 0 && coarse_.is_due(count_, number + 1);
-    sweep({sweeps.data(), is_correction_due_ ? std::size_t{1} : sweeps.size()}, on_pairs, on_supports);
+                                       starts_anew ? std::max(kFirstSweeps, next) : next)};
+    is_correction_due_ =
+        next > 0 && is_last && length_squared(gravity_change_) > 0 && coarse_.is_due(count_, number + 1);
+    const bool is_first_alone = is_correction_due_ || next == 0;
+    sweep({sweeps.data(), is_first_alone ? std::size_t{1} : sweeps.size()}, on_pairs, on_supports);
 }
 
 template <class Real>
@@ -405,42 +410,6 @@ void SoftSolver<Real>::solve_uneven_contacts() {
     if (are_masses_uneven_)
         uneven_.solve(arguments(graph.pairs), arguments(supports_),
                       std::sqrt(length_squared(gravity_change_)));
-}
-
-template <class Real>
-SolveContacts<Real> SoftSolver<Real>::coarse_arguments(ContactRows<Real>& live) {
-    SolveContacts<Real> k = arguments(live);
-    k.reach = live.reach.data();
-    k.load = coarse_.load(), k.stress = coarse_.stress(), k.scale = coarse_.scale();
-    k.kept = static_cast<Real>(coarse_.kept());
-    return k;
-}
-
-template <class Real>
-void SoftSolver<Real>::correct_loads(const Column<Real>& motion) {
-    if (!is_correction_due_) return;
-    const ContactKernels<Real>& kernels = contact_kernels();
-    coarse_.begin(velocity_.size() / 4);
-    const SolveContacts<Real> on_pairs = coarse_arguments(graph.pairs),
-                              on_supports = coarse_arguments(supports_);
-    const Sweep sum{kernels.sum_loads_pairs, kernels.sum_loads_supports},
-        scale{kernels.scale_loads_pairs, kernels.scale_loads_supports};
-    sweep({&sum, 1}, on_pairs, on_supports);
-    is_corrected_ = coarse_.find_scale(count_, motion.data(), velocity_.data(), largest_radius_,
-                                       gravity_change_, *executor_);
-    if (is_corrected_) sweep({&scale, 1}, on_pairs, on_supports);
-    const Sweep next = next_sweep(Sweep::Blocks::all);
-    sweep({&next, 1}, arguments(graph.pairs), arguments(supports_));
-}
-
-/// After the books of the step, which have the impulses as they were.
-template <class Real>
-void SoftSolver<Real>::retain_correction() {
-    if (!is_corrected_) return;
-    is_corrected_ = false;
-    const ContactKernels<Real>& kernels = contact_kernels();
-    const Sweep keep{kernels.keep_loads_pairs, kernels.keep_loads_supports};
-    sweep({&keep, 1}, coarse_arguments(graph.pairs), coarse_arguments(supports_));
 }
 
 template <class Real>

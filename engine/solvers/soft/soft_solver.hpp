@@ -20,6 +20,8 @@ namespace carom {
 
 struct SupportSurface;
 
+inline constexpr int kDefaultIterations = 2;  // sweeps a substep: docs/decisions/0004-soft-solver.md
+
 /// What the soft solver counts (the docstrings of Profile say what each means).
 struct SoftCounters {
     std::int64_t contacts = 0;  ///< in the last step
@@ -52,6 +54,9 @@ class SoftSolver {
   public:
     ContactGraph<Real> graph;
     SoftCounters counters;
+    /// Sweeps over the contacts a substep, >= 1: a first one and next ones. With 1 the first is not
+    /// over-relaxed and loads are not corrected on the coarse grid; with more than 2 no contact is left out.
+    int iterations = kDefaultIterations;
 
     /// Velocity records of all bodies at the start of a step.
     void begin_substeps(const WorldState<Real>& world, const Column<Real>& motion, double h,

@@ -9,6 +9,7 @@ using Json = nlohmann::ordered_json;
 Json plan_json(const Plan& plan) {
     Json json{{"solver", {{"name", plan.solver}, {"reason", plan.solver_reason}}},
               {"substeps", plan.substeps},
+              {"iterations", plan.iterations},
               {"precision", plan.precision},
               {"isa", plan.isa},
               {"threads", plan.threads},

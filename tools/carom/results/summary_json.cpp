@@ -144,7 +144,7 @@ Json summary_of(const RunOutcome& run) {
               {"time", run.time},
               {"solver", run.plan.solver},
               {"substeps", run.plan.substeps},
-              {"iterations", run.iterations.value_or(1)},
+              {"iterations", run.plan.iterations},
               {"precision", run.plan.precision},
               {"isa", run.plan.isa},
               {"threads", run.plan.threads}};

@@ -55,9 +55,6 @@ void check_settings(const Scene& scene) {
     if (scene.effects.continuous == true)
         refuse(ErrorCode::inconsistent, "effect continuous is forced on; the naive engine does not have it. ",
                kRemedy);
-    if (scene.accuracy.iterations.value_or(1) != 1)
-        refuse(ErrorCode::out_of_range, "iterations is ", *scene.accuracy.iterations,
-               "; expected 1: the naive engine looks at every pair once a step.");
 }
 
 PairwiseWalls to_pairwise_walls(const Walls& walls, double body_restitution) {
