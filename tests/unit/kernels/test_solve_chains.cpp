@@ -22,7 +22,7 @@ constexpr std::size_t kDiscs = 9;
 /// Discs in a zigzag, each in contact with the next one and some with a plane, thrown about. A chain has two
 /// colours of pairs, and one of supports: each has a batch of its own here.
 template <class Real>
-struct Chain {
+struct ChainOfDiscs {
     std::vector<RigidDisc> discs{kDiscs};
     RigidDisc plane;
     std::vector<DiscContact> contacts;  // pairs, then supports
@@ -30,7 +30,7 @@ struct Chain {
     Column<std::int32_t> a, b;
     Column<Real> normal_x, normal_y, mass, along, tangent, floor, surface, velocity;
 
-    Chain(unsigned seed, double friction) {
+    ChainOfDiscs(unsigned seed, double friction) {
         std::mt19937 random(seed);
         const auto draw = [&](double low, double high) -> long double {
             return static_cast<Real>(low + (high - low) * static_cast<double>(random() % 10001) * 1e-4);
@@ -50,7 +50,7 @@ struct Chain {
         for (DiscContact& c : contacts) c.floor = draw(-0.1, 0);
         lay_out();
     }
-    Chain(const Chain&) = delete;
+    ChainOfDiscs(const ChainOfDiscs&) = delete;
 
     /// Place of a contact: even pairs, odd pairs, supports.
     std::size_t place(std::size_t contact) const {
@@ -137,7 +137,7 @@ TEST_SUITE("kernels/solve chains") {
         for (unsigned seed = 1; seed <= 12; ++seed) {
             std::vector<long double> exact;
             for (const KernelTables* tables : runnable_kernel_tables()) {
-                Chain<Real> chain(seed, 0);
+                ChainOfDiscs<Real> chain(seed, 0);
                 if (exact.empty()) exact = chain.exact_impulses();
                 REQUIRE(exact.size() == chain.contacts.size());
                 chain.sweep(tables->of<Real>().contacts[0], 0, 2000);
@@ -159,7 +159,7 @@ TEST_SUITE("kernels/solve chains") {
         for (unsigned seed = 1; seed <= 12; ++seed)
             for (const KernelTables* tables : runnable_kernel_tables()) {
                 const double friction = 0.0625 * (1 + seed % 4);
-                Chain<Real> chain(seed, friction);
+                ChainOfDiscs<Real> chain(seed, friction);
                 Vector before, after;
                 for (const RigidDisc& d : chain.discs) before = before + 1 / d.inverse_mass * d.velocity;
                 chain.sweep(tables->of<Real>().contacts[1], friction, 2000);
