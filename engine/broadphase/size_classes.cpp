@@ -19,7 +19,8 @@ bool is_within_ratio(Real smallest, Real largest) {
 
 template <class Real>
 void SizeClasses<Real>::count(const Real* reach, const std::uint8_t* flags, std::size_t count) {
-    classes_.fill({});
+    classes_.assign(kClasses, {});
+    levels_.resize(kClasses), level_of_class_.resize(kClasses);
     for (std::size_t row = 0; row < count; ++row) {
         if (flags && (flags[row] & kNotInGrid)) continue;
         Members& members = classes_[class_of(reach[row])];

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace carom {
 
@@ -39,6 +39,11 @@ class SizeClasses {
     /// reach: of a body that was counted.
     std::size_t level_of(Real reach) const { return level_of_class_[class_of(reach)]; }
 
+    std::size_t bytes() const {
+        return (classes_.capacity() + levels_.capacity()) * sizeof(Members) +
+               level_of_class_.capacity() * sizeof(std::uint16_t);
+    }
+
   private:
     static constexpr std::size_t kClasses = 512;
 
@@ -54,9 +59,9 @@ class SizeClasses {
     }
     static bool fits(const Members& level, const Members& finer, Grouping grouping);
 
-    std::array<Members, kClasses> classes_{};
-    std::array<Members, kClasses> levels_{};
-    std::array<std::uint16_t, kClasses> level_of_class_{};
+    // [kClasses] each; empty as long as all bodies are of one size.
+    std::vector<Members> classes_, levels_;
+    std::vector<std::uint16_t> level_of_class_;
     std::size_t level_count_ = 0;
 };
 

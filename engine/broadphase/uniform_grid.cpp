@@ -165,8 +165,9 @@ typename UniformGrid<Real>::Block UniformGrid<Real>::block_counts(double cells_a
 
 template <class Real>
 std::size_t UniformGrid<Real>::bytes() const noexcept {
-    std::size_t sum = built_x_.bytes() + built_y_.bytes() + split_.x.bytes() + split_.y.bytes() +
-                      split_.reach.bytes() + split_.row.bytes() + order_.bytes() + near_.bytes();
+    std::size_t sum = classes_.bytes() + built_x_.bytes() + built_y_.bytes() + split_.x.bytes() +
+                      split_.y.bytes() + split_.reach.bytes() + split_.row.bytes() + order_.bytes() +
+                      near_.bytes();
     for (const SortedLevel<Real>& level : levels_) sum += level.bytes();
     sum += pairs_.a.bytes() + pairs_.b.bytes();
     for (const CandidatePairs& pairs : chunk_pairs_) sum += pairs.a.bytes() + pairs.b.bytes();
