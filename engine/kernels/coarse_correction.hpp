@@ -22,7 +22,7 @@ void sum_loads(const SolveContacts<Real>& k, std::size_t first, std::size_t last
     using F = typename Lanes::Batch;
     const F half(Real(0.5));
     for (std::size_t c = first; c < last; c += Lanes::size) {
-        const std::int32_t *row_a = k.contacts.a + c, *row_b = k.contacts.b + c;
+        const std::int32_t *row_a = k.contacts.a + c, *row_b = kOtherMoves ? k.contacts.b + c : nullptr;
         const F nx = Lanes::load(k.contacts.normal_x + c), ny = Lanes::load(k.contacts.normal_y + c);
         const MovingSide<kVariant, Lanes> a{Lanes::load_rows4(k.velocity, row_a)};
         const auto b = load_other_side<kVariant, kOtherMoves, Lanes>(k, c);
