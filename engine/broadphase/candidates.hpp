@@ -99,7 +99,7 @@ class Candidates {
     /// How far places, built_x and built_y, may go with the mean flow of the bodies before the pairs are void
     /// [m]. Lists of what a body reaches besides other bodies, as walls and edges, have to look farther by
     /// that.
-    double largest_drift() const { return rule_ == MarginRule::own ? kLargestDrift * radii_.smallest : 0; }
+    double largest_drift() const { return rule_ == MarginRule::own ? kLargestDrift * radii_.usual : 0; }
 
     /// Rule `own`: moves the places with the mean flow. To be called first in every step of length dt [s].
     /// A body that has used up its margin by that has a reach of its radius; it is to be taken for a stray.
@@ -120,6 +120,7 @@ class Candidates {
     /// Of the discs, as they were when the pairs were found last.
     double largest_radius() const { return radii_.largest; }
     double smallest_radius() const { return radii_.smallest; }
+    double usual_radius() const { return radii_.usual; }
     /// Null if they may have changed since.
     const Radii* known_radii() const { return radii_are_known_ ? &radii_ : nullptr; }
 
@@ -148,7 +149,7 @@ class Candidates {
   private:
     static constexpr double kRoundingUp =
         1 + 1e-6;                               // factor on a reach: it and the place are rounded to Real
-    static constexpr double kLargestDrift = 6;  // smallest radii that a place may drift by
+    static constexpr double kLargestDrift = 6;  // usual radii that a place may drift by
     /// Rule `own`: pairs are found anew when one body in this many has got a new margin.
     static constexpr std::size_t kBodiesPerRenewal = 8;
     /// A body's own margin is at most this many of the largest radius, unless 1.25 steps of it are more.

@@ -17,7 +17,7 @@ constexpr double kLargestEdgeMargin = 4;
 constexpr double kOwnEdgeMargin = 1.25;  // ways of one step that the margin of a fast edge is
 
 // Discs that leave their margins get new ones where they are. Pairs are found as if every reach was larger by
-// this share of the smallest radius, so that most of these discs need not be looked at again.
+// this share of the usual radius, so that most of these discs need not be looked at again.
 constexpr double kAllowance = 0.5;
 
 // An edge that is long beside the discs is looked at in pieces, so that the search stays near it. More pieces
@@ -71,7 +71,7 @@ bool EdgeCandidates<Real>::has_left_margin() const {
 template <class Real>
 void EdgeCandidates<Real>::find(const WorldState<Real>& world, const Candidates<Real>& candidates) {
     pairs_.clear(), new_pairs_.clear();
-    allowance_ = kAllowance * candidates.smallest_radius();
+    allowance_ = kAllowance * candidates.usual_radius();
     found_at_.resize(poses_.size());
     if (poses_.empty()) return;
     double largest_reach = 0;

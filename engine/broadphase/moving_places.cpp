@@ -21,7 +21,7 @@ constexpr double kCellInReaches = 4;
 /// A field that takes more of a distance is not followed: bodies farther from each other than those must not
 /// meet.
 constexpr double kLargestStretch = 0.25;
-/// A flow that carries no body farther than this share of the smallest radius in a step is not followed.
+/// A flow that carries no body farther than this share of the usual radius in a step is not followed.
 constexpr double kStill = 0.005;
 /// No flow is followed if more than one body in this many is immovable.
 constexpr std::size_t kBodiesPerImmovable = 32;
@@ -198,8 +198,8 @@ void Candidates<Real>::begin_flow(const Bodies<Real>& bodies, const FlightClock&
     for (std::size_t row = 0; row < bodies.count && bodies.has_flags; ++row)
         immovable += takes_part(bodies.flags_of(row)) && bodies.is_immovable(row);
     may_flow_ = immovable * kBodiesPerImmovable <= bodies.count;
-    flows_ = may_flow_ && end.s * most.speed > kStill * radii_.smallest &&
-             end.s * most.rate < kLargestStretch && end.s * most.speed < drift_left_;
+    flows_ = may_flow_ && end.s * most.speed > kStill * radii_.usual && end.s * most.rate < kLargestStretch &&
+             end.s * most.speed < drift_left_;
     flow_is_local_ = true, largest_reach_ = 0;
     if (!flows_) return;
     executor.for_each_chunk(

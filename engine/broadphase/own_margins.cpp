@@ -12,7 +12,7 @@ namespace {
 
 // docs/decisions/0012-threads-of-soft.md has the measurements.
 constexpr double kOwnSteps = 5;          // steps at the body's own speed that a margin is to last
-constexpr double kSmallestMargin = 0.1;  // smallest radii that every margin has
+constexpr double kSmallestMargin = 0.1;  // own radii, or usual ones if these are less, that every margin has
 constexpr double kLargestSize = 4;       // own radii that count as a body's size beside much larger ones
 constexpr double kFewestSteps = 1.25;    // steps that a margin lasts, even above the largest margin
 constexpr double kFlowSteps = 0.7;       // steps of the flow around the body, because the flow changes
@@ -39,7 +39,8 @@ Real Candidates<Real>::own_reach(const Bodies<Real>& bodies, std::size_t row, co
     const double size = std::min(radii_.largest, kLargestSize * static_cast<double>(bodies.radius[row]));
     const double most = std::max(kLargestOwnMargin * size, kFewestSteps * travel);
     const double wanted = kOwnSteps * travel + kFlowSteps * end.s * std::sqrt(length_squared(flow));
-    const double margin = std::max(std::min(wanted, most), kSmallestMargin * radii_.smallest);
+    const double least = kSmallestMargin * std::min(radii_.usual, static_cast<double>(bodies.radius[row]));
+    const double margin = std::max(std::min(wanted, most), least);
     return static_cast<Real>(static_cast<double>(bodies.radius[row]) + margin);
 }
 

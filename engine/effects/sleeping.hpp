@@ -16,7 +16,7 @@ inline constexpr double kWakingShare = 0.1;
 
 /// Speed, of the centre and of the rim, up to which a body is still [m/s]: what gravity adds in a substep.
 /// Contacts at rest hold velocities no better than that. As substeps are so short that a body falls at most
-/// 0.005 of the smallest radius in one, g h²/2, it is at most 0.1 sqrt(g r): such a speed lifts nothing by
+/// 0.005 of the usual radius in one, g h²/2, it is at most 0.1 sqrt(g r): such a speed lifts nothing by
 /// more than 0.005 r.
 inline double still_speed(double gravity, double substep, double radius) {
     return gravity > 0 ? gravity * substep : kStillShareOfRadius * radius / kTimeToSleep;

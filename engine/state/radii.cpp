@@ -1,8 +1,42 @@
 #include "state/radii.hpp"
 
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 namespace carom {
+namespace {
+
+/// Bins of an eighth of an octave: exponent and three bits of the mantissa of a positive float.
+constexpr int kBitsBelowBin = 20;
+constexpr std::size_t kBins = std::size_t{1} << (31 - kBitsBelowBin);
+
+template <class Real>
+std::size_t bin_of(Real radius) {
+    return std::bit_cast<std::uint32_t>(static_cast<float>(radius)) >> kBitsBelowBin;
+}
+
+/// The smallest radius of the first bin at which more discs have been counted than may be left out.
+template <class Real>
+double find_usual(const Bodies<Real>& bodies) {
+    std::array<std::uint32_t, kBins> discs{};
+    std::size_t count = 0;
+    for (std::size_t row = 0; row < bodies.count; ++row)
+        if (!bodies.is_immovable(row)) ++discs[bin_of(bodies.radius[row])], ++count;
+    if (count == 0) return 0;
+    std::size_t bin = 0;
+    for (std::size_t left_out = 0; (left_out += discs[bin]) * kUsualShare <= count;) ++bin;
+    double usual = 0;
+    for (std::size_t row = 0; row < bodies.count; ++row) {
+        const Real radius = bodies.radius[row];
+        if (bin_of(radius) != bin || bodies.is_immovable(row)) continue;
+        usual = usual > 0 ? std::fmin(usual, radius) : static_cast<double>(radius);
+    }
+    return usual;
+}
+
+}  // namespace
 
 template <class Real>
 Radii measure_radii(const Bodies<Real>& bodies) {
@@ -16,6 +50,8 @@ Radii measure_radii(const Bodies<Real>& bodies) {
         any = true;
         if (bodies.radius.is_uniform()) break;
     }
+    if (!bodies.radius.is_uniform()) radii.usual = find_usual(bodies);
+    if (!(radii.usual > 0)) radii.usual = radii.smallest;
     return radii;
 }
 

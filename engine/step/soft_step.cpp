@@ -11,9 +11,9 @@
 namespace carom {
 namespace {
 
-/// Substeps are so many that a body falls at most this share of the smallest radius from rest in one, because
-/// contacts are looked at once a substep.
-constexpr double kLargestFall = 0.005;
+/// Substeps are so many that a body falls at most this share of the usual radius from rest in one, because
+/// contacts are looked at once a substep. No more are taken than a scene may ask for.
+constexpr double kLargestFall = 0.005, kMostSubsteps = 1024;
 
 template <class Real>
 class SoftStep final : public SoftSimulation<Real> {
@@ -120,10 +120,11 @@ class SoftStep final : public SoftSimulation<Real> {
 
     int substeps_against_gravity(double dt) const {
         const Radii* known = this->candidates.known_radii();
-        const double smallest = known ? known->smallest : measure_radii(this->world.bodies).smallest;
-        if (!(smallest > 0)) return 0;
+        const double usual = known ? known->usual : measure_radii(this->world.bodies).usual;
+        if (!(usual > 0)) return 0;
         const double gravity = std::sqrt(length_squared(this->world.gravity));
-        return static_cast<int>(std::ceil(dt * std::sqrt(0.5 * gravity / (kLargestFall * smallest))));
+        const double substeps = std::ceil(dt * std::sqrt(0.5 * gravity / (kLargestFall * usual)));
+        return static_cast<int>(std::fmin(substeps, kMostSubsteps));
     }
 
   public:

@@ -161,11 +161,6 @@ double SoftSolver<Real>::deep_overlap(double radius) const {
     return kDeep * radius;
 }
 
-template <class Real>
-double SoftSolver<Real>::smaller_radius(std::size_t pair) const {
-    return radius_varies_ ? static_cast<double>(graph.pairs.smaller[pair]) : uniform_radius_;
-}
-
 /// What stays the same until the pairs change.
 template <class Real>
 void SoftSolver<Real>::describe_group(const Bodies<Real>& bodies, std::size_t group) {

@@ -189,7 +189,9 @@ class SoftSolver {
     /// Overlap that the sweeps do not take away soon enough [m].
     double deep_overlap(double radius) const;
     /// Of the two bodies of a pair [m].
-    double smaller_radius(std::size_t pair) const;
+    double smaller_radius(std::size_t pair) const {
+        return radius_varies_ ? static_cast<double>(graph.pairs.smaller[pair]) : uniform_radius_;
+    }
     void rescale_impulses(ContactRows<Real>& candidates) const;
     void derive_masses(const Bodies<Real>& bodies);
     void find_pairs(const Bodies<Real>& bodies, const Column<Real>& motion);
