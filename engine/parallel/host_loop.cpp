@@ -7,7 +7,7 @@
 namespace carom {
 
 void HostLoop::carry_out(std::size_t task) {
-    std::uint8_t left = kLeft;
+    std::uint8_t left = kWaiting;
     if (!progress_[task].compare_exchange_strong(left, kBegun)) return;
     try {
         task_.invoke(task_.function, task);
@@ -19,7 +19,7 @@ void HostLoop::carry_out(std::size_t task) {
 
 std::exception_ptr HostLoop::run(const ParallelFor& parallel_for, std::size_t count, Task task) {
     if (count > room_) progress_ = std::make_unique<std::atomic<std::uint8_t>[]>(count), room_ = count;
-    for (std::size_t i = 0; i < count; ++i) progress_[i].store(kLeft, std::memory_order_relaxed);
+    for (std::size_t i = 0; i < count; ++i) progress_[i].store(kWaiting, std::memory_order_relaxed);
     task_ = task;
     std::exception_ptr error;
     try {

@@ -26,7 +26,7 @@ class HostLoop {
     std::exception_ptr run(const ParallelFor& parallel_for, std::size_t count, Task task);
 
   private:
-    enum Progress : std::uint8_t { kLeft, kBegun, kDone };
+    enum Progress : std::uint8_t { kWaiting, kBegun, kDone };
     void carry_out(std::size_t task);
 
     std::unique_ptr<std::atomic<std::uint8_t>[]> progress_;

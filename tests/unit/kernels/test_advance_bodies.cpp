@@ -197,23 +197,23 @@ TEST_SUITE("kernels/advance bodies") {
             const Rows<Real> before = rows;
             rows.begin(kernels, kLinear, kAngular);
             // Contacts push by 0.3 m/s and more, many times what gravity and drag change in a substep.
-            const auto push = [](std::size_t row, int k) {
+            const auto push = [](std::size_t row, std::size_t k) {
                 return static_cast<Real>(0.3 * static_cast<double>(1 + (row + 1) * (k + 1) % 3));
             };
             for (std::size_t row = 0; row < rows.count; ++row)
-                for (int k = 0; k < 3; ++k)
+                for (std::size_t k = 0; k < 3; ++k)
                     if (rows.moves(row)) rows.velocity[4 * row + k] += push(row, k);
             const Column<Real> solved = rows.velocity;
             rows.advance(kernels, kLinear, kAngular, false);
             long double worst = 0;
             for (std::size_t row = 0; row < rows.count; ++row) {
                 const bool moves = rows.moves(row);
-                const auto next = [&](int k, long double a) {
+                const auto next = [&](std::size_t k, long double a) {
                     const long double now = solved[4 * row + k];
                     return moves ? fly({0, now}, a, kLinear, kH).v + push(row, k) : now;
                 };
                 const long double expected[] = {next(0, kGravityX), next(1, kGravityY)};
-                for (int k = 0; k < 2; ++k) {
+                for (std::size_t k = 0; k < 2; ++k) {
                     worst = std::max(worst, std::fabs(rows.velocity[4 * row + k] - expected[k]));
                     // A velocity that was pushed is that of all the substep.
                     worst =
