@@ -8,8 +8,9 @@
 namespace carom {
 namespace {
 
-/// Bins of an eighth of an octave: exponent and three bits of the mantissa of a positive float.
-constexpr int kBitsBelowBin = 20;
+/// Bins of an octave: the exponent of a positive float. Where no disc is much smaller than most, the usual
+/// radius is then the smallest.
+constexpr int kBitsBelowBin = 23;
 constexpr std::size_t kBins = std::size_t{1} << (31 - kBitsBelowBin);
 
 template <class Real>
