@@ -117,7 +117,7 @@ class Candidates {
     const Column<Real>& built_y() const { return rule_ == MarginRule::own ? own_y_ : grid_.built_y(); }
     const Column<Real>& reach() const { return reach_; }  ///< m, radius plus margin
     const UniformGrid<Real>& grid() const { return grid_; }
-    /// Of the discs, as they were when the pairs were found last.
+    /// The radii of the discs [m], as they were when the pairs were found last.
     double largest_radius() const { return radii_.largest; }
     double smallest_radius() const { return radii_.smallest; }
     double usual_radius() const { return radii_.usual; }

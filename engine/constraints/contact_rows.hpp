@@ -125,7 +125,7 @@ struct ContactRows {
     struct Run {
         std::uint32_t first, last;
     };
-    // Of pairs alone.
+    // These columns are for pairs alone.
     Column<std::uint8_t> is_live;                    // a block: kernels/contact_arguments.hpp
     Column<std::uint8_t> needs_second_sweep;         // a block: likewise
     Column<Run> run;                                 // those of a group begin at its first block

@@ -63,7 +63,7 @@ struct SolveContacts {
     Real calm_over_relaxation;  // of those of calm contacts
     std::uint8_t*
         needs_second_sweep;  // out, [last / kContactBlock]: set where a contact of the block is not calm
-    // Of kernels/coarse_correction.hpp alone.
+    // The rest is for kernels/coarse_correction.hpp alone.
     const Real* reach = nullptr;  // m, sum of the radii; null where b is
     Real* load = nullptr;         // [rows][4]
     Real* stress = nullptr;       // [rows][4]

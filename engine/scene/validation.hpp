@@ -34,7 +34,7 @@ void validate_effects(const Scene& scene, const EffectOverrides& effects, std::s
 std::optional<Problem> find_body_problem(const Item& item, const Body& body);
 /// What a body may do: a static or quarantined one stands still, one of fixed rotation does not turn.
 enum class Mobility : std::uint8_t { all, no_rotation, none, quarantined };
-/// That the velocity is zero where nothing moves the body. Kinematic bodies move as they are told.
+/// Checks that the velocity is zero where nothing moves the body. Kinematic bodies move as they are told.
 std::optional<Problem> find_velocity_problem(const Item& item, Mobility mobility, Vec2 velocity);
 std::optional<Problem> find_angular_velocity_problem(const Item& item, Mobility mobility, double spin);
 std::optional<Problem> find_inside_problem(const Item& item, const Body& body, const Walls& walls);

@@ -9,7 +9,7 @@ namespace carom {
 namespace {
 
 constexpr double kFarAhead = 1e15;  // s, at which the search for a curved path's impact ends
-/// That search finds a contact to this share of the reach (the sum of the radii).
+/// The search for a contact ends within this share of the reach (the sum of the radii).
 constexpr double kContactRoundOff = 1e-13;
 /// It gave up before the two touched if they are farther apart than this share of the reach, and than
 /// round-off: the share below of the coordinates.

@@ -88,7 +88,7 @@ class Simulation {
     StageTimes times;
     std::int64_t step_count = 0;
 
-    // Of the present flight: what the broadphase looks ahead. Solver `impulse` takes one a substep, `soft`
+    // The present flight is what the broadphase looks ahead. Solver `impulse` takes one a substep, `soft`
     // one a step.
     double flight_dt = 0;               ///< s
     double fastest = 0;                 ///< m/s, at its start, of all bodies

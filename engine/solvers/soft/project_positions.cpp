@@ -12,14 +12,14 @@
 namespace carom {
 namespace {
 
-/// Who is hit by the fastest body may be thrown about. Bodies are looked at if that moves farther than this
+/// A body that the fastest one hits may be thrown about. Bodies are looked at if that moves farther than this
 /// in a step, in radii of theirs.
 constexpr double kSwiftWay = 4;
 /// Of its own radius: who ends a step so far from where it would have flown may be in somebody.
 constexpr double kDeflected = 0.05;
 /// Of the smaller radius: what is left of an overlap.
 constexpr double kLeftOver = 0.02;
-/// Who is pushed may be pushed into others, who are looked at in the next of so many rounds.
+/// A body that is pushed may be pushed into others, which are looked at in the next of so many rounds.
 constexpr int kRounds = 32;
 /// Of the smaller radius: who is deeper after that is put back.
 constexpr double kStuck = 0.06;

@@ -388,7 +388,7 @@ void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
     if (number == 0)  // what contacts hold is of the step before
         on_supports.contacts.largest_impulse = on_pairs.contacts.largest_impulse = nullptr;
     const bool starts_anew = number == 0 && !are_impulses_known_;
-    // Who asks for more sweeps asks for contacts to be solved better: then none is left out.
+    // A scene that asks for more sweeps wants contacts solved better: then none is left out.
     const bool only_restless = !starts_anew && !is_last && !is_unloaded_ && iterations == kDefaultIterations;
     const int next = iterations - 1;
     const std::array sweeps{Sweep{kernels.first_pairs, kernels.first_supports, Sweep::Blocks::all_and_mark},

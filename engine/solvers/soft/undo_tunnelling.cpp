@@ -21,7 +21,7 @@ constexpr double kSmallestWay = 0.5;
 /// A disc is looked at by itself if the fastest body moves more than this share of the disc's radius.
 constexpr double kFastWay = 0.25;
 
-/// Whoever is put back may get behind another edge by that.
+/// A disc that is put back may get behind another edge by that.
 constexpr int kRounds = 3;
 
 /// When the line from p to q crosses the one from a to b, as a share of the way; 2 if it does not.
@@ -75,7 +75,7 @@ void SoftSolver<Real>::undo_tunnelling(WorldState<Real>& world, const EdgeCandid
                                        double fastest) {
     strayed_.clear();
     const Bodies<Real>& bodies = world.bodies;
-    // Nobody is made faster than the fastest by much, and only who is fast can pass.
+    // No disc is made faster than the fastest by much, and only a fast one can pass.
     const double largest = fastest * dt_ / kFastWay;  // m, of discs that are fast
     if (largest > candidates.smallest_radius())
         for (std::size_t row = 0; row < count_; ++row) {
