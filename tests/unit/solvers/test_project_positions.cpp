@@ -120,7 +120,9 @@ TEST_SUITE("solvers/project positions") {
             Crowd crowd;
             std::vector<double> radius;
             for (int i = 0; i < 60; ++i) {
-                crowd.add({draw(0, 12), draw(0, 12)}, draw(0.5, 5));
+                // One after the other: compilers differ in the order of arguments.
+                const double x = draw(0, 14), y = draw(0, 14), mass = draw(0.5, 5);
+                crowd.add({x, y}, mass);
                 radius.push_back(draw(0.3, 0.6));
             }
             for (std::int32_t b = 0; b < 60; ++b)
