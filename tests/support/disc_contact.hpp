@@ -62,7 +62,7 @@ struct DiscContact {
 
     Vector arm_a() const { return a->radius * normal; }
     Vector arm_b() const { return -b->radius * normal; }
-    /// Of b's surface relative to a's.
+    /// Velocity of b's surface relative to a's [m/s].
     Vector surface_velocity() const { return b->velocity_at(arm_b()) - a->velocity_at(arm_a()); }
     long double normal_velocity() const { return dot(surface_velocity(), normal); }
     long double tangent_velocity() const { return dot(surface_velocity(), turned(normal)); }

@@ -45,7 +45,7 @@ auto from_columns(const Column<Real>& x, const Column<Real>& y, const Column<Rea
 
 }  // namespace
 
-/// Of the contacts of one kind.
+/// The impulses of the contacts of one kind, pairs or supports, by contact [N s].
 template <class Real>
 struct SoftSolver<Real>::Impulses {
     const Column<Real>&normal, &friction, &rolling;
@@ -101,7 +101,7 @@ void SoftSolver<Real>::book_supports(const Impulses& impulses, Books& books) con
     });
 }
 
-/// Of both kinds of contacts; the walls' impulses alone if the ledger is closed.
+/// Books the work of both kinds of contacts; the impulses of walls alone if the ledger is closed.
 template <class Real>
 template <class From>
 void SoftSolver<Real>::book_kinds(const Impulses& of_supports, const Impulses& of_pairs, const From& from,

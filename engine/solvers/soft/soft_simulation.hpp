@@ -35,7 +35,7 @@ class SoftSimulation : public Simulation<Real> {
     SoftSolver<Real> soft;
     Sleepers<Real> sleepers;
     std::int64_t graph_of_rebuild = -1;  ///< which candidate pairs the contact graph was made of
-    // Of the present step.
+    // These members hold for the present step alone.
     Column<Real> motion;  ///< [rows][4]: x, y [m], vx, vy [m/s] of each body at its start
     int substep = 0, substep_count = 1;
     double substep_dt = 0;  ///< s

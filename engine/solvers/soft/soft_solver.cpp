@@ -23,7 +23,7 @@ constexpr double kCalm = 1;
 /// Bodies as near as this, in radii of the smaller one, are solved together even if they hardly move: what
 /// pushes one of them in the middle of a step is felt by the other.
 constexpr double kNearFraction = 0.04;
-/// Of the smaller radius: bodies that start a step as deep in each other are parted at its end.
+/// Bodies that start a step with an overlap of this share of the smaller radius are parted at its end.
 constexpr double kDeep = 0.1;
 /// Next sweeps of the first substep if there are no impulses to start from, unless none are asked for.
 constexpr int kFirstSweeps = 32;

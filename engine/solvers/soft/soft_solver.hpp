@@ -188,7 +188,7 @@ class SoftSolver {
     double contact_distance(double radius) const;
     /// Overlap that the sweeps do not take away soon enough [m].
     double deep_overlap(double radius) const;
-    /// Of the two bodies of a pair [m].
+    /// The smaller radius of the two bodies of a pair [m].
     double smaller_radius(std::size_t pair) const {
         return radius_varies_ ? static_cast<double>(graph.pairs.smaller[pair]) : uniform_radius_;
     }
@@ -236,7 +236,7 @@ class SoftSolver {
     void book_free_flight(const WorldState<Real>& world, Books& books);
     double change_of_bounces(ContactRows<Real>& live) const;
 
-    // Of the present step.
+    // These members hold for the present step alone.
     const KernelTable<Real>* kernels_ = nullptr;
     const Executor* executor_ = nullptr;
     std::size_t count_ = 0;
