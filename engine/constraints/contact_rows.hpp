@@ -66,6 +66,7 @@ struct ContactRows {
     Column<Real> reach;              // m, sum of the radii
     Column<std::int32_t> candidate;  // place in the contact graph
     Column<Real> approach;           // m/s, relative normal velocity at the start of the step
+    Column<Real> clearance;  // m, separation at the start of the step, also where sweeps must not see it
     Column<Real> bounce_impulse, bounce_friction, bounce_rolling;  // N s, of restitution alone
     Column<Real> spare;                                            // N s, bounce_impulse one sweep ago
 
@@ -98,6 +99,7 @@ struct ContactRows {
         fn(rows.reach, ColumnUse{kPairs, kDescribed});
         fn(rows.candidate, ColumnUse{kSupports, kStep});
         fn(rows.approach, ColumnUse{kAll, kStep, {&E::restitution}});
+        fn(rows.clearance, ColumnUse{kSupports, kStep, {&E::restitution}});
         fn(rows.bounce_impulse, ColumnUse{kAll, kStep, {&E::restitution}});
         fn(rows.bounce_friction, ColumnUse{kAll, kStep, {&E::restitution, &E::friction}});
         fn(rows.bounce_rolling, ColumnUse{kAll, kStep, {&E::restitution, &E::rolling}});

@@ -65,6 +65,8 @@ class SoftStep final : public SoftSimulation<Real> {
                                     sim.flight_dt);
          },
          can_meet, KernelChoice::contacts, "motion, coloured candidates, impulses", "contacts"},
+        {"mark_impacts", [](Sim& sim) { sim.soft.mark_impacts(sim.world); }, bounces, KernelChoice::none,
+         "contacts, velocity", "contacts, impacts"},
         {"rebalance_loads", [](Sim& sim) { sim.soft.rebalance_loads(sim.world.bodies); }, has_lost_loads,
          KernelChoice::none, "contacts, contacts of removed bodies", "impulses"},
         {"warm_start", [](Sim& sim) { sim.soft.warm_start(); }, can_meet, KernelChoice::contacts,
@@ -81,12 +83,13 @@ class SoftStep final : public SoftSimulation<Real> {
          KernelChoice::scalar_f64, "contacts, velocity records", "impulses, velocity records"},
         {"book_substep", [](Sim& sim) { sim.soft.book_substep(sim.world, sim.world.books); }, has_books,
          KernelChoice::none, "contacts, velocity records", "books"},
+        {"carry_out_impacts", [](Sim& sim) { sim.soft.carry_out_impacts(sim.motion, sim.world.books); },
+         bounces, KernelChoice::scalar_f64, "impacts, velocity records, displacements",
+         "velocity records, displacements, contacts, books"},
         {"advance_bodies", [](Sim& sim) { sim.soft.advance_bodies(sim.substep + 1 == sim.substep_count); },
          always, KernelChoice::isa, "velocity records", "velocity records, displacements"},
     };
     static constexpr Stage<Sim> kEnd[] = {
-        {"bounce", [](Sim& sim) { sim.soft.bounce(sim.world, sim.world.books); }, bounces, KernelChoice::none,
-         "contacts, velocity records", "velocity records, books"},
         {"end_contacts", [](Sim& sim) { sim.soft.end_contacts(); }, can_meet, KernelChoice::none, "contacts",
          "impulses"},
         {"project_positions",

@@ -408,6 +408,33 @@ void SoftSolver<Real>::solve_uneven_contacts() {
 }
 
 template <class Real>
+void SoftSolver<Real>::mark_impacts(const WorldState<Real>& world) {
+    impacts.mark(world, graph.pairs, graph.version, supports_, graph.supports, dt_, substep_dt_,
+                 gravity_change_);
+}
+
+template <class Real>
+void SoftSolver<Real>::carry_out_impacts(const Column<Real>& motion, Books& books) {
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    const SubstepBodies<Real> bodies{count_,
+                                     motion.data(),
+                                     velocity_.data(),
+                                     start_columns(),
+                                     displacement_.data(),
+                                     has_rotation_ ? turn_.data() : nullptr,
+                                     substep_dt_,
+                                     elapsed_,
+                                     real(gravity_change_.x),
+                                     real(gravity_change_.y),
+                                     real(decay_),
+                                     real(spin_decay_),
+                                     uniform_friction_,
+                                     uniform_rolling_};
+    impacts.carry_out_all(bodies, books, gravity_work_);
+    counters.bounces = impacts.counters.impacts;
+}
+
+template <class Real>
 void SoftSolver<Real>::advance_bodies(bool is_last) {
     const auto real = [](double value) { return static_cast<Real>(value); };
     AdvanceBodies<Real> k{};

@@ -13,6 +13,7 @@
 #include "solvers/shared/local_solve.hpp"
 #include "solvers/shared/project_positions.hpp"
 #include "solvers/shared/rebalance.hpp"
+#include "solvers/soft/impacts.hpp"
 #include "state/chunked_list.hpp"
 #include "state/world_state.hpp"
 
@@ -53,6 +54,7 @@ template <class Real>
 class SoftSolver {
   public:
     ContactGraph<Real> graph;
+    Impacts<Real> impacts;
     SoftCounters counters;
     /// Sweeps over the contacts a substep, >= 1: a first one and next ones. With 1 the first is not
     /// over-relaxed and loads are not corrected on the coarse grid; with more than 2 no contact is left out.
@@ -86,6 +88,10 @@ class SoftSolver {
     void solve_uneven_contacts();
     /// Moves the bodies through the substep that was solved.
     void advance_bodies(bool is_last);
+    /// Tells what bounces from what rests (impacts.hpp).
+    void mark_impacts(const WorldState<Real>& world);
+    /// Carries out the impacts of a substep.
+    void carry_out_impacts(const Column<Real>& motion, Books& books);
     /// Restitution.
     void bounce(const WorldState<Real>& world, Books& books);
     /// The impulses back to the candidates.

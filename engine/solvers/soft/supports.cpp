@@ -49,6 +49,7 @@ void SoftSolver<Real>::add_support(const SupportSurface& surface, std::size_t ca
     }
     const Vec2 v{bodies.velocity_x[row], bodies.velocity_y[row]};
     if (bounces_) supports_.approach[at] = real(dot(surface.velocity - v, n));
+    if (bounces_) supports_.clearance[at] = supports_.separation[at];
     supports_.candidate[at] = static_cast<std::int32_t>(candidate);
 }
 
