@@ -8,37 +8,48 @@
 
 namespace carom {
 
-/// Which contacts of a store each body is in. Cost: O(bodies + contacts) to find them, twelve bytes a pair.
+/// Which contacts of a store each body is in. Cost: O(bodies + contacts) to find them.
 template <class Real>
 class ContactsOfBodies {
   public:
-    /// @param bodies  rows below this number are looked at. @param has_pairs  both sides of a contact are
+    struct Entry {
+        std::uint32_t contact;  // place in the store
+        std::int32_t other;     // row of the other body; of a support's contact no meaning
+    };
+
+    /// @param bodies  rows below this number are looked at. @param are_pairs  both sides of a contact are
     /// rows
-    void find(const ContactRows<Real>& contacts, std::size_t bodies, bool has_pairs) {
+    void find(const ContactRows<Real>& contacts, std::size_t bodies, bool are_pairs) {
         begin_.assign(bodies + 2, 0);
-        const auto for_each_row = [&](std::size_t i, const auto& fn) {
-            fn(static_cast<std::size_t>(contacts.a[i]));
-            if (has_pairs) fn(static_cast<std::size_t>(contacts.b[i]));
+        const auto for_each_side = [&](std::size_t i, const auto& fn) {
+            const std::int32_t b = are_pairs ? contacts.b[i] : 0;
+            fn(static_cast<std::size_t>(contacts.a[i]), b);
+            if (are_pairs) fn(static_cast<std::size_t>(b), contacts.a[i]);
         };
-        contacts.for_each(
-            [&](std::size_t i) { for_each_row(i, [&](std::size_t row) { ++begin_[row + 2]; }); });
-        for (std::size_t row = 2; row < begin_.size(); ++row) begin_[row] += begin_[row - 1];
-        contacts_.resize(begin_.back());
         contacts.for_each([&](std::size_t i) {
-            for_each_row(
-                i, [&](std::size_t row) { contacts_[begin_[row + 1]++] = static_cast<std::uint32_t>(i); });
+            for_each_side(i, [&](std::size_t row, std::int32_t) { ++begin_[row + 2]; });
+        });
+        for (std::size_t row = 2; row < begin_.size(); ++row) begin_[row] += begin_[row - 1];
+        entries_.resize(begin_.back());
+        contacts.for_each([&](std::size_t i) {
+            for_each_side(i, [&](std::size_t row, std::int32_t other) {
+                entries_[begin_[row + 1]++] = {static_cast<std::uint32_t>(i), other};
+            });
         });
     }
 
-    /// Places in the store, in its order.
-    std::span<const std::uint32_t> of(std::size_t row) const {
-        return std::span(contacts_).subspan(begin_[row], begin_[row + 1] - begin_[row]);
+    /// In the order of the store.
+    std::span<const Entry> of(std::size_t row) const {
+        return std::span(entries_).subspan(begin_[row], begin_[row + 1] - begin_[row]);
     }
 
-    std::size_t bytes() const { return (begin_.capacity() + contacts_.capacity()) * sizeof(std::uint32_t); }
+    std::size_t bytes() const {
+        return begin_.capacity() * sizeof(std::uint32_t) + entries_.capacity() * sizeof(Entry);
+    }
 
   private:
-    std::vector<std::uint32_t> begin_, contacts_;
+    std::vector<std::uint32_t> begin_;  // of each row, one place on
+    std::vector<Entry> entries_;
 };
 
 }  // namespace carom

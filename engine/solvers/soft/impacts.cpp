@@ -32,12 +32,13 @@ constexpr double kCostOfLoss = 10, kCostOfOne = 0.02;
 constexpr double kFastShare = 0.15, kCostOfFast = 0.1;
 
 /// A velocity that changes in a substep as gravity would change it, to this share of it, squared, falls.
-template <class Real>
-constexpr Real kOffFall = Real(1e-6);
+constexpr double kOffFall = 1e-6;
 
 /// Two surfaces touch if they are as near as this, in their reach.
 template <class Real>
 constexpr double kTouching = sizeof(Real) == sizeof(float) ? 1e-7 : 1e-14;
+
+constexpr std::uint32_t kIndexBits = 0x7fffffffu;  // of a Place
 
 }  // namespace
 
@@ -78,7 +79,7 @@ double Impacts<Real>::smaller_radius(Place place) const {
 template <class Real>
 auto Impacts<Real>::tally_of(std::int32_t row) -> Tally& {
     Tally& tally = tallies_[static_cast<std::size_t>(row)];
-    if (tally.step != step_) tally = {tally.impacts, step_, 0, 0};
+    if (tally.step != step_) tally = {step_, 0, 0};
     return tally;
 }
 
@@ -92,7 +93,7 @@ void Impacts<Real>::mark_in(ContactRows<Real>& rows, bool are_supports, std::siz
         if (rows.normal_impulse[i] > 0 || !(approach < -rest_speed_) || !(rows.mass[i] > 0)) continue;
         const double separation = rows.separation[i];
         if (separation > slack - dt * approach) continue;
-        const Place place{static_cast<std::uint32_t>(i) & 0x7fffffffu, are_supports};
+        const Place place{static_cast<std::uint32_t>(i) & kIndexBits, are_supports};
         if (separation < -kOverlap * smaller_radius(place) || !(restitution_of(place) > 0)) continue;
         rows.separation[i] = kFar<Real>;
         impacts_.push_back(place);
@@ -119,131 +120,157 @@ void Impacts<Real>::mark(const WorldState<Real>& world, ContactRows<Real>& pairs
     supports.for_each([&](std::size_t i) { mark_in(supports, true, i, i + 1, dt); });
 }
 
-/// The path by which kernels/advance_bodies.hpp will move a body.
+/// Of a body that is awake.
 template <class Real>
-auto Impacts<Real>::path_of(std::int32_t number) const -> Path {
-    const auto row = static_cast<std::size_t>(number);
-    const Bodies<Real>& bodies = world_->bodies;
-    if (row >= bodies_->count) return {{bodies.position_x[row], bodies.position_y[row]}, {}, {}};
+auto Impacts<Real>::path_of(std::size_t row) const -> Mover {
     const Real* record = bodies_->velocity + 4 * row;
     const Real start_x = bodies_->start.x[row], start_y = bodies_->start.y[row];
     const Vec2 x = Vec2{bodies_->origin[4 * row], bodies_->origin[4 * row + 1]} +
                    Vec2{bodies_->displacement[2 * row], bodies_->displacement[2 * row + 1]};
-    if (record[3] == 0) return {x, {record[0], record[1]}, {}};
+    const Mover straight{x, {record[0], record[1]}, {}, world_->bodies.radius[row], 0, substep_};
+    if (record[3] == 0) return straight;
     const Real change_x = record[0] - start_x, change_y = record[1] - start_y;
     const Real fall_x = bodies_->decay * start_x + bodies_->gain_x - start_x,
                fall_y = bodies_->decay * start_y + bodies_->gain_y - start_y;
     const Real fall = fall_x * fall_x + fall_y * fall_y;
     const bool is_smooth = change_x * change_x + change_y * change_y <= fall * Real(1.0001);
-    if (!is_smooth) return {x, {record[0], record[1]}, {}};
+    if (!is_smooth) return straight;
+    Mover curved = straight;
+    curved.v = {start_x, start_y};
     // Bodies that fall alike meet on straight lines: they have the same bits of acceleration.
     const Real off_x = change_x - fall_x, off_y = change_y - fall_y;
-    const bool falls = off_x * off_x + off_y * off_y <= fall * kOffFall<Real>;
-    if (falls && bodies_->decay == 1) return {x, {start_x, start_y}, gravity_};
-    return {x, {start_x, start_y}, (1 / bodies_->h) * Vec2{change_x, change_y}};
+    const bool falls =
+        off_x * off_x + off_y * off_y <= fall * static_cast<Real>(kOffFall) && bodies_->decay == 1;
+    curved.acceleration = falls ? gravity_ : (1 / bodies_->h) * Vec2{change_x, change_y};
+    return curved;
 }
 
 template <class Real>
-DoubleBody Impacts<Real>::body_of(std::int32_t row, const Path& path, double time) const {
+auto Impacts<Real>::mover_of(std::int32_t number) -> const Mover& {
+    const auto row = static_cast<std::size_t>(number);
+    Mover& mover = movers_[row];
+    if (mover.substep != substep_) {
+        const std::uint32_t impacts = mover.impacts;
+        mover = path_of(row), mover.impacts = impacts;
+    }
+    return mover;
+}
+
+/// The other body of a contact: a support may sleep, and then has no record.
+template <class Real>
+auto Impacts<Real>::other_of(Place place, Partner other) -> Mover {
+    const auto row = static_cast<std::size_t>(other.row());
+    if (!place.is_support || row < bodies_->count) return mover_of(other.row());
+    const Bodies<Real>& bodies = world_->bodies;
+    return {{bodies.position_x[row], bodies.position_y[row]}, {}, {}, bodies.radius[row], 0, substep_};
+}
+
+template <class Real>
+DoubleBody Impacts<Real>::body_of(std::int32_t row, const Mover& mover, double time) const {
     DoubleBody body{{{0, 0, 0, 0}}};
     if (static_cast<std::size_t>(row) < bodies_->count) {
         body = body_at(bodies_->velocity, row);
-        const Vec2 v = path.velocity_at(time);
+        const Vec2 v = mover.velocity_at(time);
         body.record[0] = v.x, body.record[1] = v.y;
     }
     return body;
 }
 
-/// When the surfaces of a contact meet, from a time in the substep on; kNever if not in this substep.
 template <class Real>
-double Impacts<Real>::time_of(Place place, double from) const {
-    const ContactRows<Real>& rows = store_of(place);
-    const std::int32_t row = rows.a[place.index];
-    const Partner other = partner_of(place);
-    const Path a = path_of(row);
-    const Window window{from, bodies_->h, 0};
-    if (!other.is_body()) {
-        const Vec2 n{rows.normal_x[place.index], rows.normal_y[place.index]};
-        const Vec2 moved{bodies_->displacement[2 * static_cast<std::size_t>(row)],
-                         bodies_->displacement[2 * static_cast<std::size_t>(row) + 1]};
-        const double surface = rows.surface_normal[place.index];
-        const double clearance =
-            static_cast<double>(rows.clearance[place.index]) + surface * bodies_->elapsed - dot(moved, n);
-        return wall_impact_time(clearance, surface - dot(a.v, n), -dot(a.acceleration, n), window);
-    }
-    const Path b = path_of(other.row());
-    const Bodies<Real>& all = world_->bodies;
-    const double reach = static_cast<double>(all.radius[static_cast<std::size_t>(row)]) +
-                         static_cast<double>(all.radius[static_cast<std::size_t>(other.row())]);
-    const Flight relative{b.x - a.x, b.v - a.v, b.acceleration - a.acceleration};
-    if (relative.acceleration == Vec2{})
-        return straight_impact_time(relative.position + from * relative.velocity, relative.velocity, reach,
-                                    window);
-    return accelerated_impact_time(relative, reach, window, kTouching<Real> * reach);
+auto Impacts<Real>::clearance_of(Place place, const Mover& a) const -> Clearance {
+    const ContactRows<Real>& rows = *supports_;
+    const std::size_t i = place.index, row = static_cast<std::size_t>(rows.a[i]);
+    const Vec2 n{rows.normal_x[i], rows.normal_y[i]},
+        moved{bodies_->displacement[2 * row], bodies_->displacement[2 * row + 1]};
+    const double surface = rows.surface_normal[i];
+    return {static_cast<double>(rows.clearance[i]) + surface * bodies_->elapsed - dot(moved, n),
+            surface - dot(a.v, n), -dot(a.acceleration, n)};
 }
 
 /// Speed below which the approach of two surfaces is round-off [m/s].
 template <class Real>
-double Impacts<Real>::noise_of(Place place) const {
+double noise_of(Vec2 a, Vec2 b) {
     constexpr double kUnits = 8;
-    const auto speed = [&](std::int32_t row) {
-        const Vec2 v = path_of(row).v;
-        return std::fabs(v.x) + std::fabs(v.y);
-    };
-    const Partner other = partner_of(place);
     return kUnits * std::numeric_limits<Real>::epsilon() *
-           (speed(store_of(place).a[place.index]) + (other.is_body() ? speed(other.row()) : 0));
+           (std::fabs(a.x) + std::fabs(a.y) + std::fabs(b.x) + std::fabs(b.y));
 }
 
+/// @param time  when the surfaces meet
 template <class Real>
-void Impacts<Real>::foresee(Place place, double from) {
-    const double time = time_of(place, from);
+void Impacts<Real>::foresee(Place place, double time) {
     if (!(time <= bodies_->h)) return;
+    const auto impacts_of = [&](std::int32_t row) { return movers_[static_cast<std::size_t>(row)].impacts; };
     const std::int32_t a = store_of(place).a[place.index];
     const Partner b = partner_of(place);
-    queue_.push_back({time, place, a, b.stored(), tallies_[static_cast<std::size_t>(a)].impacts,
-                      place.is_support ? 0 : tallies_[static_cast<std::size_t>(b.row())].impacts});
+    queue_.push_back({time, place, a, b.stored(), impacts_of(a), place.is_support ? 0 : impacts_of(b.row())});
     std::push_heap(queue_.begin(), queue_.end(), Later{});
 }
 
-/// What a deflected body may hit next. A contact becomes an impact where its surfaces now come fast; one that
-/// is pressed stays one, unless the sweeps of the next substep would come too late.
+/// Whether a contact whose surfaces approach at a speed may have an impact. One becomes an impact where they
+/// come fast, however far apart they still are: the normal that the sweeps know is of another path. One that
+/// is pressed stays a contact, but takes part if the sweeps of the next substep would come too late.
+/// @param left  s, of the substep
 template <class Real>
-void Impacts<Real>::foresee_all_of(std::int32_t row, double time) {
-    const double left = bodies_->h - time;
-    const auto look_at = [&](Place place) {
-        ContactRows<Real>& rows = store_of(place);
-        if (!is_impact(place)) {
-            const std::int32_t number = rows.a[place.index];
-            const Partner other = partner_of(place);
-            const Path a = path_of(number);
-            Vec2 n{rows.normal_x[place.index], rows.normal_y[place.index]};
-            double approach;
-            if (other.is_body()) {
-                const Path b = path_of(other.row());
-                const Vec2 d = b.position_at(time) - a.position_at(time);
-                const double distance = std::sqrt(length_squared(d));
-                if (distance > 0) n = (1 / distance) * d;
-                approach = dot(b.velocity_at(time) - a.velocity_at(time), n);
-            } else {
-                approach =
-                    static_cast<double>(rows.surface_normal[place.index]) - dot(a.velocity_at(time), n);
-            }
-            const bool deepens = -approach * left > kDeepening * smaller_radius(place);
-            const bool may_bounce = !(rows.normal_impulse[place.index] > 0) && approach < -rest_speed_ &&
-                                    approach < -noise_of(place) && restitution_of(place) > 0;
-            if (!deepens && !may_bounce) return;
-            if (may_bounce) {
-                rows.separation[place.index] = kFar<Real>;
-                impacts_.push_back(place);
-            }
-        }
-        foresee(place, time);
-    };
-    for (const std::uint32_t i : of_pairs_.of(static_cast<std::size_t>(row)))
-        look_at({i & 0x7fffffffu, false});
-    for (const std::uint32_t i : of_supports_.of(static_cast<std::size_t>(row)))
-        look_at({i & 0x7fffffffu, true});
+bool Impacts<Real>::takes_part(Place place, double speed, double left, double noise) {
+    if (is_impact(place)) return true;
+    if (!is_pressed(place) && speed > rest_speed_ && speed > noise && restitution_of(place) > 0) {
+        store_of(place).separation[place.index] = kFar<Real>;
+        impacts_.push_back(place);
+        return true;
+    }
+    return speed * left > kDeepening * smaller_radius(place);
+}
+
+/// Foresees the impact of two discs from a time in the substep on.
+template <class Real>
+void Impacts<Real>::look_at_pair(Place place, const Mover& a, const Mover& b, double from) {
+    const Vec2 d = b.position_at(from) - a.position_at(from), v = b.velocity_at(from) - a.velocity_at(from);
+    const double closing = dot(d, v);
+    if (!(closing < 0)) return;
+    const Vec2 acceleration = b.acceleration - a.acceleration;
+    const double left = bodies_->h - from, reach = a.radius + b.radius, squared = length_squared(d);
+    // The distance of points on straight lines shrinks ever more slowly: they meet in time only if
+    // distance + left closing / distance <= reach, here times the distance.
+    const double bend = 0.5 * left * left * (std::fabs(acceleration.x) + std::fabs(acceleration.y)) + reach;
+    const double nearest = squared + left * closing;
+    const bool may_meet = nearest <= 0 || nearest * nearest <= bend * bend * squared;
+    const bool is_slow = closing * closing <= rest_speed_ * rest_speed_ * squared;
+    if (!may_meet && is_slow) return;
+    const double speed = squared > 0 ? -closing / std::sqrt(squared) : 0;
+    if (!takes_part(place, speed, left, noise_of<Real>(a.velocity_at(from), b.velocity_at(from))) ||
+        !may_meet)
+        return;
+    const Window window{from, bodies_->h, 0};
+    if (acceleration == Vec2{})
+        foresee(place, straight_impact_time(d, v, reach, window));
+    else
+        foresee(place, accelerated_impact_time({b.x - a.x, b.v - a.v, acceleration}, reach, window,
+                                               kTouching<Real> * reach));
+}
+
+/// Likewise of a disc and what supports it.
+template <class Real>
+void Impacts<Real>::look_at_support(Place place, double from) {
+    const Mover& a = mover_of(supports_->a[place.index]);
+    const Partner other = partner_of(place);
+    if (other.is_body()) return look_at_pair(place, a, other_of(place, other), from);
+    const Clearance c = clearance_of(place, a);
+    const double speed = -(c.rate + from * c.acceleration), left = bodies_->h - from;
+    if (!(speed > 0) && !(is_impact(place) && c.acceleration < 0)) return;
+    if (takes_part(place, speed, left, noise_of<Real>(a.velocity_at(from), {})))
+        foresee(place, wall_impact_time(c.width, c.rate, c.acceleration, {from, bodies_->h, 0}));
+}
+
+/// What a deflected body may hit next.
+template <class Real>
+void Impacts<Real>::look_at_all_of(std::int32_t row, double from) {
+    const Mover& self = mover_of(row);
+    for (const auto& entry : of_pairs_.of(static_cast<std::size_t>(row))) {
+        const Mover& other = mover_of(entry.other);
+        look_at_pair({entry.contact & kIndexBits, false}, self, other, from);
+    }
+    for (const auto& entry : of_supports_.of(static_cast<std::size_t>(row)))
+        look_at_support({entry.contact & kIndexBits, true}, from);
 }
 
 /// Takes the cost of an impact from the budgets of its bodies. @return whether both had enough left
@@ -253,7 +280,7 @@ bool Impacts<Real>::spend(Place place, double restitution, double speed) {
     const auto pay = [&](std::int32_t row) {
         if (world_->bodies.is_immovable(static_cast<std::size_t>(row))) return;
         Tally& tally = tally_of(row);
-        ++tally.impacts;
+        ++movers_[static_cast<std::size_t>(row)].impacts;
         has_enough = has_enough && tally.spent < kBudget;
         double cost = std::fmin(1, kCostOfLoss * (1 - restitution)) + kCostOfOne;
         if (speed > kFastShare * static_cast<double>(tally.fastest)) cost *= kCostOfFast;
@@ -279,8 +306,7 @@ void Impacts<Real>::make_contact(Place place, Vec2 normal, double gap, double ti
     if (!is_impact(place)) return;
     const auto moved_by = [&](std::int32_t number) {
         const auto row = static_cast<std::size_t>(number);
-        if (row >= bodies_->count) return Vec2{};
-        return path_of(number).position_at(time) -
+        return mover_of(number).position_at(time) -
                Vec2{bodies_->origin[4 * row], bodies_->origin[4 * row + 1]};
     };
     if (place.is_support && !partner_of(place).is_body()) {
@@ -291,8 +317,7 @@ void Impacts<Real>::make_contact(Place place, Vec2 normal, double gap, double ti
     if (!place.is_support) relative += moved_by(rows.b[place.index]);
     double separation = gap - dot(relative, normal);
     if (place.is_support) {
-        const Path b = path_of(partner_of(place).row());
-        const double surface = dot(b.v, normal);
+        const double surface = dot(other_of(place, partner_of(place)).v, normal);
         rows.surface_normal[place.index] = static_cast<Real>(surface);
         separation -= surface * (bodies_->elapsed + time);
     }
@@ -308,7 +333,7 @@ void Impacts<Real>::change(std::int32_t number, const DoubleBody& before, const 
                            double time, double& gravity_work) {
     const auto row = static_cast<std::size_t>(number);
     if (row >= bodies_->count || bodies_->velocity[4 * row + 3] == 0) return;
-    const Vec2 acceleration = path_of(number).acceleration;
+    const Vec2 acceleration = mover_of(number).acceleration;
     const auto add = [](Real& velocity, Real* start, Real& moved, double added, Real decay, double at) {
         const Real old = velocity;
         velocity = static_cast<Real>(static_cast<double>(old) + added);
@@ -328,6 +353,7 @@ void Impacts<Real>::change(std::int32_t number, const DoubleBody& before, const 
             bodies_->spin_decay, time);
     gravity_work +=
         static_cast<double>(world_->bodies.mass[row]) * dot(acceleration, added) * (bodies_->h - time);
+    movers_[row].substep = 0;  // it moves otherwise from now on
 }
 
 template <class Real>
@@ -336,23 +362,23 @@ bool Impacts<Real>::carry_out(Place place, double time, Books& books, double& gr
     const std::size_t i = place.index;
     const std::int32_t row_a = rows.a[i];
     const Partner other = partner_of(place);
-    const Path path_a = path_of(row_a);
-    DoubleBody a = body_of(row_a, path_a, time);
+    const Mover mover_a = mover_of(row_a);
+    DoubleBody a = body_of(row_a, mover_a, time);
     Vec2 n{rows.normal_x[i], rows.normal_y[i]};
     double gap = 0;
     DoubleBody b{{{0, 0, 0, 0}}};
     if (other.is_body()) {
-        const Path path_b = path_of(other.row());
-        b = body_of(other.row(), path_b, time);
-        const Vec2 d = path_b.position_at(time) - path_a.position_at(time);
+        const Mover mover_b = other_of(place, other);
+        b = body_of(other.row(), mover_b, time);
+        const Vec2 d = mover_b.position_at(time) - mover_a.position_at(time);
         const double distance = std::sqrt(length_squared(d));
         n = distance > 0 ? (1 / distance) * d
                          : normal_of_coincident(static_cast<std::uint32_t>(row_a),
                                                 static_cast<std::uint32_t>(other.row()));
-        gap = distance - static_cast<double>(world_->bodies.radius[static_cast<std::size_t>(row_a)]) -
-              static_cast<double>(world_->bodies.radius[static_cast<std::size_t>(other.row())]);
+        gap = distance - mover_a.radius - mover_b.radius;
     }
-    const double noise = noise_of(place);
+    const double noise =
+        noise_of<Real>({a.record[0], a.record[1]}, other.is_body() ? Vec2{b.record[0], b.record[1]} : Vec2{});
     ContactTerms<double> terms{};
     terms.nx = n.x, terms.ny = n.y;
     const auto value = [i](const Column<Real>& column, double uniform) {
@@ -414,34 +440,43 @@ void Impacts<Real>::carry_out_all(const SubstepBodies<Real>& bodies, Books& book
     queue_.clear();
     const std::size_t found = impacts_.size();
     if (found == 0) return;
+    ++substep_;
     tallies_.resize(std::max(tallies_.size(), bodies.count));
-    for (std::size_t i = 0; i < found; ++i)
-        if (is_impact(impacts_[i])) foresee(impacts_[i], 0);
+    movers_.resize(std::max(movers_.size(), bodies.count));
+    for (std::size_t i = 0; i < found; ++i) {
+        const Place place = impacts_[i];
+        if (!is_impact(place)) continue;
+        if (place.is_support)
+            look_at_support(place, 0);
+        else
+            look_at_pair(place, mover_of(pairs_->a[place.index]), mover_of(pairs_->b[place.index]), 0);
+    }
     while (!queue_.empty()) {
         std::pop_heap(queue_.begin(), queue_.end(), Later{});
         const Event event = queue_.back();
         queue_.pop_back();
-        const Partner other = partner_of(event.place);
-        const auto impacts_of = [&](std::int32_t row) {
-            return tallies_[static_cast<std::size_t>(row)].impacts;
+        const Partner other(event.b);
+        const auto is_void = [&](std::int32_t row, std::uint32_t impacts) {
+            return movers_[static_cast<std::size_t>(row)].impacts != impacts;
         };
-        if (impacts_of(event.a) != event.impacts_a ||
-            (!event.place.is_support && impacts_of(other.row()) != event.impacts_b))
+        if (is_void(event.a, event.impacts_a) ||
+            (!event.place.is_support && is_void(other.row(), event.impacts_b)))
             continue;
         if (known_version_ != version_) of_pairs_.find(*pairs_, bodies.count, true);
         known_version_ = version_;
         if (!are_supports_known_) of_supports_.find(*supports_, bodies.count, false);
         are_supports_known_ = true;
         if (!carry_out(event.place, event.time, books, gravity_work)) continue;
-        foresee_all_of(event.a, event.time);
-        if (!event.place.is_support) foresee_all_of(other.row(), event.time);
+        look_at_all_of(event.a, event.time);
+        if (!event.place.is_support) look_at_all_of(other.row(), event.time);
     }
 }
 
 template <class Real>
 std::size_t Impacts<Real>::bytes() const {
     return impacts_.capacity() * sizeof(Place) + queue_.capacity() * sizeof(Event) +
-           tallies_.capacity() * sizeof(Tally) + of_pairs_.bytes() + of_supports_.bytes();
+           tallies_.capacity() * sizeof(Tally) + movers_.capacity() * sizeof(Mover) + of_pairs_.bytes() +
+           of_supports_.bytes();
 }
 
 template class Impacts<float>;

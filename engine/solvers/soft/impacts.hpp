@@ -7,6 +7,7 @@
 #include "constraints/contact_law.hpp"
 #include "constraints/contact_rows.hpp"
 #include "constraints/contacts_of_bodies.hpp"
+#include "effects/flight.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {
@@ -84,34 +85,45 @@ class Impacts {
     };
     /// What a body has had of impacts in the present step.
     struct Tally {
-        std::uint32_t impacts = 0;  // ever: what was foreseen with another number is void
-        std::uint32_t step = 0;     // of the other two
-        float spent = 0;            // of its budget
-        float fastest = 0;          // m/s
+        std::uint32_t step = 0;  // of the other two
+        float spent = 0;         // of its budget
+        float fastest = 0;       // m/s
     };
-    /// Position, velocity and acceleration at the start of a substep.
-    struct Path {
-        Vec2 x, v, acceleration;
+    /// How a body moves through a substep: by what kernels/advance_bodies.hpp will move it. A cache line.
+    struct alignas(64) Mover {
+        Vec2 x, v, acceleration;    // m, m/s, m/s², at the start of the substep
+        double radius = 0;          // m
+        std::uint32_t impacts = 0;  // ever: what was foreseen with another number is void
+        std::uint32_t substep = 0;  // for which this holds
 
         Vec2 position_at(double t) const { return x + t * v + (0.5 * t * t) * acceleration; }
         Vec2 velocity_at(double t) const { return v + t * acceleration; }
+    };
+    /// A disc and a plane that supports it, at the start of a substep.
+    struct Clearance {
+        double width, rate, acceleration;  // m, m/s, m/s²
     };
 
     ContactRows<Real>& store_of(Place place) const { return place.is_support ? *supports_ : *pairs_; }
     Partner partner_of(Place place) const;
     bool is_impact(Place place) const;
+    bool is_pressed(Place place) const { return store_of(place).normal_impulse[place.index] > 0; }
     double restitution_of(Place place) const;
     double smaller_radius(Place place) const;
     Tally& tally_of(std::int32_t row);
 
-    Path path_of(std::int32_t row) const;
-    DoubleBody body_of(std::int32_t row, const Path& path, double time) const;
-    double time_of(Place place, double from) const;
-    double noise_of(Place place) const;
+    Mover path_of(std::size_t row) const;
+    const Mover& mover_of(std::int32_t row);
+    Mover other_of(Place place, Partner other);
+    DoubleBody body_of(std::int32_t row, const Mover& mover, double time) const;
+    Clearance clearance_of(Place place, const Mover& a) const;
 
     void mark_in(ContactRows<Real>& rows, bool are_supports, std::size_t first, std::size_t last, double dt);
-    void foresee(Place place, double from);
-    void foresee_all_of(std::int32_t row, double time);
+    void foresee(Place place, double time);
+    bool takes_part(Place place, double speed, double left, double noise);
+    void look_at_pair(Place place, const Mover& a, const Mover& b, double from);
+    void look_at_support(Place place, double from);
+    void look_at_all_of(std::int32_t row, double from);
     bool carry_out(Place place, double time, Books& books, double& gravity_work);
     void change(std::int32_t row, const DoubleBody& before, const DoubleBody& after, double time,
                 double& gravity_work);
@@ -133,7 +145,8 @@ class Impacts {
     ContactsOfBodies<Real> of_pairs_, of_supports_;
     std::vector<Event> queue_;
     std::vector<Tally> tallies_;
-    std::uint32_t step_ = 0;
+    std::vector<Mover> movers_;
+    std::uint32_t step_ = 0, substep_ = 0;
 };
 
 extern template class Impacts<float>;
