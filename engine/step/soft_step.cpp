@@ -60,10 +60,7 @@ class SoftStep final : public SoftSimulation<Real> {
          },
          always, KernelChoice::isa, "motion, angular velocity, mass, radius", "velocity records"},
         {"find_contacts",
-         [](Sim& sim) {
-             sim.soft.find_contacts(sim.world, sim.candidates, sim.edge_candidates, sim.motion,
-                                    sim.flight_dt);
-         },
+         [](Sim& sim) { sim.soft.find_contacts(sim.world, sim.edge_candidates, sim.motion, sim.flight_dt); },
          can_meet, KernelChoice::contacts, "motion, coloured candidates, impulses", "contacts"},
         {"mark_impacts", [](Sim& sim) { sim.soft.mark_impacts(sim.world); }, bounces, KernelChoice::none,
          "contacts, velocity", "contacts, impacts"},
@@ -77,7 +74,7 @@ class SoftStep final : public SoftSimulation<Real> {
          [](Sim& sim) { sim.soft.solve_contacts(sim.substep, sim.substep + 1 == sim.substep_count); },
          can_meet, KernelChoice::contacts, "contacts, velocity records",
          "impulses, velocity records, displacements"},
-        {"correct_loads", [](Sim& sim) { sim.soft.correct_loads(sim.motion); }, may_heave,
+        {"correct_loads", [](Sim& sim) { sim.soft.correct_loads(sim.flight()); }, may_heave,
          KernelChoice::contacts, "motion, contacts, velocity records", "impulses, velocity records"},
         {"solve_uneven_contacts", [](Sim& sim) { sim.soft.solve_uneven_contacts(); }, has_masses,
          KernelChoice::scalar_f64, "contacts, velocity records", "impulses, velocity records"},
@@ -92,20 +89,13 @@ class SoftStep final : public SoftSimulation<Real> {
     static constexpr Stage<Sim> kEnd[] = {
         {"end_contacts", [](Sim& sim) { sim.soft.end_contacts(); }, can_meet, KernelChoice::none, "contacts",
          "impulses"},
-        {"project_positions",
-         [](Sim& sim) {
-             sim.soft.project_positions(sim.world, sim.edge_candidates, sim.motion, sim.candidates,
-                                        sim.fastest);
-         },
-         can_meet, KernelChoice::none, "motion, candidate pairs, displacements", "displacements"},
+        {"project_positions", [](Sim& sim) { sim.soft.project_positions(sim.world, sim.flight()); }, can_meet,
+         KernelChoice::none, "motion, candidate pairs, displacements", "displacements"},
         {"end_substeps", [](Sim& sim) { sim.soft.end_substeps(sim.world.bodies, sim.lost); }, always,
          KernelChoice::isa, "velocity records, displacements", "position, velocity, angle, angular velocity"},
         {"undo_tunnelling",
-         [](Sim& sim) {
-             sim.soft.undo_tunnelling(sim.world, sim.edge_candidates, sim.motion, sim.candidates,
-                                      sim.fastest);
-         },
-         has_edges, KernelChoice::none, "motion, position, edges", "position, velocity, books"},
+         [](Sim& sim) { sim.tunnelling.undo(sim.world, sim.flight(), sim.soft.graph.supports); }, has_edges,
+         KernelChoice::none, "motion, position, edges", "position, velocity, books"},
         {"clamp_to_walls", [](Sim& sim) { clamp_to_walls(sim); }, has_walls, KernelChoice::none,
          "motion, position", "position, velocity, books"},
         {"quarantine_bodies", [](Sim& sim) { quarantine_bodies(sim); }, has_lost_bodies, KernelChoice::none,

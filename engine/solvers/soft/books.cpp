@@ -1,12 +1,6 @@
-// The ledger of solver `soft`: work and momentum by cause, from impulses and velocities, in double precision.
-//
-// In a substep a body's velocity goes from v0 to v1 by the sum of all impulses on it, so its kinetic energy
-// grows by exactly (sum of impulses) · (v0 + v1) / 2, and each impulse's share is its own product with that
-// mean. The mean velocity of the surfaces of a contact splits its share into what the contact takes, by its
-// normal and by its tangential impulse, and what a moving support drives.
-#include "constraints/contact_law.hpp"
-#include "solvers/soft/soft_solver.hpp"
+#include "solvers/soft/books.hpp"
 
+#include "constraints/contact_law.hpp"
 #include "effects/flight.hpp"
 #include "math/vec2_math.hpp"
 
@@ -32,22 +26,9 @@ DoubleSurface surface_at(const ContactRows<Real>& supports, std::size_t i) {
             rolling};
 }
 
-/// Velocities at the start of the substep, by row.
-template <class Real>
-auto from_columns(const Column<Real>& x, const Column<Real>& y, const Column<Real>& rim) {
-    return [&](std::int32_t row) {
-        const auto value = [i = static_cast<std::size_t>(row)](const Column<Real>& column) {
-            return column.empty() ? 0 : static_cast<double>(column[i]);
-        };
-        return DoubleBody{{{value(x), value(y), value(rim), 0}}};
-    };
-}
-
-}  // namespace
-
 /// The impulses of the contacts of one kind, pairs or supports, by contact [N s].
 template <class Real>
-struct SoftSolver<Real>::Impulses {
+struct Impulses {
     const Column<Real>&normal, &friction, &rolling;
 
     ContactImpulses<double> operator[](std::size_t i) const {
@@ -59,11 +40,12 @@ struct SoftSolver<Real>::Impulses {
 };
 
 /// What a contact takes: the work of its impulses on both sides, by mean velocities.
-template <class Real>
-template <class From>
-void SoftSolver<Real>::book_contacts(const ContactRows<Real>& contacts, const Impulses& impulses,
-                                     const From& from, Books& books) const {
-    const auto mean_at = [&](std::int32_t row) { return mean_of(from(row), velocity_, row); };
+/// @param from  velocities before the impulses acted, by row
+/// @param to  velocity records after them
+template <class Real, class From>
+void book_contacts(const ContactRows<Real>& contacts, const Impulses<Real>& impulses, const From& from,
+                   const Column<Real>& to, Books& books) {
+    const auto mean_at = [&](std::int32_t row) { return mean_of(from(row), to, row); };
     const auto book = [&](std::size_t i, const auto& other) {
         const DoubleBody body = mean_at(contacts.a[i]);
         const double nx = contacts.normal_x[i], ny = contacts.normal_y[i];
@@ -84,108 +66,101 @@ void SoftSolver<Real>::book_contacts(const ContactRows<Real>& contacts, const Im
 
 /// What supports give to bodies, and what they drive them with by their own motion.
 template <class Real>
-void SoftSolver<Real>::book_supports(const Impulses& impulses, Books& books) const {
+void book_supports(const StepView<Real>& step, const Impulses<Real>& impulses, Books& books) {
+    const ContactRows<Real>& supports = step.supports;
     const auto is_wall = [&](std::size_t i) {
-        return graph.supports.partner(static_cast<std::size_t>(supports_.candidate[i])).is_wall();
+        return step.graph.supports.partner(static_cast<std::size_t>(supports.candidate[i])).is_wall();
     };
     double wall_impulse = books.wall_impulse;
-    supports_.for_each([&](std::size_t i) { wall_impulse += is_wall(i) ? impulses[i].normal : 0; });
+    supports.for_each([&](std::size_t i) { wall_impulse += is_wall(i) ? impulses[i].normal : 0; });
     books.wall_impulse = wall_impulse;
     if (!books.is_open) return;
-    supports_.for_each([&](std::size_t i) {
-        const Vec2 n{supports_.normal_x[i], supports_.normal_y[i]}, t{-n.y, n.x};
+    supports.for_each([&](std::size_t i) {
+        const Vec2 n{supports.normal_x[i], supports.normal_y[i]}, t{-n.y, n.x};
         const ContactImpulses<double> j = impulses[i];
         (is_wall(i) ? books.wall_momentum : books.immovable_momentum) -= j.normal * n + j.tangent * t;
-        const DoubleSurface surface = surface_at(supports_, i);
+        const DoubleSurface surface = surface_at(supports, i);
         books.drive -= j.normal * surface.normal + j.tangent * surface.tangent + j.rolling * surface.rolling;
     });
 }
 
 /// Books the work of both kinds of contacts; the impulses of walls alone if the ledger is closed.
-template <class Real>
-template <class From>
-void SoftSolver<Real>::book_kinds(const Impulses& of_supports, const Impulses& of_pairs, const From& from,
-                                  Books& books) const {
-    book_supports(of_supports, books);
+template <class Real, class From>
+void book_kinds(const StepView<Real>& step, const Impulses<Real>& of_supports, const Impulses<Real>& of_pairs,
+                const From& from, Books& books) {
+    book_supports(step, of_supports, books);
     if (!books.is_open) return;
-    book_contacts(supports_, of_supports, from, books);
-    book_contacts(graph.pairs, of_pairs, from, books);
+    book_contacts(step.supports, of_supports, from, step.records.velocity, books);
+    book_contacts(step.graph.pairs, of_pairs, from, step.records.velocity, books);
 }
+
+/// Velocities at the start of the substep, by row.
+template <class Real>
+auto starts_of_substep(const BodyRecords<Real>& records) {
+    return [&records](std::int32_t row) { return records.start_of_substep(row); };
+}
+
+}  // namespace
 
 /// Gravity's share is booked as the work it did on velocities, to be set off against the fall of the
 /// positions at the end of the step: what is left is displacement that no velocity accounts for.
 template <class Real>
-void SoftSolver<Real>::book_free_flight(const WorldState<Real>& world, Books& books) {
-    const double spin_loss = spin_decay_ - 1;
-    const auto from = from_columns(start_x_, start_y_, start_rim_);
-    for (std::size_t row = 0; row < count_; ++row) {
+void SubstepBooks<Real>::book_free_flight(const StepView<Real>& step, const WorldState<Real>& world,
+                                          Books& books) {
+    const SubstepTerms& terms = step.terms;
+    const double h = terms.substep_dt, spin_loss = terms.spin_decay - 1;
+    const auto from = starts_of_substep(step.records);
+    for (std::size_t row = 0; row < step.records.count(); ++row) {
         if (world.bodies.is_immovable(row)) continue;
         const double mass = world.bodies.mass[row];
         const DoubleBody start = from(static_cast<std::int32_t>(row));
-        const DoubleBody mean = mean_of(start, velocity_, static_cast<std::int32_t>(row));
+        const DoubleBody mean = mean_of(start, step.records.velocity, static_cast<std::int32_t>(row));
         const Vec2 by_drag =
-            mass * ((decay_ - 1) * velocity_of(start) + gravity_change_ - substep_dt_ * world.gravity);
-        gravity_work_ += mass * substep_dt_ * dot(world.gravity, velocity_of(mean));
+            mass * ((terms.decay - 1) * velocity_of(start) + terms.gravity_change - h * world.gravity);
+        gravity_work += mass * h * dot(world.gravity, velocity_of(mean));
         books.drag +=
             dot(by_drag, velocity_of(mean)) + 0.5 * mass * spin_loss * start.record[2] * mean.record[2];
         books.drag_momentum += by_drag;
     }
-    books.gravity_momentum += (world.dynamic_mass * substep_dt_) * world.gravity;
+    books.gravity_momentum += (world.dynamic_mass * h) * world.gravity;
 }
 
 template <class Real>
-void SoftSolver<Real>::book_substep(const WorldState<Real>& world, Books& books) {
-    const auto from = from_columns(start_x_, start_y_, start_rim_);
-    book_kinds({supports_.normal_impulse, supports_.friction_impulse, supports_.rolling_impulse},
-               {graph.pairs.normal_impulse, graph.pairs.friction_impulse, graph.pairs.rolling_impulse}, from,
-               books);
-    if (!books.is_open) return;
-    book_free_flight(world, books);
+void SubstepBooks<Real>::book_substep(const StepView<Real>& step, const WorldState<Real>& world,
+                                      Books& books) {
+    const ContactRows<Real>&pairs = step.graph.pairs, &supports = step.supports;
+    book_kinds<Real>(step, {supports.normal_impulse, supports.friction_impulse, supports.rolling_impulse},
+                     {pairs.normal_impulse, pairs.friction_impulse, pairs.rolling_impulse},
+                     starts_of_substep(step.records), books);
+    if (books.is_open) book_free_flight(step, world, books);
 }
 
 template <class Real>
-void SoftSolver<Real>::book_bounces(Books& books) const {
-    const auto from = [&](std::int32_t row) { return body_at(before_bounce_, row); };
-    book_kinds({supports_.bounce_impulse, supports_.bounce_friction, supports_.bounce_rolling},
-               {graph.pairs.bounce_impulse, graph.pairs.bounce_friction, graph.pairs.bounce_rolling}, from,
-               books);
+void book_bounces(const StepView<Real>& step, const Column<Real>& before, Books& books) {
+    const ContactRows<Real>&pairs = step.graph.pairs, &supports = step.supports;
+    const auto from = [&](std::int32_t row) { return body_at(before, row); };
+    book_kinds<Real>(step, {supports.bounce_impulse, supports.bounce_friction, supports.bounce_rolling},
+                     {pairs.bounce_impulse, pairs.bounce_friction, pairs.bounce_rolling}, from, books);
 }
 
 template <class Real>
-void SoftSolver<Real>::book_displacements(const WorldState<Real>& world, const Column<Real>& motion,
-                                          Books& books) {
+void SubstepBooks<Real>::book_displacements(std::size_t rows, const WorldState<Real>& world,
+                                            const Column<Real>& motion, Books& books) {
     double fall = 0;
     const Bodies<Real>& bodies = world.bodies;
-    for (std::size_t row = 0; row < count_; ++row) {
+    for (std::size_t row = 0; row < rows; ++row) {
         if (bodies.is_immovable(row)) continue;
         const Vec2 from{motion[4 * row], motion[4 * row + 1]},
             to{bodies.position_x[row], bodies.position_y[row]};
         fall += static_cast<double>(bodies.mass[row]) * dot(world.gravity, to - from);
     }
-    books.correction += gravity_work_ - fall;
-    gravity_work_ = 0;
+    books.correction += gravity_work - fall;
+    gravity_work = 0;
 }
 
-template void SoftSolver<float>::book_supports(const Impulses&, Books&) const;
-template void SoftSolver<double>::book_supports(const Impulses&, Books&) const;
-template <class Real>
-Sums SoftSolver<Real>::sums_of_lost(const WorldState<Real>& world, std::size_t row) const {
-    const Bodies<Real>& bodies = world.bodies;
-    const Real* record = &velocity_[4 * row];
-    return world.sums_of(row, {bodies.position_x[row], bodies.position_y[row]}, {record[0], record[1]},
-                         static_cast<double>(record[2]) / static_cast<double>(bodies.radius[row]));
-}
-
-template Sums SoftSolver<float>::sums_of_lost(const WorldState<float>&, std::size_t) const;
-template Sums SoftSolver<double>::sums_of_lost(const WorldState<double>&, std::size_t) const;
-template void SoftSolver<float>::book_free_flight(const WorldState<float>&, Books&);
-template void SoftSolver<double>::book_free_flight(const WorldState<double>&, Books&);
-template void SoftSolver<float>::book_substep(const WorldState<float>&, Books&);
-template void SoftSolver<double>::book_substep(const WorldState<double>&, Books&);
-template void SoftSolver<float>::book_bounces(Books&) const;
-template void SoftSolver<double>::book_bounces(Books&) const;
-template void SoftSolver<float>::book_displacements(const WorldState<float>&, const Column<float>&, Books&);
-template void SoftSolver<double>::book_displacements(const WorldState<double>&, const Column<double>&,
-                                                     Books&);
+template class SubstepBooks<float>;
+template class SubstepBooks<double>;
+template void book_bounces(const StepView<float>&, const Column<float>&, Books&);
+template void book_bounces(const StepView<double>&, const Column<double>&, Books&);
 
 }  // namespace carom

@@ -1,15 +1,15 @@
+#include "solvers/soft/residual.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "constraints/contact_law.hpp"
-#include "solvers/soft/soft_solver.hpp"
 
 namespace carom {
 
-/// What one more sweep would change in the relative normal velocity of each contact, on its own, with the
-/// velocities at the end of the step. Contacts that bounced have left the law on purpose.
 template <class Real>
-SolveQuality SoftSolver<Real>::quality() const {
+SolveQuality quality_of(const ContactRows<Real>& pairs, const ContactRows<Real>& supports,
+                        const BodyRecords<Real>& records) {
     SolveQuality quality;
     double sum = 0;
     std::int64_t pushing = 0;
@@ -18,7 +18,7 @@ SolveQuality SoftSolver<Real>::quality() const {
                      ny = contacts.normal_y[i], floor = contacts.floor[i];
         if (impulse > 0) ++quality.touching;
         if (!contacts.bounce_impulse.empty() && contacts.bounce_impulse[i] > 0) return;
-        const double velocity = normal_velocity(body_at(velocity_, contacts.a[i]), other, nx, ny);
+        const double velocity = normal_velocity(body_at(records.velocity, contacts.a[i]), other, nx, ny);
         const auto sweep = push_only(impulse, impulse + mass * (floor - velocity));
         if (impulse == 0 && sweep.impulse == 0) return;
         const double change = std::fabs(sweep.added) / mass;
@@ -26,22 +26,26 @@ SolveQuality SoftSolver<Real>::quality() const {
         sum += change * change;
         quality.residual_max = std::fmax(quality.residual_max, change);
     };
-    const auto is_row = [this](std::int32_t row) { return static_cast<std::size_t>(row) < count_; };
-    const ContactRows<Real>& pairs = graph.pairs;
+    const auto is_row = [count = records.count()](std::int32_t row) {
+        return static_cast<std::size_t>(row) < count;
+    };
     pairs.for_each([&](std::size_t i) {
         const std::size_t block = i / kContactBlock;
         if (block >= pairs.is_live.size() || !pairs.is_live[block]) return;
-        if (is_row(pairs.a[i]) && is_row(pairs.b[i])) look_at(pairs, i, body_at(velocity_, pairs.b[i]));
+        if (is_row(pairs.a[i]) && is_row(pairs.b[i]))
+            look_at(pairs, i, body_at(records.velocity, pairs.b[i]));
     });
-    supports_.for_each([&](std::size_t i) {
-        if (is_row(supports_.a[i]))
-            look_at(supports_, i, DoubleSurface{static_cast<double>(supports_.surface_normal[i]), 0, 0});
+    supports.for_each([&](std::size_t i) {
+        if (is_row(supports.a[i]))
+            look_at(supports, i, DoubleSurface{static_cast<double>(supports.surface_normal[i]), 0, 0});
     });
     if (pushing > 0) quality.residual = std::sqrt(sum / static_cast<double>(pushing));
     return quality;
 }
 
-template SolveQuality SoftSolver<float>::quality() const;
-template SolveQuality SoftSolver<double>::quality() const;
+template SolveQuality quality_of(const ContactRows<float>&, const ContactRows<float>&,
+                                 const BodyRecords<float>&);
+template SolveQuality quality_of(const ContactRows<double>&, const ContactRows<double>&,
+                                 const BodyRecords<double>&);
 
 }  // namespace carom

@@ -4,6 +4,7 @@
 #include "sleeping/sleepers.hpp"
 #include "solvers/shared/simulation.hpp"
 #include "solvers/soft/soft_solver.hpp"
+#include "solvers/soft/tunnelling.hpp"
 
 namespace carom {
 
@@ -31,8 +32,14 @@ class SoftSimulation : public Simulation<Real> {
     void visit_state(StateWriter& archive) const override { visit_all(*this, archive); }
     void visit_state(StateReader& archive) override { visit_all(*this, archive); }
 
+    /// Where bodies began the present step.
+    StepFlight<Real> flight() const {
+        return {motion, this->candidates, edge_candidates, this->flight_dt, this->fastest};
+    }
+
     EdgeCandidates<Real> edge_candidates;
     SoftSolver<Real> soft;
+    Tunnelling<Real> tunnelling;
     Sleepers<Real> sleepers;
     std::int64_t graph_of_rebuild = -1;  ///< which candidate pairs the contact graph was made of
     // These members hold for the present step alone.

@@ -42,7 +42,7 @@ void quarantine_bodies(SoftSimulation<Real>& sim) {
     for (const std::int32_t lost : sim.lost) {
         const auto row = static_cast<std::size_t>(lost);
         if (!sim.world.bodies.is_immovable(row))
-            sim.world.quarantine(row, sim.soft.sums_of_lost(sim.world, row));
+            sim.world.quarantine(row, sim.soft.records().sums_of_lost(sim.world, row));
     }
     sim.forget_derived_state();
 }

@@ -1,0 +1,32 @@
+#include "solvers/soft/body_masses.hpp"
+
+#include <cmath>
+
+#include "solvers/shared/local_solve.hpp"
+
+namespace carom {
+
+template <class Real>
+bool BodyMasses<Real>::derive(const Bodies<Real>& bodies, bool has_friction) {
+    if (are_known_) return false;
+    vary_ = !bodies.mass.is_uniform() || bodies.has_flags;
+    some_are_fixed_ = false;
+    if (vary_) inverse_.resize(bodies.count);
+    double lightest = 0, heaviest = 0;  // inverse
+    for (std::size_t row = 0; row < bodies.count && vary_; ++row) {
+        const bool is_fixed = has_friction && (bodies.flags_of(row) & kFixedAngle) != 0;
+        const double inverse = bodies.inverse_mass(row);
+        inverse_[row] = static_cast<Real>(is_fixed ? -inverse : inverse);
+        some_are_fixed_ = some_are_fixed_ || is_fixed;
+        if (!(inverse > 0)) continue;
+        lightest = std::fmax(lightest, inverse);
+        heaviest = heaviest > 0 ? std::fmin(heaviest, inverse) : inverse;
+    }
+    are_uneven_ = lightest > LocalSolve<Real>::kUneven * heaviest;
+    return are_known_ = true;
+}
+
+template class BodyMasses<float>;
+template class BodyMasses<double>;
+
+}  // namespace carom

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+
+#include "state/bodies.hpp"
+#include "state/column.hpp"
+
+namespace carom {
+
+/// Inverse masses as the velocity records of solver `soft` have them, and whether masses call for more than
+/// sweeps. Derived when rows, masses or flags have changed.
+template <class Real>
+class BodyMasses {
+  public:
+    /// Masses, flags or rows have changed.
+    void forget() { are_known_ = false; }
+    /// Derives them if they are not known. Cost: O(bodies) then, where masses vary.
+    /// @param has_friction  without it no body turns, so that none has a fixed angle
+    /// @return whether they were derived anew
+    bool derive(const Bodies<Real>& bodies, bool has_friction);
+
+    /// 1/kg, by row: zero for what nothing moves, negative for a fixed angle. Null: all have the same.
+    const Real* inverse() const { return vary_ ? inverse_.data() : nullptr; }
+    const Column<Real>& inverse_column() const { return inverse_; }
+    /// Whether some bodies do not turn.
+    bool some_are_fixed() const { return some_are_fixed_; }
+    /// Whether the heaviest body is so much heavier than the lightest one that sweeps do not converge soon
+    /// enough: solvers/shared/local_solve.hpp.
+    bool are_uneven() const { return are_uneven_; }
+
+    std::size_t bytes() const { return inverse_.bytes(); }
+
+  private:
+    bool are_known_ = false, vary_ = false, some_are_fixed_ = false, are_uneven_ = false;
+    Column<Real> inverse_;
+};
+
+extern template class BodyMasses<float>;
+extern template class BodyMasses<double>;
+
+}  // namespace carom

@@ -1,0 +1,110 @@
+#include "solvers/soft/body_records.hpp"
+
+#include <algorithm>
+
+namespace carom {
+namespace {
+
+// ns a body on one thread, for the executor: docs/decisions/0012-threads-of-soft.md.
+constexpr double kNanosecondsToBegin = 0.7, kNanosecondsToAdvance = 1;
+
+}  // namespace
+
+template <class Real>
+StartColumns<Real> BodyRecords<Real>::start_columns() {
+    return {start_x_.data(), start_y_.data(), has_rotation_ ? start_rim_.data() : nullptr};
+}
+
+template <class Real>
+Real* BodyRecords<Real>::turn() {
+    return has_rotation_ ? turn_.data() : nullptr;
+}
+
+template <class Real>
+void BodyRecords<Real>::begin(const WorldState<Real>& world, const Column<Real>& motion,
+                              const BodyMasses<Real>& masses, std::size_t padding_rows,
+                              const SubstepTerms& terms, const StepLoops<Real>& loops) {
+    const Bodies<Real>& bodies = world.bodies;
+    count_ = bodies.count, has_rotation_ = world.effects.rotation;
+    const std::size_t rows = padded(count_ + padding_rows);
+    velocity.resize(4 * rows), displacement.resize(2 * rows);
+    turn_.resize(has_rotation_ ? rows : 0);
+    start_x_.resize(rows), start_y_.resize(rows), start_rim_.resize(has_rotation_ ? rows : 0);
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    BeginSubsteps<Real> k{};
+    k.motion = motion.data();
+    k.angular_velocity = has_rotation_ ? bodies.angular_velocity.data() : nullptr;
+    k.radius = bodies.radius.data(), k.uniform_radius = bodies.radius.uniform_value();
+    k.inverse_mass = masses.inverse();
+    k.uniform_inverse_mass = count_ > 0 ? real(bodies.inverse_mass(0)) : Real(0);
+    k.gain_x = real(terms.gravity_change.x), k.gain_y = real(terms.gravity_change.y);
+    k.decay = real(terms.decay), k.spin_decay = real(terms.spin_decay);
+    k.velocity = velocity.data(), k.start = start_columns();
+    k.displacement = displacement.data(), k.turn = turn();
+    const auto kernel = loops.kernels->begin_substeps[has_rotation_ ? 1 : 0];
+    loops.executor->for_each_chunk(
+        count_, loops.rows_per_task, kNanosecondsToBegin,
+        [&](std::size_t, std::size_t first, std::size_t last) { kernel(k, first, padded(last)); });
+    // Padding must not fall.
+    std::fill(velocity.data() + 4 * count_, velocity.data() + 4 * rows, Real(0));
+    for (Column<Real>* column : {&start_x_, &start_y_, &start_rim_})
+        if (!column->empty()) std::fill(column->data() + count_, column->data() + rows, Real(0));
+}
+
+template <class Real>
+void BodyRecords<Real>::advance(bool is_last, const SubstepTerms& terms, const StepLoops<Real>& loops) {
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    AdvanceBodies<Real> k{};
+    k.velocity = velocity.data(), k.start = start_columns();
+    k.displacement = displacement.data(), k.turn = turn();
+    k.h = real(terms.substep_dt);
+    k.gain_x = real(terms.gravity_change.x), k.gain_y = real(terms.gravity_change.y);
+    k.decay = real(terms.decay), k.spin_decay = real(terms.spin_decay), k.is_last = is_last;
+    const auto kernel = loops.kernels->advance_bodies[has_rotation_ ? 1 : 0];
+    loops.executor->for_each_chunk(
+        count_, loops.rows_per_task, kNanosecondsToAdvance,
+        [&](std::size_t, std::size_t first, std::size_t last) { kernel(k, first, padded(last)); });
+}
+
+template <class Real>
+void BodyRecords<Real>::end(Bodies<Real>& bodies, std::vector<std::int32_t>& lost,
+                            const StepLoops<Real>& loops) {
+    EndSubsteps<Real> k{};
+    k.velocity = velocity.data(), k.displacement = displacement.data(), k.turn = turn();
+    k.radius = bodies.radius.data(), k.uniform_radius = bodies.radius.uniform_value();
+    k.position_x = bodies.position_x.data(), k.position_y = bodies.position_y.data();
+    k.velocity_x = bodies.velocity_x.data(), k.velocity_y = bodies.velocity_y.data();
+    k.angle = has_rotation_ ? bodies.angle.data() : nullptr;
+    k.angular_velocity = has_rotation_ ? bodies.angular_velocity.data() : nullptr;
+    k.largest_position = static_cast<Real>(kLargestPosition);
+    k.largest_speed = static_cast<Real>(kLargestSpeed);
+    lost_rows_.prepare(count_, loops.rows_per_task);
+    const auto kernel = loops.kernels->end_substeps[has_rotation_ ? 1 : 0];
+    loops.executor->for_each_chunk(count_, loops.rows_per_task, kNanosecondsToBegin,
+                                   [&](std::size_t chunk, std::size_t first, std::size_t last) {
+                                       EndSubsteps<Real> part = k;
+                                       part.lost = lost_rows_.part(chunk);
+                                       lost_rows_.set_count(chunk, kernel(part, first, padded(last)));
+                                   });
+    lost.clear();
+    lost_rows_.for_each_below(count_, [&](std::int32_t row) { lost.push_back(row); });
+}
+
+template <class Real>
+Sums BodyRecords<Real>::sums_of_lost(const WorldState<Real>& world, std::size_t row) const {
+    const Bodies<Real>& bodies = world.bodies;
+    const Real* record = &velocity[4 * row];
+    return world.sums_of(row, {bodies.position_x[row], bodies.position_y[row]}, {record[0], record[1]},
+                         static_cast<double>(record[2]) / static_cast<double>(bodies.radius[row]));
+}
+
+template <class Real>
+std::size_t BodyRecords<Real>::bytes() const {
+    return velocity.bytes() + displacement.bytes() + turn_.bytes() + start_x_.bytes() + start_y_.bytes() +
+           start_rim_.bytes() + lost_rows_.bytes();
+}
+
+template class BodyRecords<float>;
+template class BodyRecords<double>;
+
+}  // namespace carom

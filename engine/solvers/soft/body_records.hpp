@@ -1,0 +1,71 @@
+#pragma once
+
+#include <carom/ledger.hpp>
+
+#include <cstdint>
+#include <vector>
+
+#include "constraints/contact_law.hpp"
+#include "kernels/contact_arguments.hpp"
+#include "solvers/soft/body_masses.hpp"
+#include "solvers/soft/step_terms.hpp"
+#include "state/chunked_list.hpp"
+#include "state/world_state.hpp"
+
+namespace carom {
+
+/// The bodies as contacts see them over the substeps of a step: velocities and displacements, one record a
+/// body, and what free flight does to them between substeps. Rows beyond the bodies are for the padding of
+/// contact groups: they stay at rest.
+template <class Real>
+class BodyRecords {
+  public:
+    Column<Real> velocity;      ///< [rows][4], kernels/contact_arguments.hpp
+    Column<Real> displacement;  ///< [rows][2], m, since the start of the step
+
+    /// Records at the start of a step, with the velocities that the first substep foresees.
+    /// @param padding_rows  rows beyond the bodies
+    void begin(const WorldState<Real>& world, const Column<Real>& motion, const BodyMasses<Real>& masses,
+               std::size_t padding_rows, const SubstepTerms& terms, const StepLoops<Real>& loops);
+    /// Moves the bodies through the substep that was solved; foresees the next, unless it was the last.
+    void advance(bool is_last, const SubstepTerms& terms, const StepLoops<Real>& loops);
+    /// Columns of bodies from records.
+    /// @param lost  out: rows whose state left the limits; they stand still where they were
+    void end(Bodies<Real>& bodies, std::vector<std::int32_t>& lost, const StepLoops<Real>& loops);
+    StartColumns<Real> start_columns();
+    /// m, by row: rim displacement since the start of the step; null without rotation.
+    Real* turn();
+    /// Nothing of the last step is known any more.
+    void forget() { count_ = 0; }
+
+    /// Bodies, without padding; 0 before the first step.
+    std::size_t count() const { return count_; }
+    /// Where the body is at the end of the step, by its displacement [m].
+    Vec2 end_of(std::size_t row, const StepFlight<Real>& flight) const {
+        return flight.start_of(row) + Vec2{displacement[2 * row], displacement[2 * row + 1]};
+    }
+    /// Velocity at the start of the substep; its inverse mass is left at zero.
+    DoubleBody start_of_substep(std::int32_t row) const {
+        const auto value = [i = static_cast<std::size_t>(row)](const Column<Real>& column) {
+            return column.empty() ? 0 : static_cast<double>(column[i]);
+        };
+        return DoubleBody{{{value(start_x_), value(start_y_), value(start_rim_), 0}}};
+    }
+    /// What a row that `end` lists as lost had by the books: the velocity that the impulses gave it, at the
+    /// place where it stays.
+    Sums sums_of_lost(const WorldState<Real>& world, std::size_t row) const;
+
+    std::size_t bytes() const;
+
+  private:
+    bool has_rotation_ = false;
+    std::size_t count_ = 0;
+    Column<Real> turn_;                           // m, rim displacement since the start of the step
+    Column<Real> start_x_, start_y_, start_rim_;  // m/s, velocities at the start of the substep
+    ChunkedList lost_rows_;
+};
+
+extern template class BodyRecords<float>;
+extern template class BodyRecords<double>;
+
+}  // namespace carom

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <carom/ledger.hpp>
+
+#include "solvers/soft/step_view.hpp"
+#include "state/world_state.hpp"
+
+namespace carom {
+
+/// The ledger of solver `soft`: work and momentum by cause, from impulses and velocities, in double
+/// precision.
+///
+/// In a substep a body's velocity goes from v0 to v1 by the sum of all impulses on it, so its kinetic energy
+/// grows by exactly (sum of impulses) · (v0 + v1) / 2, and each impulse's share is its own product with that
+/// mean. The mean velocity of the surfaces of a contact splits its share into what the contact takes, by its
+/// normal and by its tangential impulse, and what a moving support drives.
+template <class Real>
+class SubstepBooks {
+  public:
+    double gravity_work = 0;  ///< J, of this step, on velocities
+
+    /// Books what the impulses of this substep and free flight did; only the walls' impulses if the ledger is
+    /// closed.
+    void book_substep(const StepView<Real>& step, const WorldState<Real>& world, Books& books);
+    /// Books what the displacements of this step did against gravity.
+    /// @param rows  bodies that took part in it
+    void book_displacements(std::size_t rows, const WorldState<Real>& world, const Column<Real>& motion,
+                            Books& books);
+
+  private:
+    void book_free_flight(const StepView<Real>& step, const WorldState<Real>& world, Books& books);
+};
+
+/// Books the impulses of restitution, after all substeps.
+/// @param before  velocity records before they acted
+template <class Real>
+void book_bounces(const StepView<Real>& step, const Column<Real>& before, Books& books);
+
+extern template class SubstepBooks<float>;
+extern template class SubstepBooks<double>;
+
+}  // namespace carom

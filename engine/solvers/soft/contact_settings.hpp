@@ -1,0 +1,56 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "constraints/contact_rows.hpp"
+#include "isa/kernel_table.hpp"
+#include "solvers/soft/step_terms.hpp"
+#include "state/world_state.hpp"
+
+namespace carom {
+
+/// Bodies as near as this, in radii of the smaller one, are solved together even if they hardly move: what
+/// pushes one of them in the middle of a step is felt by the other.
+inline constexpr double kNearFraction = 0.04;
+
+/// What is the same for all contacts of a step of solver `soft`: the effects that are on, coefficients that
+/// need no column, and the lengths that contacts are judged by.
+///
+/// Those lengths are in metres, given the smaller radius of the two bodies. Where all radii are the same the
+/// kernels are given metres as well, else shares of the smaller radius, which is `radius` = 1.
+struct ContactSettings {
+    ContactEffects effects;
+    bool has_rotation = false;
+    int iterations = 2;                ///< sweeps a substep, >= 1
+    double friction = 0, rolling = 0;  ///< coefficients, of contacts that have none of their own
+    double radius = 1;                 ///< m, of all bodies; 1 where radii vary
+    double fall = 0;                   ///< m, by which gravity brings two bodies nearer in a step
+    double largest_correction = 0;     ///< m, or a share of the smaller radius: by an overlap, in a substep
+
+    /// Separation up to which bodies at rest are in contact [m].
+    double contact_distance(double smaller_radius) const { return kNearFraction * smaller_radius + fall; }
+    /// Overlap that the sweeps do not take away soon enough [m].
+    static double deep_overlap(double smaller_radius);
+    /// The smaller radius of the two bodies of a pair [m].
+    template <class Real>
+    double smaller_radius(const ContactRows<Real>& pairs, std::size_t pair) const {
+        return effects.radius_varies ? static_cast<double>(pairs.smaller[pair]) : radius;
+    }
+
+    /// Effects, coefficients and the radius.
+    template <class Real>
+    void read(const WorldState<Real>& world);
+    /// The lengths that depend on the time.
+    void set_lengths(const SubstepTerms& terms);
+
+    /// The kernels that have these effects compiled in.
+    /// @param some_are_fixed  whether some bodies do not turn
+    template <class Real>
+    const ContactKernels<Real>& kernels_of(const KernelTable<Real>& kernels, bool some_are_fixed) const {
+        if (!effects.friction) return kernels.contacts[0];
+        return kernels.contacts[(effects.rolling ? 3u : 1u) + (some_are_fixed ? 1u : 0u)];
+    }
+};
+
+}  // namespace carom

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "parallel/phases.hpp"
+#include "solvers/soft/step_view.hpp"
+
+namespace carom {
+
+/// Sweeps over all contacts of a step: a kernel is run once over each pair and each support, always in the
+/// same order, on several threads if there are any.
+///
+/// The order is that of constraints/task_groups.hpp: chunks of rows side by side, then contacts of chunks
+/// that are no neighbours, then the borders between chunks and supports, then supports of crowded bodies. One
+/// colour of a group follows the other; no two contacts of a batch share a body that moves.
+template <class Real>
+class ContactSweeps {
+  public:
+    /// Pairs that a sweep looks at: all; all, to mark the blocks that are not calm; those marked alone.
+    enum class Blocks { all, all_and_mark, restless };
+    struct Sweep {
+        typename ContactKernels<Real>::Solve pair_kernel, support_kernel;
+        Blocks blocks = Blocks::all;
+        int times = 1;  ///< that it is repeated, >= 1
+    };
+
+    /// What kernels are told of contacts of one kind, in a substep.
+    /// @param rows  the pairs or the supports of the step
+    static SolveContacts<Real> arguments(const StepView<Real>& step, ContactRows<Real>& rows);
+
+    /// To be called when the contacts of a step are found.
+    /// @param contacts  how many there are: the executor wants to know how long a sweep takes
+    void begin_step(std::int64_t contacts) { contacts_ = contacts; }
+
+    /// Runs the sweeps one after the other.
+    void run(const StepView<Real>& step, std::span<const Sweep> sweeps, const SolveContacts<Real>& on_pairs,
+             const SolveContacts<Real>& on_supports);
+    /// Runs one sweep, with the arguments that are above.
+    void run(const StepView<Real>& step, const Sweep& sweep) {
+        run(step, {&sweep, 1}, arguments(step, step.graph.pairs), arguments(step, step.supports));
+    }
+
+    std::size_t bytes() const {
+        return parts_.capacity() * sizeof(Part) + phases_.capacity() * sizeof(PhaseKind);
+    }
+
+  private:
+    /// What sweeps are cut into for threads: `kind` of sweep `sweep`.
+    struct Part {
+        enum class Kind { chunks, far, borders, crowded_supports } kind;
+        const Sweep* sweep;
+    };
+    void list_parts(std::span<const Sweep> sweeps, const ContactGraph<Real>& graph);
+
+    std::int64_t contacts_ = 0;  // of this step
+    std::vector<Part> parts_;    // of the sweeps of now
+    std::vector<PhaseKind> phases_;
+};
+
+extern template class ContactSweeps<float>;
+extern template class ContactSweeps<double>;
+
+}  // namespace carom
