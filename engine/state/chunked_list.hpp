@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -11,10 +12,10 @@ namespace carom {
 /// order.
 class ChunkedList {
   public:
-    /// Room for `rows` in chunks of `rows_per_chunk`, and a batch more for each.
+    /// Room for `rows` in chunks of `rows_per_chunk`, and a batch more for each. Few rows need little room.
     void prepare(std::size_t rows, std::size_t rows_per_chunk) {
         const std::size_t chunks = (rows + rows_per_chunk - 1) / rows_per_chunk;
-        stride_ = padded(rows_per_chunk) + kRowPadding;
+        stride_ = padded(std::min(rows, rows_per_chunk)) + kRowPadding;
         numbers_.resize_for_overwrite(chunks * stride_);
         counts_.assign(chunks, 0);
     }

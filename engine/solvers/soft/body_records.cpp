@@ -67,7 +67,7 @@ void BodyRecords<Real>::advance(bool is_last, const SubstepTerms& terms, const S
 }
 
 template <class Real>
-void BodyRecords<Real>::end(Bodies<Real>& bodies, std::vector<std::int32_t>& lost,
+void BodyRecords<Real>::end(Bodies<Real>& bodies, ChunkedList& lost_rows, std::vector<std::int32_t>& lost,
                             const StepLoops<Real>& loops) {
     EndSubsteps<Real> k{};
     k.velocity = velocity.data(), k.displacement = displacement.data(), k.turn = turn();
@@ -78,16 +78,16 @@ void BodyRecords<Real>::end(Bodies<Real>& bodies, std::vector<std::int32_t>& los
     k.angular_velocity = has_rotation_ ? bodies.angular_velocity.data() : nullptr;
     k.largest_position = static_cast<Real>(kLargestPosition);
     k.largest_speed = static_cast<Real>(kLargestSpeed);
-    lost_rows_.prepare(count_, loops.rows_per_task);
+    lost_rows.prepare(count_, loops.rows_per_task);
     const auto kernel = loops.kernels->end_substeps[has_rotation_ ? 1 : 0];
     loops.executor->for_each_chunk(count_, loops.rows_per_task, kNanosecondsToBegin,
                                    [&](std::size_t chunk, std::size_t first, std::size_t last) {
                                        EndSubsteps<Real> part = k;
-                                       part.lost = lost_rows_.part(chunk);
-                                       lost_rows_.set_count(chunk, kernel(part, first, padded(last)));
+                                       part.lost = lost_rows.part(chunk);
+                                       lost_rows.set_count(chunk, kernel(part, first, padded(last)));
                                    });
     lost.clear();
-    lost_rows_.for_each_below(count_, [&](std::int32_t row) { lost.push_back(row); });
+    lost_rows.for_each_below(count_, [&](std::int32_t row) { lost.push_back(row); });
 }
 
 template <class Real>
@@ -101,7 +101,7 @@ Sums BodyRecords<Real>::sums_of_lost(const WorldState<Real>& world, std::size_t 
 template <class Real>
 std::size_t BodyRecords<Real>::bytes() const {
     return velocity.bytes() + displacement.bytes() + turn_.bytes() + start_x_.bytes() + start_y_.bytes() +
-           start_rim_.bytes() + lost_rows_.bytes();
+           start_rim_.bytes();
 }
 
 template class BodyRecords<float>;

@@ -30,8 +30,10 @@ class BodyRecords {
     /// Moves the bodies through the substep that was solved; foresees the next, unless it was the last.
     void advance(bool is_last, const SubstepTerms& terms, const StepLoops<Real>& loops);
     /// Columns of bodies from records.
+    /// @param lost_rows  room for `lost` by chunk
     /// @param lost  out: rows whose state left the limits; they stand still where they were
-    void end(Bodies<Real>& bodies, std::vector<std::int32_t>& lost, const StepLoops<Real>& loops);
+    void end(Bodies<Real>& bodies, ChunkedList& lost_rows, std::vector<std::int32_t>& lost,
+             const StepLoops<Real>& loops);
     StartColumns<Real> start_columns();
     /// m, by row: rim displacement since the start of the step; null without rotation.
     Real* turn();
@@ -62,7 +64,6 @@ class BodyRecords {
     std::size_t count_ = 0;
     Column<Real> turn_;                           // m, rim displacement since the start of the step
     Column<Real> start_x_, start_y_, start_rim_;  // m/s, velocities at the start of the substep
-    ChunkedList lost_rows_;
 };
 
 extern template class BodyRecords<float>;

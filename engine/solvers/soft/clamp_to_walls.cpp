@@ -21,7 +21,7 @@ Real put_back(Real& position, Real& velocity, Real min, Real max, Real radius) {
 
 /// Contacts with walls are those of the bodies that can come there by themselves. One that another body
 /// throws at a wall within a step may have none: then this is its contact. It looks at centres, so it acts
-/// on nobody whose contact held.
+/// on no body whose contact held.
 template <class Real>
 void clamp_to_walls(SoftSimulation<Real>& sim) {
     WorldState<Real>& world = sim.world;
@@ -37,7 +37,7 @@ void clamp_to_walls(SoftSimulation<Real>& sim) {
         for (std::size_t row = first; row < last; ++row) {
             if (!box.is_outside(x[row], y[row]) || bodies.is_immovable(row)) continue;
             const Real* start = &sim.motion[4 * row];
-            if (box.is_outside(start[0], start[1])) continue;  // somebody has put it there
+            if (box.is_outside(start[0], start[1])) continue;  // it was put there
             const Real radius = bodies.radius[row];
             const Vec2 taken{
                 put_back(bodies.position_x[row], bodies.velocity_x[row], box.min_x, box.max_x, radius),

@@ -146,7 +146,7 @@ void EndProjection<Real>::list_pair(const Inputs& in, std::int32_t row_a, std::i
     const Vec2 before{static_cast<double>(motion[4 * b]) - static_cast<double>(motion[4 * a]),
                       static_cast<double>(motion[4 * b + 1]) - static_cast<double>(motion[4 * a + 1])};
     // What was there at the start goes no faster than the cap, and what is pressed together is left to the
-    // sweeps: pushed apart it would press on others, who push back.
+    // sweeps: pushed apart it would press on others, which push back.
     const double apart = std::sqrt(length_squared(before)) - of_a - of_b +
                          (is_loaded ? 0 : kPushRadiiPerSecond * smaller * in.flight.dt);
     const double inverse_a = bodies.inverse_mass(a), inverse_b = bodies.inverse_mass(b);

@@ -10,7 +10,7 @@ void rows_changed(SoftSimulation<Real>& sim) {
     sim.forget_derived_state();
 }
 
-/// While segments or chains move nobody sleeps: they may be anywhere.
+/// While segments or chains move no body sleeps: they may be anywhere.
 template <class Real>
 bool do_edges_move(const WorldState<Real>& world) {
     const Bodies<Real>& bodies = world.bodies;

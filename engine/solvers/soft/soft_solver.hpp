@@ -103,9 +103,10 @@ class SoftSolver {
         projection_.project(view(), world, flight, pair_finder_.has_deep_pairs());
     }
     /// Columns from records.
+    /// @param lost_rows  room for `lost` by chunk
     /// @param lost  rows whose state left the limits; they stand still where they were
-    void end_substeps(Bodies<Real>& bodies, std::vector<std::int32_t>& lost) {
-        records_.end(bodies, lost, loops_);
+    void end_substeps(Bodies<Real>& bodies, ChunkedList& lost_rows, std::vector<std::int32_t>& lost) {
+        records_.end(bodies, lost_rows, lost, loops_);
     }
     /// What the pushes of this step did against gravity.
     void book_displacements(const WorldState<Real>& world, const Column<Real>& motion, Books& books) {

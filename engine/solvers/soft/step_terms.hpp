@@ -37,7 +37,7 @@ struct SubstepTerms {
     double fall_speed() const { return std::sqrt(length_squared(gravity_change)); }
 };
 
-/// Where bodies began the step, and what the broadphase knows of whom they may meet in it.
+/// Where bodies began the step, and what the broadphase knows of what they may meet in it.
 template <class Real>
 struct StepFlight {
     const Column<Real>& motion;  ///< [rows][4]: x, y [m], vx, vy [m/s] at the start of the step
