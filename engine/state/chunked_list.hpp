@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -12,11 +11,12 @@ namespace carom {
 /// order.
 class ChunkedList {
   public:
-    /// Room for `rows` in chunks of `rows_per_chunk`, and a batch more for each. Few rows need little room.
+    /// Room for `rows` in chunks of `rows_per_chunk`, and a batch more for each.
+    /// @param rows_per_chunk  a multiple of kRowPadding: chunks side by side write whole batches
     void prepare(std::size_t rows, std::size_t rows_per_chunk) {
         const std::size_t chunks = (rows + rows_per_chunk - 1) / rows_per_chunk;
-        stride_ = padded(std::min(rows, rows_per_chunk)) + kRowPadding;
-        numbers_.resize_for_overwrite(chunks * stride_);
+        stride_ = rows_per_chunk + kRowPadding;
+        numbers_.resize_for_overwrite(padded(rows) + chunks * kRowPadding);
         counts_.assign(chunks, 0);
     }
     std::int32_t* part(std::size_t chunk) { return numbers_.data() + chunk * stride_; }
