@@ -15,16 +15,18 @@ double ContactSettings::deep_overlap(double smaller_radius) {
 }
 
 template <class Real>
-void ContactSettings::read(const WorldState<Real>& world) {
+void read_effects(const WorldState<Real>& world, ContactSettings& settings) {
     const Bodies<Real>& bodies = world.bodies;
-    effects.friction = world.effects.friction, has_rotation = world.effects.rotation;
+    const bool friction_varies = !bodies.friction.is_uniform(), radius_varies = !bodies.radius.is_uniform();
+    ContactEffects& effects = settings.effects;
+    effects.friction = world.effects.friction, settings.has_rotation = world.effects.rotation;
     effects.restitution = world.effects.restitution, effects.rolling = world.effects.rolling_resistance;
-    effects.friction_varies = effects.friction && !bodies.friction.is_uniform();
+    effects.friction_varies = effects.friction && friction_varies;
     effects.rolling_varies = effects.rolling && !bodies.rolling_resistance.is_uniform();
-    effects.radius_varies = effects.rolling_share_varies = !bodies.radius.is_uniform();
-    friction = bodies.friction.is_uniform() ? static_cast<double>(bodies.friction.uniform_value()) : 0;
-    rolling = static_cast<double>(bodies.rolling_resistance.uniform_value());
-    radius = effects.radius_varies ? 1 : static_cast<double>(bodies.radius.uniform_value());
+    effects.radius_varies = effects.rolling_share_varies = radius_varies;
+    settings.friction = friction_varies ? 0 : static_cast<double>(bodies.friction.uniform_value());
+    settings.rolling = static_cast<double>(bodies.rolling_resistance.uniform_value());
+    settings.radius = radius_varies ? 1 : static_cast<double>(bodies.radius.uniform_value());
 }
 
 /// A body that falls from rest, in substeps h of g h each, beside one that is held, comes nearer by
@@ -34,7 +36,7 @@ void ContactSettings::set_lengths(const SubstepTerms& terms) {
     largest_correction = kPushRadiiPerSecond * radius * terms.substep_dt;
 }
 
-template void ContactSettings::read(const WorldState<float>&);
-template void ContactSettings::read(const WorldState<double>&);
+template void read_effects(const WorldState<float>&, ContactSettings&);
+template void read_effects(const WorldState<double>&, ContactSettings&);
 
 }  // namespace carom

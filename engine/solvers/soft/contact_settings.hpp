@@ -38,9 +38,6 @@ struct ContactSettings {
         return effects.radius_varies ? static_cast<double>(pairs.smaller[pair]) : radius;
     }
 
-    /// Effects, coefficients and the radius.
-    template <class Real>
-    void read(const WorldState<Real>& world);
     /// The lengths that depend on the time.
     void set_lengths(const SubstepTerms& terms);
 
@@ -52,5 +49,9 @@ struct ContactSettings {
         return kernels.contacts[(effects.rolling ? 3u : 1u) + (some_are_fixed ? 1u : 0u)];
     }
 };
+
+/// Reads effects, coefficients and the radius from the world.
+template <class Real>
+void read_effects(const WorldState<Real>& world, ContactSettings& settings);
 
 }  // namespace carom

@@ -26,7 +26,7 @@ template <class Real>
 void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Column<Real>& motion, double h,
                                       const Vec2 gravity, const KernelTable<Real>& kernels,
                                       const Executor& executor) {
-    settings_.read(world);
+    read_effects(world, settings_);
     settings_.iterations = iterations;
     if (masses_.derive(world.bodies, settings_.effects.friction)) pair_finder_.forget(), uneven_.clear();
     loops_ = {&kernels, &settings_.kernels_of(kernels, masses_.some_are_fixed()), &executor, rows_per_task()};
