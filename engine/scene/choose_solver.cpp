@@ -10,16 +10,13 @@ namespace {
 /// at rest is the exception. A choice of speed, not of correctness.
 constexpr double kBouncy = 0.5;
 
-bool is_rough(const Material& material) {
-    return material.friction > 0 || material.rolling_resistance > 0;
+/// Of a pair the larger restitution counts, so what walls and immovable bodies have takes nothing away.
+bool is_inelastic(const Body& body) {
+    return body.type == BodyType::dynamic_body && body.material.restitution < 1;
 }
 
 bool is_dull(const Body& body) {
     return body.type == BodyType::dynamic_body && body.material.restitution < kBouncy;
-}
-
-std::string_view roughness_of(const Material& material) {
-    return material.friction > 0 ? "friction" : "rolling resistance";
 }
 
 std::string_view name_of(const Shape& shape) {
@@ -28,30 +25,41 @@ std::string_view name_of(const Shape& shape) {
                                                   : "disc";
 }
 
-std::optional<Problem> find_roughness_problem(const Item& item, const Material& material, Solver solver) {
+std::optional<Problem> find_roughness_problem(const Item& item, const Material& material, Vec2 gravity,
+                                              Solver solver) {
     if (solver == Solver::soft) return std::nullopt;
     if (material.rolling_resistance > 0)
         return problem(ErrorCode::inconsistent, item, "/material/rolling_resistance", "rolling resistance ",
                        material.rolling_resistance, ", but the solver ", quoted(name_of(solver)),
                        " has none. Use \"soft\" or \"auto\", or set it to 0.");
-    if (solver != Solver::event && material.friction > 0)
+    if (solver == Solver::event || material.friction == 0) return std::nullopt;
+    if (solver != Solver::impulse)
         return problem(ErrorCode::inconsistent, item, "/material/friction", "friction ", material.friction,
                        ", but the solver ", quoted(name_of(solver)),
                        " has no friction. Use \"soft\" or \"auto\", or set it to 0.");
-    return std::nullopt;
+    if (gravity == Vec2{}) return std::nullopt;
+    return problem(ErrorCode::inconsistent, item, "/material/friction", "friction ", material.friction,
+                   " and gravity is ", gravity,
+                   " m/s², but the solver \"impulse\" has friction in impacts alone, none where bodies rest; "
+                   "with gravity expected 0. Use \"soft\" or \"auto\", or set friction or gravity to 0.");
 }
 
 }  // namespace
 
 bool SolverFacts::would_change(const Body& body) const {
-    return (lines.empty() && !is_disc(body.shape)) || (rough.empty() && is_rough(body.material)) ||
-           (dull.empty() && is_dull(body));
+    return (lines.empty() && !is_disc(body.shape)) || (rough.empty() && body.material.friction > 0) ||
+           (resists.empty() && body.material.rolling_resistance > 0) ||
+           (inelastic.empty() && is_inelastic(body)) || (dull.empty() && is_dull(body));
 }
 
 void SolverFacts::add(const Body& body, std::string_view label) {
     ++bodies;
     if (lines.empty() && !is_disc(body.shape)) lines = join(label, " is a ", name_of(body.shape));
-    if (rough.empty() && is_rough(body.material)) rough = join(label, " has ", roughness_of(body.material));
+    if (rough.empty() && body.material.friction > 0) rough = join(label, " has friction");
+    if (resists.empty() && body.material.rolling_resistance > 0)
+        resists = join(label, " has rolling resistance");
+    if (inelastic.empty() && is_inelastic(body))
+        inelastic = join(label, " has restitution ", body.material.restitution, ", below 1");
     if (dull.empty() && is_dull(body))
         dull = join(label, " has restitution ", body.material.restitution, ", below ", kBouncy);
 }
@@ -60,11 +68,13 @@ SolverFacts facts_of(const Scene& scene, std::optional<int> iterations) {
     SolverFacts facts;
     facts.has_walls = scene.walls.has_value();
     facts.has_gravity = scene.gravity != Vec2{};
-    if (scene.walls && is_rough(scene.walls->material))
-        facts.rough = join("the walls have ", roughness_of(scene.walls->material));
-    if (scene.effects.friction == true)
-        facts.forced = "friction is forced on";
-    else if (scene.effects.rolling_resistance == true)
+    if (scene.walls && scene.walls->material.friction > 0)
+        facts.rough = "the walls have friction";
+    else if (scene.effects.friction == true)
+        facts.rough = "friction is forced on";
+    if (scene.walls && scene.walls->material.rolling_resistance > 0)
+        facts.resists = "the walls have rolling resistance";
+    if (scene.effects.rolling_resistance == true)
         facts.forced = "rolling resistance is forced on";
     else if (scene.effects.sleep == true)
         facts.forced = "sleeping is asked for";
@@ -78,8 +88,18 @@ SolverFacts facts_of(const Scene& scene, std::optional<int> iterations) {
 }
 
 SolverChoice choose_solver(const SolverFacts& facts) {
-    for (const std::string* reason : {&facts.lines, &facts.rough, &facts.forced})
+    // In a smooth world nothing can slide; in one that is rough but elastic, and falls nowhere, friction acts
+    // in impacts alone.
+    const bool is_rough_gas = !facts.rough.empty() && !facts.has_gravity && facts.inelastic.empty();
+    if (!facts.lines.empty()) return {Solver::soft, facts.lines};
+    if (!facts.rough.empty() && !is_rough_gas) return {Solver::soft, facts.rough};
+    for (const std::string* reason : {&facts.resists, &facts.forced})
         if (!reason->empty()) return {Solver::soft, *reason};
+    if (is_rough_gas)
+        return {Solver::impulse,
+                join(facts.rough,
+                     ", but every body has restitution 1 and without gravity nothing rests: each "
+                     "impact, with its friction, is resolved at its own time")};
     if (facts.bodies <= 1 && !facts.has_walls)
         return {Solver::impulse, "there is nothing to touch: free flight is exact"};
     if (!facts.has_gravity)
@@ -117,12 +137,12 @@ std::optional<Problem> find_solver_problem(const EffectOverrides& effects, Solve
     return std::nullopt;
 }
 
-std::optional<Problem> find_solver_problem(const Item& item, const Body& body, Solver solver) {
+std::optional<Problem> find_solver_problem(const Item& item, const Body& body, Vec2 gravity, Solver solver) {
     if (!is_disc(body.shape) && solver != Solver::soft)
         return problem(ErrorCode::inconsistent, item, join("/shape/", name_of(body.shape)), "the shape ",
                        quoted(name_of(body.shape)), ", but the solver ", quoted(name_of(solver)),
                        " knows discs only. Use \"soft\" or \"auto\".");
-    return find_roughness_problem(item, body.material, solver);
+    return find_roughness_problem(item, body.material, gravity, solver);
 }
 
 std::optional<Problem> find_solver_problem(const Scene& scene, Solver solver) {
@@ -130,12 +150,12 @@ std::optional<Problem> find_solver_problem(const Scene& scene, Solver solver) {
     if (solver == Solver::event)
         if (auto found = find_event_problem(scene)) return found;
     if (scene.walls)
-        if (auto found =
-                find_roughness_problem({"the walls have", "/walls", -1, ""}, scene.walls->material, solver))
+        if (auto found = find_roughness_problem({"the walls have", "/walls", -1, ""}, scene.walls->material,
+                                                scene.gravity, solver))
             return found;
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
         const Item item{"body", "/bodies", static_cast<std::ptrdiff_t>(i), scene.bodies[i].name};
-        if (auto found = find_solver_problem(item, scene.bodies[i], solver)) return found;
+        if (auto found = find_solver_problem(item, scene.bodies[i], scene.gravity, solver)) return found;
     }
     return std::nullopt;
 }

@@ -20,15 +20,17 @@ struct SolverChoice {
 struct SolverFacts {
     std::size_t bodies = 0;
     bool has_walls = false, has_gravity = false;
-    std::string lines;   ///< of a segment or chain
-    std::string rough;   ///< of what has friction or rolling resistance
-    std::string forced;  ///< of an effect, or of sweeps, that were asked for
-    std::string dull;    ///< of a body that hardly bounces
+    std::string lines;      ///< of a segment or chain
+    std::string rough;      ///< of what has friction, or that it is forced on
+    std::string resists;    ///< of what has rolling resistance
+    std::string forced;     ///< of another effect, or of sweeps, that were asked for
+    std::string inelastic;  ///< of a body that bounces with less than its speed
+    std::string dull;       ///< of a body that hardly bounces
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.bodies, self.has_walls, self.has_gravity, self.lines, self.rough, self.forced,
-                self.dull);
+        archive(self.bodies, self.has_walls, self.has_gravity, self.lines, self.rough, self.resists,
+                self.forced, self.inelastic, self.dull);
     }
 
     /// Whether a body brings a reason that there is not yet.
@@ -52,7 +54,8 @@ std::optional<Problem> find_solver_problem(const EffectOverrides& effects, Solve
 /// Sweeps that `solver`, as chosen, does not do.
 std::optional<Problem> find_iterations_problem(std::optional<int> iterations, Solver solver);
 /// The first thing about one body that `solver` cannot do, for a body that is added to a running world.
-std::optional<Problem> find_solver_problem(const Item& item, const Body& body, Solver solver);
+/// @param gravity  m/s², of the world
+std::optional<Problem> find_solver_problem(const Item& item, const Body& body, Vec2 gravity, Solver solver);
 
 /// Parts a step is cut into unless a scene says otherwise.
 int default_substeps(Solver solver);

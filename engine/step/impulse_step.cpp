@@ -30,7 +30,7 @@ class ImpulseStep final : public ImpulseSimulation<Real> {
         {"settle_contacts", [](Sim& sim) { sim.impulse.settle_contacts(sim.meetings, sim.world.handles); },
          can_meet, KernelChoice::none, "meetings, motion", "motion, accelerations, impact queue"},
         {"resolve_impacts", [](Sim& sim) { sim.impulse.resolve_impacts(); }, can_meet, KernelChoice::none,
-         "impact queue, motion, candidate pairs", "motion"},
+         "impact queue, motion, candidate pairs, angle, angular velocity", "motion, angle, angular velocity"},
         {"keep_books", [](Sim& sim) { keep_books(sim); }, has_ledger, KernelChoice::none,
          "motion, angular velocity", "books"},
         {"advance_rotation", [](Sim& sim) { advance_rotation(sim); }, has_rotation, KernelChoice::isa,

@@ -299,7 +299,8 @@ BodyId BasicWorld<Real>::add(const Body& body) {
     SolverChoice choice{implementation_->sim().solver(), implementation_->called.solver_reason};
     if (implementation_->asked_for == Solver::automatic && choice.solver != Solver::soft)
         choice = choose_solver(facts);
-    raise_if("World::add", find_solver_problem({"the body has", "", -1, ""}, body, choice.solver));
+    raise_if("World::add", find_solver_problem({"the body has", "", -1, ""}, body,
+                                               implementation_->world().gravity, choice.solver));
     if (implementation_->world().walls) validate_inside(body, *implementation_->world().walls, "World::add");
     if (body_count() >= kLargestBodyCount)
         throw Error(ErrorCode::too_large, "World::add: the world has " + std::to_string(body_count()) +

@@ -79,6 +79,34 @@ inline Scene rough_sizes() {
     return scene;
 }
 
+/// Solver `impulse` with friction: sizes, drag, discs that do not turn, one that spins and that nothing
+/// moves, and pairs that are hit at one instant.
+inline Scene rough_gas() {
+    Scene scene = gas(300, {0.2, 0.6}, 1);
+    scene.name = "rough gas";
+    scene.drag = {.linear = 0.2, .angular = 0.3};
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+        scene.bodies[i].material.friction = i % 3 == 0 ? 0.1 : 0.5;
+        scene.bodies[i].fixed_rotation = i % 7 == 0;
+    }
+    scene.walls->material.friction = 0.3;
+    const double side = scene.walls->max.x;
+    scene.walls->max.x += 10;
+    scene.add({.type = BodyType::kinematic_body,
+               .shape = Disc{1},
+               .position = {side + 2, side / 2},
+               .velocity = {-1, 0.25},
+               .angular_velocity = -5,
+               .material = {.friction = 0.7}});
+    for (const double y : {0.0, 0.5, -0.5})  // one that breaks two
+        scene.add({.shape = Disc{0.5},
+                   .position = {side + (y == 0 ? 4 : 6), 4 + y},
+                   .velocity = {y == 0 ? 6.0 : 0.0, 0},
+                   .angular_velocity = y == 0 ? 3.0 : 0.0,
+                   .material = {.friction = 0.4, .restitution = 1}});
+    return scene;
+}
+
 inline Scene rolling_sizes() {
     Scene scene = rough_sizes();
     scene.name = "rolling sizes";
@@ -131,8 +159,8 @@ inline Scene woken_sleepers() {
 }
 
 inline std::vector<Scene> golden_scenes() {
-    return {woken_sleepers(),   rolling_sizes(), gas(400, {0.5, 0.5}, 1), falling_sizes(),
-            moving_obstacles(), stack_at_rest(), rough_sizes(),           turning_chain()};
+    return {woken_sleepers(), rolling_sizes(), gas(400, {0.5, 0.5}, 1), falling_sizes(), moving_obstacles(),
+            stack_at_rest(),  rough_sizes(),   turning_chain(),         rough_gas()};
 }
 
 }  // namespace carom::test

@@ -80,17 +80,22 @@ class PricesTest(ProgramTest):
 
     def test_what_has_no_price_has_a_reason(self):
         _, effects = self.prices(gas(3), "--solver", "impulse")
-        self.assertIn("solver impulse has no friction", effects["friction"]["no_price"])
         self.assertIn("cannot be left out", effects["continuous"]["no_price"])
 
     def test_an_effect_that_needs_another_solver_is_priced_with_it(self):
-        result, effects = self.prices(gas(4))
+        result, effects = self.prices(gas(4, gravity=[0, -1]))
         self.assertEqual(result["solver"], "impulse")
         for name in ("friction", "friction and rotation"):
             self.assertEqual(effects[name]["solver_with"], "soft")
             self.assertIn("solve_contacts", effects[name]["stages"])
         self.assertEqual([name for name, effect in effects.items() if "solver_with" in effect],
                          ["friction", "friction and rotation"])
+
+    def test_an_elastic_gas_without_gravity_carries_friction_under_its_own_solver(self):
+        _, effects = self.prices(gas(4))
+        for name in ("friction", "friction and rotation"):
+            self.assertNotIn("solver_with", effects[name])
+            self.assertTrue(effects[name]["same_bits"])
 
     def test_the_table_and_the_page_have_every_effect(self):
         path = self.write_scene(pile())

@@ -33,7 +33,6 @@ bool has(Solver solver, const PricedEffect& effect) {
         return std::find(effect.wishes.begin(), effect.wishes.end(), wish) != effect.wishes.end();
     };
     if (solver != Solver::soft && forces(&EffectOverrides::rolling_resistance)) return false;
-    if (solver == Solver::impulse) return !forces(&EffectOverrides::friction);
     if (solver == Solver::event) return !forces(&EffectOverrides::drag);
     return true;
 }
@@ -121,6 +120,8 @@ TEST_SUITE("physics/zero-valued effects") {
             for (const PricedEffect& effect : tool::priced_effects()) {
                 if (!effect.take_away || !has(solver, effect)) continue;
                 if (solver == Solver::event && effect.name == "restitution") continue;
+                // `impulse` has friction only without gravity, which these scenes have.
+                if (solver == Solver::impulse && effect.name.find("friction") != std::string::npos) continue;
                 Scene without = scene_of_everything(solver);
                 effect.take_away(without);
                 CAPTURE(name_of(solver));

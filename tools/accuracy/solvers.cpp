@@ -25,7 +25,7 @@ const std::vector<SweptSolver> kOurs{
      {1, 2, 4},
      {1},
      "flies exactly between impacts and finds each one's time inside the step, so free flight and bounces "
-     "cost no accuracy and long steps are cheap; it has no friction"},
+     "cost no accuracy and long steps are cheap; it has friction in impacts alone"},
     {Solver::soft,
      {kSingle, kDouble},
      true,

@@ -14,7 +14,7 @@ struct EffectOverrides {
     std::optional<bool> drag{};         ///< likewise
     std::optional<bool> rotation{};     ///< likewise; `true` gives every body an angle and a spin
     std::optional<bool> restitution{};  ///< likewise
-    std::optional<bool> friction{};     ///< likewise; needs rotation, and the solver `soft` or `event`
+    std::optional<bool> friction{};     ///< likewise; needs rotation; not at rest under `impulse`
     std::optional<bool>
         rolling_resistance{};  ///< likewise; needs rotation and friction, and the solver `soft`
 };

@@ -65,7 +65,7 @@ EventContact EventImpacts::measure(const EventStore& store, std::int32_t a, std:
     c.inverse_slip_mass = c.inverse_mass + inverse_inertia;
     c.normal_velocity = dot(velocity, c.normal);
     c.slip = dot(velocity, turned(c.normal)) - surface_speed;
-    c.normal_velocity_after = c.normal_velocity, c.slip_after = c.slip;
+    c.normal_velocity_after = c.normal_velocity, c.slip_bounced = c.slip_after = c.slip;
     return c;
 }
 
@@ -112,11 +112,13 @@ void EventImpacts::book(const EventStore& store, const EventContact& c) {
     }
     if (!books->is_open) return;
     books->restitution += impact_work(c.impulse, c.normal_velocity, c.normal_velocity_after);
-    books->friction += impact_work(c.friction_impulse, c.slip, c.slip_after);
+    books->friction += impact_work(c.friction_impulse, c.slip_bounced, c.slip_after);
     const auto ib = static_cast<std::size_t>(c.b);
     if (c.b < 0 || !store.is_immovable(ib)) return;
     books->immovable_momentum -= impulse;
+    // The rim of B moves against the tangent, and so does friction push A.
     books->drive -= dot(impulse, store.movers[ib].velocity);
+    books->drive += c.friction_impulse * store.movers[ib].radius * store.surfaces[ib].spin;
 }
 
 void EventImpacts::carry_out(EventStore& store, EventContact& c, double time) {
@@ -183,6 +185,24 @@ double EventImpacts::solve_sweep(const EventStore& store, std::vector<EventConta
     return largest;
 }
 
+/// What the impulses so far have made of the velocities. Each of the two solves takes energy on its own, so
+/// that neither books what is the other's.
+void EventImpacts::measure_after(const EventStore& store, std::vector<EventContact>& contacts,
+                                 bool with_friction) {
+    for (EventContact& c : contacts) {
+        Vec2 velocity = -change_of(store, c.a)->velocity;
+        double spins = store.movers[static_cast<std::size_t>(c.a)].radius * change_of(store, c.a)->spin;
+        if (const Change* b = change_of(store, c.b)) {
+            velocity += b->velocity;
+            spins += store.movers[static_cast<std::size_t>(c.b)].radius * b->spin;
+        }
+        c.slip_after = c.slip + dot(velocity, turned(c.normal)) - spins;
+        if (with_friction) continue;
+        c.normal_velocity_after = c.normal_velocity + dot(velocity, c.normal);
+        c.slip_bounced = c.slip_after;
+    }
+}
+
 void EventImpacts::carry_out(EventStore& store, std::vector<EventContact>& contacts, double time) {
     double fastest = 0;
     bool has_friction = false;
@@ -196,21 +216,12 @@ void EventImpacts::carry_out(EventStore& store, std::vector<EventContact>& conta
         if (with_friction && !has_friction) break;
         for (int sweep = 0; sweep < kMostSweeps; ++sweep)
             if (solve_sweep(store, contacts, with_friction) <= kConverged * fastest) break;
+        measure_after(store, contacts, with_friction);
     }
     for (const EventContact& c : contacts)
         for (const std::int32_t disc : {c.a, c.b})
             if (disc >= 0 && store.movers[static_cast<std::size_t>(disc)].time != time)
                 store.bring_to(static_cast<std::size_t>(disc), time);
-    for (EventContact& c : contacts) {
-        Vec2 velocity = -change_of(store, c.a)->velocity;
-        double spins = store.movers[static_cast<std::size_t>(c.a)].radius * change_of(store, c.a)->spin;
-        if (const Change* b = change_of(store, c.b)) {
-            velocity += b->velocity;
-            spins += store.movers[static_cast<std::size_t>(c.b)].radius * b->spin;
-        }
-        c.normal_velocity_after = c.normal_velocity + dot(velocity, c.normal);
-        c.slip_after = c.slip + dot(velocity, turned(c.normal)) - spins;
-    }
     for (const EventContact& c : contacts)
         if (c.impulse > 0) apply(store, c, time);
     counters->simultaneous_impacts += static_cast<std::int64_t>(contacts.size());

@@ -23,12 +23,14 @@ struct EventContact {
     double slip = 0;             ///< m/s, of B's surface relative to A's along the normal turned by 90°
     double separation = 0;       ///< m
     double friction = 0;
-    double target = 0;             ///< m/s, least normal velocity after
-    double inverse_mass = 0;       ///< 1/kg, along the normal: of both together
-    double inverse_slip_mass = 0;  ///< 1/kg, along the surface
-    double impulse = 0;            ///< N s, on B along the normal
-    double friction_impulse = 0;   ///< N s, on B along the normal turned by 90°
-    double normal_velocity_after = 0, slip_after = 0;
+    double target = 0;                 ///< m/s, least normal velocity after
+    double inverse_mass = 0;           ///< 1/kg, along the normal: of both together
+    double inverse_slip_mass = 0;      ///< 1/kg, along the surface
+    double impulse = 0;                ///< N s, on B along the normal
+    double friction_impulse = 0;       ///< N s, on B along the normal turned by 90°
+    double normal_velocity_after = 0;  ///< m/s, before friction
+    double slip_bounced = 0;           ///< m/s, after the normal impulses, before friction
+    double slip_after = 0;             ///< m/s
 };
 
 struct EventCounters {
@@ -81,6 +83,7 @@ class EventImpacts {
     void set_targets(const EventStore& store, EventContact& contact, double time);
     void apply(EventStore& store, const EventContact& contact, double time);
     void book(const EventStore& store, const EventContact& contact);
+    void measure_after(const EventStore& store, std::vector<EventContact>& contacts, bool with_friction);
     double solve_sweep(const EventStore& store, std::vector<EventContact>& contacts, bool with_friction);
     Change* change_of(const EventStore& store, std::int32_t disc);
 

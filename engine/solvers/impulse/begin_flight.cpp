@@ -55,6 +55,8 @@ void begin_flight(ImpulseSimulation<Real>& sim) {
     flights.bodies = &world.bodies;
     flights.books = &world.books;
     flights.walls = world.walls ? &*world.walls : nullptr;
+    flights.has_friction = world.effects.friction;
+    flights.angular_drag = world.effects.friction ? world.drag.angular : 0;
     flights.motion.resize(4 * padded(count));
     set_accelerations(sim);
     sim.candidates.prepare(count);

@@ -66,9 +66,12 @@ template <class Real>
 void advance_rotation(ImpulseSimulation<Real>& sim) {
     Bodies<Real>& bodies = sim.world.bodies;
     const FlightClock clock = flight_clock_at(sim.flight_dt, sim.world.drag.angular);
-    sim.immovable_spins.clear();  // drag does not slow what nothing moves
-    for (const std::int32_t row : sim.world.immovable_rows)
-        sim.immovable_spins.push_back(bodies.angular_velocity[static_cast<std::size_t>(row)]);
+    sim.immovable_turns.clear();  // drag does not slow what nothing moves
+    if (clock.drag != 0)
+        for (const std::int32_t row : sim.world.immovable_rows) {
+            const auto i = static_cast<std::size_t>(row);
+            sim.immovable_turns.push_back({bodies.angle[i], bodies.angular_velocity[i]});
+        }
     const AdvanceRotation<Real> k{bodies.angle.data(), bodies.angular_velocity.data(),
                                   static_cast<Real>(clock.s), static_cast<Real>(clock.u)};
     sim.executor.for_each_chunk(bodies.count, kRowsPerChunk,
@@ -76,8 +79,13 @@ void advance_rotation(ImpulseSimulation<Real>& sim) {
                                     sim.kernels->advance_rotation(k, first, padded(last));
                                 });
     std::size_t n = 0;
-    for (const std::int32_t row : sim.world.immovable_rows)
-        bodies.angular_velocity[static_cast<std::size_t>(row)] = sim.immovable_spins[n++];
+    if (clock.drag == 0) return;
+    for (const std::int32_t row : sim.world.immovable_rows) {
+        const auto i = static_cast<std::size_t>(row);
+        const auto [angle, spin] = sim.immovable_turns[n++];
+        bodies.angle[i] = static_cast<Real>(angle + clock.t * static_cast<double>(spin));
+        bodies.angular_velocity[i] = spin;
+    }
 }
 
 template void end_flight(ImpulseSimulation<float>&);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "effects/flight.hpp"
+#include "effects/friction.hpp"
 #include "effects/restitution.hpp"
 #include "effects/touching.hpp"
 #include "narrowphase/coincident.hpp"
@@ -33,6 +34,21 @@ struct Encounter {
     Vec2 normal;             ///< from A to B, or from A into the wall
     double separation;       ///< m
     double normal_velocity;  ///< m/s, of B relative to A; negative = approaching
+
+    /// The normal turned by 90° counter-clockwise, along which friction acts.
+    Vec2 tangent() const { return {-normal.y, normal.x}; }
+};
+
+/// A body as the contact law wants it (constraints/contact_law.hpp), in plain numbers.
+struct ContactRecord {
+    double velocity_x, velocity_y;  ///< m/s
+    double rim_speed;               ///< m/s
+    double inverse_mass;            ///< 1/kg, zero for what nothing moves, negative for a fixed angle
+};
+
+/// Impulses on B of a meeting [N s].
+struct ImpactImpulses {
+    double normal, tangent;
 };
 
 template <class Real>
@@ -46,6 +62,8 @@ class Flights {
     Vec2 common_acceleration;    // m/s²
     FlightClock end;             // the clock at the end of the substep
     double rest_speed = 0;       // m/s, approaches slower than this do not bounce
+    bool has_friction = false;   // impacts turn bodies: their angles and spins are read and written
+    double angular_drag = 0;     // 1/s, only with friction
     const Walls* walls = nullptr;
     Bodies<Real>* bodies = nullptr;
     Books* books = nullptr;
@@ -87,6 +105,12 @@ class Flights {
                                                  : bodies->restitution[static_cast<std::size_t>(m.b)]);
     }
 
+    double friction(Meeting m) const {
+        const double a = bodies->friction[static_cast<std::size_t>(m.a)];
+        return pair_friction(
+            a, m.with_wall() ? walls->material.friction : bodies->friction[static_cast<std::size_t>(m.b)]);
+    }
+
     double inverse_mass_sum(Meeting m) const {
         return inverse_mass(m.a) + (m.with_wall() ? 0 : inverse_mass(m.b));
     }
@@ -107,6 +131,18 @@ class Flights {
         return {n, distance - reach(m), dot(velocity_at(fb, s, drag()) - va, n)};
     }
 
+    /// A body at clock s. Only with friction.
+    ContactRecord record(std::int32_t row, double s) const {
+        const Vec2 v = velocity_at(flight(row), s, drag());
+        return {v.x, v.y, rim_speed(row, s), record_at_rest(row).inverse_mass};
+    }
+    /// The same without motion: for what impulses add up to.
+    ContactRecord record_at_rest(std::int32_t row) const {
+        const bool turns = (bodies->flags_of(static_cast<std::size_t>(row)) & kFixedAngle) == 0;
+        const double w = inverse_mass(row);
+        return {0, 0, 0, turns ? w : -w};
+    }
+
     /// Whether surfaces touch so gently at clock s that this is rest, not an impact.
     bool rests(Meeting m, double s) const {
         if (!(rest_speed > 0)) return false;
@@ -118,8 +154,23 @@ class Flights {
     void apply_impulse(Meeting m, const Encounter& e, double j, double s) {
         push(m.a, -j * inverse_mass(m.a) * e.normal, s);
         if (!m.with_wall()) push(m.b, j * inverse_mass(m.b) * e.normal, s);
-        if (m.with_wall()) books->add_wall_impulse(-j * e.normal);
-        if (books->is_open && !m.with_wall()) book_immovable(m, j * e.normal, s);
+        book_outside(m, e, {j, 0}, s);
+    }
+
+    /// Adds to a body's velocity and rim speed at clock s; it flies on from there.
+    void deflect(std::int32_t row, const ContactRecord& change, double s) {
+        push(row, {change.velocity_x, change.velocity_y}, s);
+        if (change.rim_speed != 0) turn(row, change.rim_speed / radius(row), s);
+    }
+
+    /// Books what walls and immovable bodies give in a meeting.
+    void book_outside(Meeting m, const Encounter& e, const ImpactImpulses& j, double s) {
+        if (m.with_wall()) {
+            books->add_wall_impulse(-j.normal * e.normal);
+            if (j.tangent != 0) books->wall_momentum -= j.tangent * e.tangent();
+        } else if (books->is_open) {
+            book_immovable(m, e, j, s);
+        }
     }
 
     /// Work that the contacts a body rests on do on it from the start of flight f to clock s [J]. Two bodies
@@ -159,6 +210,35 @@ class Flights {
         if (drag() != 0) book_drag(row, before, s, q);
     }
 
+    /// Time and angular drag's clock at clock s of the flight.
+    FlightClock spin_clock(double s) const {
+        return flight_clock_at(drag() == 0 ? s : s + drag() * flight_q(s, drag()), angular_drag);
+    }
+
+    /// Speed of a body's rim by its spin at clock s [m/s].
+    double rim_speed(std::int32_t row, double s) const {
+        const double spin = bodies->angular_velocity[static_cast<std::size_t>(row)];
+        const bool slows = angular_drag != 0 && !is_immovable(row);
+        return radius(row) * (slows ? spin_clock(s).u * spin : spin);
+    }
+
+    /// Changes a body's spin at clock s by `change` [rad/s]. The columns take the angle and the spin at the
+    /// start of the substep with which the body would be as it is from now on, so that its end comes out
+    /// right: as push does it for position and velocity.
+    void turn(std::int32_t row, double change, double s) {
+        Real& angle = bodies->angle[static_cast<std::size_t>(row)];
+        Real& spin = bodies->angular_velocity[static_cast<std::size_t>(row)];
+        const FlightClock clock = spin_clock(s);
+        const double before = spin, change_at_start = change / clock.u;
+        spin = static_cast<Real>(before + change_at_start);
+        angle = static_cast<Real>(angle - clock.s * change_at_start);
+        if (angular_drag == 0 || !books->is_open) return;
+        // The end of the substep books angular drag for the spin as it ends, as with book_drag.
+        const double after = spin;
+        const double inertia = 0.5 * radius(row) * radius(row) / inverse_mass(row);
+        books->drag -= (1 - clock.u * clock.u) * 0.5 * inertia * (before * before - after * after);
+    }
+
     /// The end of the substep books drag for the flight as it ends; here the part flown before is set right.
     void book_drag(std::int32_t row, const Flight& before, double s, double q) {
         const Flight after = flight(row);
@@ -170,14 +250,19 @@ class Flights {
         books->drag_momentum -= mass * drag() * way;
     }
 
-    /// j acts on B, -j on A; if one of them is immovable the other's momentum came from outside.
-    void book_immovable(Meeting m, Vec2 j, double s) {
+    /// Impulses act on B, their opposites on A; if one of them is immovable the other's momentum came from
+    /// outside, and the work of its surface's motion on it too.
+    void book_immovable(Meeting m, const Encounter& e, const ImpactImpulses& j, double s) {
         const bool a = is_immovable(m.a), b = is_immovable(m.b);
         if (a == b) return;
-        const Vec2 on_movable = a ? j : -j;
+        const double sign = a ? 1 : -1;
+        Vec2 on_movable = sign * j.normal * e.normal;
+        if (j.tangent != 0) on_movable += sign * j.tangent * e.tangent();
         books->immovable_momentum += on_movable;
-        const Flight f = flight(a ? m.a : m.b);
-        books->drive += dot(on_movable, velocity_at(f, s, drag()));
+        const std::int32_t row = a ? m.a : m.b;
+        books->drive += dot(on_movable, velocity_at(flight(row), s, drag()));
+        // Its rim moves along the tangent if it is A, against it if it is B, and so acts j on the other.
+        if (j.tangent != 0) books->drive += j.tangent * rim_speed(row, s);
     }
 
     Vec2 direction_of_coincident(Meeting m) const {

@@ -23,7 +23,7 @@ template <class Real>
 std::size_t ImpulseSimulation<Real>::bytes() const {
     std::size_t bytes = Simulation<Real>::bytes() + sizeof(*this) + impulse.bytes() + wall_rows.bytes() +
                         meetings.capacity() * sizeof(FoundMeeting) +
-                        immovable_spins.capacity() * sizeof(Real);
+                        immovable_turns.capacity() * sizeof(Turn);
     for (const auto& of_chunk : chunk_meetings) bytes += of_chunk.capacity() * sizeof(FoundMeeting);
     return bytes;
 }

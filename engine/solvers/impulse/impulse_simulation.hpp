@@ -22,12 +22,16 @@ class ImpulseSimulation : public Simulation<Real> {
     void visit_state(StateWriter& archive) const override { visit_all(*this, archive); }
     void visit_state(StateReader& archive) override { visit_all(*this, archive); }
 
+    struct Turn {
+        Real angle, spin;  // rad, rad/s
+    };
+
     ImpulseSolver<Real> impulse;
     // The lists below are those of the present substep.
     ChunkedList wall_rows;
     std::vector<FoundMeeting> meetings;                     ///< that the solver has to look at
     std::vector<std::vector<FoundMeeting>> chunk_meetings;  ///< where chunks run on several threads
-    std::vector<Real> immovable_spins;                      ///< rad/s, kept over the turn
+    std::vector<Turn> immovable_turns;                      ///< kept over the turn of all others
 
   private:
     template <class Self, class Archive>

@@ -41,7 +41,11 @@ struct FoundMeeting {
 /// along new paths, and what they can hit from there is foreseen anew, until nothing is left in the substep.
 /// Impacts at one instant are solved together, so that the result keeps the scene's symmetry.
 ///
-/// Energy: an impact changes it by -m_eff (1 - e²) vn² / 2 and by nothing else; overlaps never feed velocity.
+/// Friction: each impact's surfaces stick, or slide within Coulomb's limit (constraints/contact_law.hpp).
+/// Contacts at rest have none, so that a world with friction must have nothing that rests: no gravity.
+///
+/// Energy: an impact changes it by -m_eff (1 - e²) vn² / 2, by what friction takes and by nothing else;
+/// overlaps never feed velocity.
 /// Cost: O(impacts · log(impacts of the substep)), about 100 ns each.
 /// Source: event-driven molecular dynamics (Alder & Wainwright 1959; Lubachevsky 1991), confined to a step.
 template <class Real>

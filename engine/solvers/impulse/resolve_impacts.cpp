@@ -4,6 +4,7 @@
 
 #include "simd/prefetch.hpp"
 #include "solvers/impulse/impulse_solver.hpp"
+#include "solvers/impulse/rough_impacts.hpp"
 
 // The part of the impulse solver that carries impacts out, one after the other.
 
@@ -27,6 +28,8 @@ void ImpulseSolver<Real>::prefetch_tile(std::size_t tile) const {
             prefetch(&flights.motion[row * Flights<Real>::kMotionWidth]);
             if (i % 8 != 0) continue;  // neighbours in the plane are nearly neighbours in the columns
             prefetch(&deflections_[row]);
+            if (flights.has_friction)
+                prefetch(&flights.bodies->angular_velocity[row]), prefetch(&flights.bodies->angle[row]);
         }
     });
 }
@@ -112,6 +115,12 @@ void ImpulseSolver<Real>::carry_out(const Impact& impact) {
     const Encounter e = flights.encounter(m, impact.s);
     if (!(e.normal_velocity < -approach_noise(m))) return;
     const double restitution = restitution_of(m, e);
+    const double friction = flights.has_friction ? flights.friction(m) : 0;
+    if (friction > 0) {
+        carry_out_rough(flights, m, e, {restitution, friction}, impact.s);
+        note_impact(m, e);
+        return;
+    }
     const double j = impact_impulse(e.normal_velocity, restitution, flights.inverse_mass_sum(m));
     flights.apply_impulse(m, e, j, impact.s);
     if (flights.books->is_open)

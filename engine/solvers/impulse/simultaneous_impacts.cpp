@@ -2,7 +2,8 @@
 
 #include <cmath>
 
-#include "constraints/contact_law.hpp"
+#include "solvers/impulse/impact_sides.hpp"
+#include "solvers/impulse/rough_impacts.hpp"
 
 namespace carom {
 namespace {
@@ -19,7 +20,7 @@ std::size_t SimultaneousImpacts<Real>::place_of(const Flights<Real>& flights, st
     std::int32_t& place = place_of_row_[static_cast<std::size_t>(row)];
     if (place < 0) {
         place = static_cast<std::int32_t>(changes_.size());
-        changes_.push_back({row, flights.inverse_mass(row), {}});
+        changes_.push_back({row, flights.record_at_rest(row)});
     }
     return static_cast<std::size_t>(place);
 }
@@ -31,12 +32,57 @@ void SimultaneousImpacts<Real>::add(const Flights<Real>& flights, Meeting m, con
     const std::size_t a = place_of(flights, m.a);
     const std::size_t b = m.with_wall() ? a : place_of(flights, m.b);
     impacts_.push_back({m, e, s, target, 0, e.normal_velocity, flights.inverse_mass_sum(m), a, b});
+    if (flights.has_friction) measure_slip(flights, impacts_.back());
+    has_friction_ = has_friction_ || impacts_.back().friction > 0;
+}
+
+template <class Real>
+void SimultaneousImpacts<Real>::measure_slip(const Flights<Real>& flights, Impact& i) const {
+    i.friction = flights.friction(i.meeting);
+    if (!(i.friction > 0)) return;
+    const Vec2 n = i.encounter.normal;
+    const auto record = [&](std::int32_t row) { return flights.record(row, i.s); };
+    with_sides(i.meeting, record, [&](const auto& a, const auto& b) {
+        i.slip = tangent_velocity(a, b, n.x, n.y);
+        i.tangent_mass = tangent_mass<kImpacts>(a, b, 1 / inverse_mass(a, b));
+    });
+}
+
+/// What fn(a, b) says of the changes of both sides of an impact so far.
+template <class Real>
+template <class Fn>
+double SimultaneousImpacts<Real>::with_changes(const Impact& i, const Fn& fn) const {
+    const auto change = [&](std::int32_t row) {
+        return changes_[row == i.meeting.a ? i.place_a : i.place_b].sum;
+    };
+    return with_sides(i.meeting, change, fn);
 }
 
 template <class Real>
 double SimultaneousImpacts<Real>::normal_velocity(const Impact& i) const {
-    const Vec2 of_b = i.meeting.with_wall() ? Vec2{} : changes_[i.place_b].change;
-    return i.encounter.normal_velocity + dot(of_b - changes_[i.place_a].change, i.encounter.normal);
+    const Vec2 n = i.encounter.normal;
+    return i.encounter.normal_velocity + with_changes(i, [&](const auto& a, const auto& b) {
+               return carom::normal_velocity(a, b, n.x, n.y);
+           });
+}
+
+template <class Real>
+double SimultaneousImpacts<Real>::slip(const Impact& i) const {
+    const Vec2 n = i.encounter.normal;
+    return i.slip +
+           with_changes(i, [&](const auto& a, const auto& b) { return tangent_velocity(a, b, n.x, n.y); });
+}
+
+template <class Real>
+void SimultaneousImpacts<Real>::add_impulses(const Impact& i, const ImpactImpulses& added) {
+    const auto add = [&](std::size_t place, double sign) {
+        ContactRecord& sum = changes_[place].sum;
+        ImpactBody body = body_of(sum);
+        body.apply_impulse(added.normal, added.tangent, i.encounter.normal.x, i.encounter.normal.y, sign);
+        sum = record_of(body);
+    };
+    add(i.place_a, -1);
+    if (!i.meeting.with_wall()) add(i.place_b, 1);
 }
 
 template <class Real>
@@ -47,15 +93,32 @@ void SimultaneousImpacts<Real>::solve(double negligible) {
         double largest_change = 0;
         for (Impact& i : impacts_) {
             const double wanted = i.impulse - (normal_velocity(i) - i.target) / i.inverse_mass_sum;
-            const auto [impulse, added] = push_only(i.impulse, wanted);
-            const Vec2 change = added * i.encounter.normal;
-            largest_change = std::fmax(largest_change, std::fabs(added) * i.inverse_mass_sum);
-            i.impulse = impulse;
-            VelocityChange& a = changes_[i.place_a];
-            a.change -= a.inverse_mass * change;
-            if (i.meeting.with_wall()) continue;
-            VelocityChange& b = changes_[i.place_b];
-            b.change += b.inverse_mass * change;
+            const ImpulseUpdate<double> normal = push_only(i.impulse, wanted);
+            largest_change = std::fmax(largest_change, std::fabs(normal.added) * i.inverse_mass_sum);
+            i.impulse = normal.impulse;
+            add_impulses(i, {normal.added, 0});
+        }
+        if (largest_change <= std::fmax(kConverged * fastest, negligible)) break;
+    }
+}
+
+/// Friction for the normal impulses that were solved before.
+template <class Real>
+void SimultaneousImpacts<Real>::solve_friction(double negligible) {
+    double fastest = 0;
+    for (Impact& i : impacts_) {
+        i.slip_bounced = slip(i);
+        fastest = std::fmax(fastest, std::fmax(-i.encounter.normal_velocity, std::fabs(i.slip_bounced)));
+    }
+    for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+        double largest_change = 0;
+        for (Impact& i : impacts_) {
+            if (!(i.friction > 0 && i.impulse > 0)) continue;
+            const double wanted = i.friction_impulse - i.tangent_mass * slip(i);
+            const auto tangent = hold_within(i.friction_impulse, wanted, i.friction * i.impulse);
+            largest_change = std::fmax(largest_change, std::fabs(tangent.added) / i.tangent_mass);
+            i.friction_impulse = tangent.impulse;
+            add_impulses(i, {0, tangent.added});
         }
         if (largest_change <= std::fmax(kConverged * fastest, negligible)) break;
     }
@@ -65,12 +128,19 @@ template <class Real>
 void SimultaneousImpacts<Real>::carry_out(Flights<Real>& flights, double negligible) {
     solve(negligible);
     for (Impact& i : impacts_) i.normal_velocity_after = normal_velocity(i);
+    if (has_friction_) solve_friction(negligible);
     for (const Impact& i : impacts_) {
         if (i.impulse == 0) continue;
-        flights.apply_impulse(i.meeting, i.encounter, i.impulse, i.s);
-        if (flights.books->is_open)
-            flights.books->restitution +=
-                impact_work(i.impulse, i.encounter.normal_velocity, i.normal_velocity_after);
+        if (i.friction_impulse == 0)
+            flights.apply_impulse(i.meeting, i.encounter, i.impulse, i.s);
+        else
+            apply_impulses(flights, i.meeting, i.encounter, {i.impulse, i.friction_impulse}, i.s);
+        if (!flights.books->is_open) continue;
+        flights.books->restitution +=
+            impact_work(i.impulse, i.encounter.normal_velocity, i.normal_velocity_after);
+        // Each of the two solves takes energy on its own, so neither books what is the other's.
+        if (i.friction_impulse != 0)
+            flights.books->friction += impact_work(i.friction_impulse, i.slip_bounced, slip(i));
     }
     for (const VelocityChange& change : changes_) place_of_row_[static_cast<std::size_t>(change.row)] = -1;
 }

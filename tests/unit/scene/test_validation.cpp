@@ -217,10 +217,13 @@ const std::vector<Fault> kSettingFaults{
     {"friction that the solver has not",
      [](Scene& s) {
          s.accuracy.solver = Solver::impulse;
+         s.gravity = {0, -2};
          s.bodies[1].material.friction = 0.5;
      },
      ErrorCode::inconsistent, "/bodies/1/material/friction",
-     "friction 0.5, but the solver \"impulse\" has no friction. Use \"soft\" or \"auto\""},
+     "friction 0.5 and gravity is [0, -2] m/s², but the solver \"impulse\" has friction in impacts alone, "
+     "none "
+     "where bodies rest; with gravity expected 0. Use \"soft\" or \"auto\""},
     {"rolling resistance that the solver has not",
      [](Scene& s) {
          s.accuracy.solver = Solver::impulse;

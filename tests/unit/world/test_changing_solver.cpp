@@ -59,6 +59,72 @@ TEST_SUITE("world/changing solver") {
         }
     }
 
+    TEST_CASE("an elastic gas that grows rough stays under impulse until something takes its bounce away") {
+        Scene scene = empty_box();
+        scene.gravity = {};
+        scene.walls->material.restitution = 0;  // the discs' counts
+        World world(scene);
+        const auto rough = [](double x, double restitution) {
+            Body body = bouncing({x, 5}, {1, 2});
+            body.material = {.friction = 0.5, .restitution = restitution};
+            return body;
+        };
+        world.add(rough(2, 1));
+        CHECK(world.plan().solver == "impulse");
+        CHECK(world.plan().solver_reason.find("a body that was added has friction, but every body has "
+                                              "restitution 1") == 0);
+        Body post = rough(6, 0);
+        post.type = BodyType::static_body, post.velocity = {};
+        world.add(post);
+        CHECK(world.plan().solver == "impulse");
+        for (int i = 0; i < 60; ++i) world.step(kStep);
+        world.add(rough(10, 0.9));
+        CHECK(world.plan().solver == "soft");
+        CHECK(world.plan().solver_reason == "a body that was added has friction");
+    }
+
+    TEST_CASE("impulse, asked for, takes friction of any restitution, but neither with gravity nor rolling") {
+        Scene scene = empty_box();
+        scene.gravity = {};
+        World world(scene, {.solver = Solver::impulse});
+        Body rough = bouncing({5, 5}, {1, 2});
+        rough.material.friction = 0.5;
+        world.add(rough);
+        for (int i = 0; i < 60; ++i) world.step(kStep);
+        CHECK(world.plan().solver == "impulse");
+        rough.position.x = 12, rough.material.rolling_resistance = 0.1;
+        CHECK_THROWS_AS(world.add(rough), Error);
+        CHECK(world.body_count() == 1);
+        world.set_solver(Solver::automatic);
+        CHECK(world.plan().solver == "soft");
+        world.set_solver(Solver::impulse);
+        CHECK(world.plan().solver == "impulse");
+    }
+
+    TEST_CASE(
+        "what makes auto take soft for a gas with friction: gravity, a bounce below 1, a segment, "
+        "rolling resistance, sleep, sweeps") {
+        Scene gas = gas_scene({.count = 20});
+        for (Body& body : gas.bodies) body.material.friction = 0.3;
+        const auto solver_of = [](const Scene& scene) { return World(scene).plan().solver; };
+        CHECK(solver_of(gas) == "impulse");
+        const auto with = [&](auto change) {
+            Scene scene = gas;
+            change(scene);
+            return solver_of(scene);
+        };
+        CHECK(with([](Scene& s) { s.walls->material.friction = 0.5; }) == "impulse");
+        CHECK(with([](Scene& s) { s.effects.friction = true; }) == "impulse");
+        CHECK(with([](Scene& s) { s.gravity = {0, -1}; }) == "soft");
+        CHECK(with([](Scene& s) { s.bodies[7].material.restitution = 0.99; }) == "soft");
+        CHECK(with([](Scene& s) { s.bodies[7].material.rolling_resistance = 0.1; }) == "soft");
+        CHECK(with([](Scene& s) { s.effects.sleep = true; }) == "soft");
+        CHECK(with([](Scene& s) { s.accuracy.iterations = 2; }) == "soft");
+        CHECK(with([](Scene& s) {
+                  s.add({.type = BodyType::static_body, .shape = Segment{{-1, 0}, {1, 0}}});
+              }) == "soft");
+    }
+
     TEST_CASE("a world of auto that grew a floor holds what lies on it") {
         Scene scene;
         scene.gravity = {0, -10};

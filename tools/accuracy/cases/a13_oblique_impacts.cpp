@@ -109,7 +109,7 @@ Case oblique_impacts() {
 Case rough_impacts() {
     Case impacts = impacts_of("A13-rough", "Rough spinning discs meet off-centre, friction 0.3",
                               "single impacts with friction", "N R W F");
-    impacts.solvers = {"event", "soft"};
+    impacts.solvers = {"event", "impulse", "soft"};
     impacts.scene = [](int) { return pairs_of(kFriction); };
     return impacts;
 }

@@ -133,8 +133,6 @@ bool is_of(const PricedEffect& effect, Wish wish) {
 std::string reason_for_no_price(const PricedEffect& effect, const Scene& with, const Scene& without,
                                 const MachineSettings& machine) {
     const Solver solver = with.accuracy.solver;
-    if (is_of(effect, &EffectOverrides::friction) && solver == Solver::impulse)
-        return "solver impulse has no friction";
     if (is_of(effect, &EffectOverrides::drag) && solver == Solver::event) return "solver event has no drag";
     if (is_of(effect, &EffectOverrides::continuous))
         return "it cannot be left out: every solver looks ahead over the whole step";
@@ -176,9 +174,14 @@ Json price_of(const PricedEffect& effect, const Runner& whole, const Plan& plan,
     for (const Wish wish : effect.alongside) without.scene.effects.*wish = true;
     with.scene = without.scene;
     for (const Wish wish : effect.wishes) with.scene.effects.*wish = true;
+    bool needs_other_solver = false;
     if (chooses_solver && is_of(effect, &EffectOverrides::friction) &&
-        with.scene.accuracy.solver == Solver::impulse)
-        with.scene.accuracy.solver = Solver::automatic;  // impulse has no friction
+        with.scene.accuracy.solver == Solver::impulse) {  // which has friction in impacts alone
+        Scene free = with.scene;
+        free.accuracy.solver = Solver::automatic;
+        needs_other_solver = make_simulation(free, with.machine)->plan().solver != name_of(Solver::impulse);
+        if (needs_other_solver) with.scene = std::move(free);
+    }
     if (const std::string reason = reason_for_no_price(effect, with.scene, without.scene, whole.machine);
         !reason.empty()) {
         json["no_price"] = reason;
@@ -188,8 +191,7 @@ Json price_of(const PricedEffect& effect, const Runner& whole, const Plan& plan,
     json["compared"] = called && effect.take_away
                            ? joined("the scene with ", effect.instead_of, ", effect forced on against off")
                            : joined("the scene with the effect forced on against off");
-    if (with.scene.accuracy.solver == Solver::automatic)
-        json["solver_with"] = make_simulation(with.scene, with.machine)->plan().solver;
+    if (needs_other_solver) json["solver_with"] = make_simulation(with.scene, with.machine)->plan().solver;
     const bool measures_use = called && effect.take_away;
     for (int round = 0; round < repeats; ++round) {
         if (is_interrupted()) return nullptr;
