@@ -28,16 +28,29 @@ std::vector<BodyState> states_of(const World& world) {
 template <class World>
 void run_scene(benchmark::State& state, const std::string& name, const std::string& isa) {
     try {
-        const Scene scene = make_scene(name, state.range(0)).scene;
+        const BenchScene bench = make_scene(name, state.range(0));
+        const Scene& scene = bench.scene;
         WorldOptions options;
         options.isa = isa;
         options.threads = static_cast<int>(state.range(1));
-        World world(scene, options);
-        for (int i = 0; i < kStepsBefore; ++i) world.step(measure::kStep);
-        const Profile before = world.profile();
+        const bool restarts = bench.restart_steps > 0;
+        World start(scene, options);
+        for (int i = 0; i < (restarts ? bench.settle_steps : kStepsBefore); ++i) start.step(measure::kStep);
+        World world(start);
+        std::int64_t steps_before = 0, impacts_before = 0;  // of runs that were over
+        const Profile before = start.profile();
         const double energy_before = world.ledger().energy.total();
-        for (auto _ : state) world.step(measure::kStep);
-        const Profile after = world.profile();
+        for (auto _ : state) {
+            world.step(measure::kStep);
+            if (!restarts || world.profile().steps - before.steps < bench.restart_steps) continue;
+            state.PauseTiming();
+            steps_before += world.profile().steps - before.steps;
+            impacts_before += world.profile().impacts - before.impacts;
+            world = World(start);
+            state.ResumeTiming();
+        }
+        Profile after = world.profile();
+        after.steps += steps_before, after.impacts += impacts_before;
         const BodyMeasures measures = measure_bodies(scene, states_of(world));
         const auto body_steps = static_cast<double>(state.range(0) * (after.steps - before.steps));
         state.counters["impacts_per_body"] = static_cast<double>(after.impacts - before.impacts) / body_steps;
@@ -62,7 +75,7 @@ void sizes(benchmark::internal::Benchmark* benchmark) {
 }
 
 const bool kAdded = [] {
-    for (const char* scene : {"gas", "packed"})
+    for (const char* scene : {"gas", "rough-gas", "packed"})
         for (const std::string& isa : runnable_instruction_sets()) {
             const auto add = [&](const char* precision, auto run) {
                 benchmark::RegisterBenchmark(

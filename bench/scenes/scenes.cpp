@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kGravity = 10;                                           // m/s²
 constexpr double kFriction = 0.5;                                         // no unit
+constexpr double kGasFriction = 0.3;                                      // no unit
+constexpr int kStepsAlike = 10;                                           // of a gas that cools
 constexpr RadiusRange kRadii{0.4, 0.6};                                   // m, uniform
 constexpr double kMeanArea = std::numbers::pi * (0.25 + 0.2 * 0.2 / 12);  // m², of a disc of those radii
 constexpr double kSettledPacking = 0.82;                                  // about what friction leaves
@@ -71,6 +73,14 @@ BenchScene packed(std::int64_t bodies) {
     return {"packed", std::move(scene), {}, 450};
 }
 
+/// The gas, whose discs rub from now on. It cools, by a tenth in so many steps.
+BenchScene rough_gas(std::int64_t bodies) {
+    Scene scene = measure::flown_gas_scene(bodies);
+    for (Body& body : scene.bodies) body.material.friction = kGasFriction;
+    scene.walls->material.friction = kGasFriction;
+    return {"rough-gas", std::move(scene), {}, 6, kStepsAlike};
+}
+
 /// Half of the container is filled; its speed makes the centrifugal acceleration at a wall a twentieth of
 /// gravity.
 BenchScene tumbler(std::int64_t bodies) {
@@ -90,12 +100,13 @@ BenchScene tumbler(std::int64_t bodies) {
 }  // namespace
 
 const std::vector<std::string>& scene_names() {
-    static const std::vector<std::string> names{"gas", "pile", "packed", "tumbler"};
+    static const std::vector<std::string> names{"gas", "rough-gas", "pile", "packed", "tumbler"};
     return names;
 }
 
 BenchScene make_scene(const std::string& name, std::int64_t bodies) {
     if (name == "gas") return {"gas", measure::flown_gas_scene(bodies), {}, 6};
+    if (name == "rough-gas") return rough_gas(bodies);
     if (name == "pile") return pile(bodies);
     if (name == "packed") return packed(bodies);
     if (name == "tumbler") return tumbler(bodies);

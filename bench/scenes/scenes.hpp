@@ -23,9 +23,10 @@ struct BenchScene {
     Scene scene;                           ///< walls that are missing are open sides
     std::optional<Container> container{};  ///< in place of walls, centred on the origin
     int settle_steps = 0;                  ///< before anything is timed
+    int restart_steps = 0;  ///< timed steps after which it starts over, as it would change; 0: never
 };
 
-/// The kinds there are: "gas", "pile", "packed", "tumbler".
+/// The kinds there are: "gas", "rough-gas", "pile", "packed", "tumbler".
 const std::vector<std::string>& scene_names();
 
 /// @param name    one of `scene_names`
