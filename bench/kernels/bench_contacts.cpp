@@ -59,7 +59,6 @@ struct PressedPairs {
                              .friction_impulse = friction_impulse.data(),
                              .friction = nullptr,
                              .floor = floor.data(),
-                             .largest_impulse = nullptr,
                              .surface_normal = nullptr,
                              .surface_tangent = nullptr,
                              .rolling_impulse = nullptr,

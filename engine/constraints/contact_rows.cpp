@@ -47,7 +47,6 @@ ContactColumns<Real> ContactRows<Real>::columns() {
             .friction_impulse = data(friction_impulse),
             .friction = data(friction),
             .floor = floor.data(),
-            .largest_impulse = data(largest_impulse),
             .surface_normal = data(surface_normal),
             .surface_tangent = data(surface_tangent),
             .rolling_impulse = data(rolling_impulse),

@@ -59,7 +59,7 @@ struct ContactRows {
     Column<Real> rolling_impulse;   // N s
 
     // What the kernels stream besides: kernels/contact_arguments.hpp.
-    Column<Real> normal_x, normal_y, separation, mass, friction, floor, largest_impulse;
+    Column<Real> normal_x, normal_y, separation, mass, friction, floor;
     Column<Real> surface_normal, surface_tangent, rolling, rolling_share, surface_rolling;
     Column<Real> smaller;  // m
     // Once a step, or a step with restitution.
@@ -67,8 +67,6 @@ struct ContactRows {
     Column<std::int32_t> candidate;  // place in the contact graph
     Column<Real> approach;           // m/s, relative normal velocity at the start of the step
     Column<Real> clearance;  // m, separation at the start of the step, also where sweeps must not see it
-    Column<Real> bounce_impulse, bounce_friction, bounce_rolling;  // N s, of restitution alone
-    Column<Real> spare;                                            // N s, bounce_impulse one sweep ago
 
     /// Every column of a number a contact: calls fn(column, use). Sizes, padding, moving and bytes follow.
     template <class Rows, class Fn>
@@ -89,7 +87,6 @@ struct ContactRows {
         fn(rows.mass, ColumnUse{kAll, kDescribed});
         fn(rows.friction, ColumnUse{kAll, kDescribed, {&E::friction, &E::friction_varies}});
         fn(rows.floor, ColumnUse{kAll, kStep});
-        fn(rows.largest_impulse, ColumnUse{kAll, kStep, {&E::restitution}});
         fn(rows.surface_normal, ColumnUse{kSupports, kStep});
         fn(rows.surface_tangent, ColumnUse{kSupports, kStep});
         fn(rows.rolling, ColumnUse{kAll, kDescribed, {&E::rolling, &E::rolling_varies}});
@@ -100,10 +97,6 @@ struct ContactRows {
         fn(rows.candidate, ColumnUse{kSupports, kStep});
         fn(rows.approach, ColumnUse{kAll, kStep, {&E::restitution}});
         fn(rows.clearance, ColumnUse{kSupports, kStep, {&E::restitution}});
-        fn(rows.bounce_impulse, ColumnUse{kAll, kStep, {&E::restitution}});
-        fn(rows.bounce_friction, ColumnUse{kAll, kStep, {&E::restitution, &E::friction}});
-        fn(rows.bounce_rolling, ColumnUse{kAll, kStep, {&E::restitution, &E::rolling}});
-        fn(rows.spare, ColumnUse{kAll, kStep, {&E::restitution}});
     }
 
     template <class Self, class Archive>

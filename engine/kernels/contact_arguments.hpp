@@ -31,7 +31,6 @@ struct ContactColumns {
     Real* friction_impulse;  // N s, along the tangent, on b; null without friction
     Real* friction;          // Coulomb coefficient; null: uniform_friction serves all
     Real* floor;             // m/s, least relative normal velocity, written by the first sweep
-    Real* largest_impulse;   // N s, of the substeps so far; null without restitution
     Real* surface_normal;    // m/s, velocity of b along the normal; only where b is null
     Real* surface_tangent;   // m/s, velocity of b's surface along the tangent; only where b is null
     // Only with kRolling.

@@ -83,15 +83,6 @@ typename Lanes::Batch push_of(const SolveContacts<Real>& k, std::size_t c, typen
     return simd::min(mass * (F(k.recovery) * depth), mass * largest + F(k.h) * load);
 }
 
-/// For restitution: a contact that pushed in some substep has had an impact. At the start of a substep, the
-/// impulses are what the one before came to.
-template <class Lanes, class Real>
-void note_largest_impulse(const SolveContacts<Real>& k, std::size_t c) {
-    if (!k.contacts.largest_impulse) return;
-    Lanes::store(k.contacts.largest_impulse + c, simd::max(Lanes::load(k.contacts.largest_impulse + c),
-                                                           Lanes::load(k.contacts.normal_impulse + c)));
-}
-
 /// Marks the block of a batch in which a contact has changed too much to be left after one sweep.
 template <class Lanes, class Real>
 void note_second_sweep(const SolveContacts<Real>& k, std::size_t c, typename Lanes::Batch mass,
@@ -110,7 +101,6 @@ template <class Lanes, class Real, class A, class B>
                                                                   typename Lanes::Batch mass) {
     using F = typename Lanes::Batch;
     F floor(0);
-    note_largest_impulse<Lanes>(k, c);
     if constexpr (B::kMoves) {
         simd::forget_loads();
         auto moved_a = Lanes::load_rows2(k.displacement, k.contacts.a + c);

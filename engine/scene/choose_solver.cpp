@@ -6,17 +6,9 @@
 namespace carom {
 namespace {
 
-/// Bounces of a scene all of whose bodies have at least this restitution die out slowly enough that contact
-/// at rest is the exception. A choice of speed, not of correctness.
-constexpr double kBouncy = 0.5;
-
 /// Of a pair the larger restitution counts, so what walls and immovable bodies have takes nothing away.
 bool is_inelastic(const Body& body) {
     return body.type == BodyType::dynamic_body && body.material.restitution < 1;
-}
-
-bool is_dull(const Body& body) {
-    return body.type == BodyType::dynamic_body && body.material.restitution < kBouncy;
 }
 
 std::string_view name_of(const Shape& shape) {
@@ -49,7 +41,7 @@ std::optional<Problem> find_roughness_problem(const Item& item, const Material& 
 bool SolverFacts::would_change(const Body& body) const {
     return (lines.empty() && !is_disc(body.shape)) || (rough.empty() && body.material.friction > 0) ||
            (resists.empty() && body.material.rolling_resistance > 0) ||
-           (inelastic.empty() && is_inelastic(body)) || (dull.empty() && is_dull(body));
+           (inelastic.empty() && is_inelastic(body));
 }
 
 void SolverFacts::add(const Body& body, std::string_view label) {
@@ -60,8 +52,6 @@ void SolverFacts::add(const Body& body, std::string_view label) {
         resists = join(label, " has rolling resistance");
     if (inelastic.empty() && is_inelastic(body))
         inelastic = join(label, " has restitution ", body.material.restitution, ", below 1");
-    if (dull.empty() && is_dull(body))
-        dull = join(label, " has restitution ", body.material.restitution, ", below ", kBouncy);
 }
 
 SolverFacts facts_of(const Scene& scene, std::optional<int> iterations) {
@@ -88,28 +78,18 @@ SolverFacts facts_of(const Scene& scene, std::optional<int> iterations) {
 }
 
 SolverChoice choose_solver(const SolverFacts& facts) {
-    // In a smooth world nothing can slide; in one that is rough but elastic, and falls nowhere, friction acts
-    // in impacts alone.
-    const bool is_rough_gas = !facts.rough.empty() && !facts.has_gravity && facts.inelastic.empty();
-    if (!facts.lines.empty()) return {Solver::soft, facts.lines};
-    if (!facts.rough.empty() && !is_rough_gas) return {Solver::soft, facts.rough};
-    for (const std::string* reason : {&facts.resists, &facts.forced})
+    for (const std::string* reason : {&facts.lines, &facts.resists, &facts.forced})
         if (!reason->empty()) return {Solver::soft, *reason};
-    if (is_rough_gas)
-        return {Solver::impulse,
-                join(facts.rough,
-                     ", but every body has restitution 1 and without gravity nothing rests: each "
-                     "impact, with its friction, is resolved at its own time")};
+    if (facts.has_gravity && !facts.rough.empty()) return {Solver::soft, facts.rough};
     if (facts.bodies <= 1 && !facts.has_walls)
         return {Solver::impulse, "there is nothing to touch: free flight is exact"};
-    if (!facts.has_gravity)
-        return {Solver::impulse,
-                "nothing has friction and without gravity nothing rests: each impact is "
-                "resolved at its own time"};
-    if (facts.dull.empty())
-        return {Solver::impulse, join("nothing has friction and every body bounces (restitution >= ", kBouncy,
-                                      "): each impact is resolved at its own time")};
-    return {Solver::soft, join("gravity brings bodies to rest on each other: ", facts.dull)};
+    if (!facts.inelastic.empty())
+        return {Solver::soft, join("impacts take energy until bodies rest or crowd: ", facts.inelastic)};
+    return {
+        Solver::impulse,
+        join(facts.rough.empty() ? "nothing has friction" : "without gravity friction acts in impacts alone",
+             " and every body has restitution 1, so nothing comes to rest: each impact is resolved at "
+             "its own time")};
 }
 
 SolverChoice choose_solver(const Scene& scene, const Accuracy& asked_for) {

@@ -25,12 +25,11 @@ struct SolverFacts {
     std::string resists;    ///< of what has rolling resistance
     std::string forced;     ///< of another effect, or of sweeps, that were asked for
     std::string inelastic;  ///< of a body that bounces with less than its speed
-    std::string dull;       ///< of a body that hardly bounces
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
         archive(self.bodies, self.has_walls, self.has_gravity, self.lines, self.rough, self.resists,
-                self.forced, self.inelastic, self.dull);
+                self.forced, self.inelastic);
     }
 
     /// Whether a body brings a reason that there is not yet.

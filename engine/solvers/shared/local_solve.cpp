@@ -173,8 +173,6 @@ void LocalSolve<Real>::store(const SolveContacts<Real>& of_pairs,
             columns.friction_impulse[c.contact] = static_cast<Real>(c.impulses.tangent);
         if (columns.rolling_impulse)
             columns.rolling_impulse[c.contact] = static_cast<Real>(c.impulses.rolling);
-        if (columns.largest_impulse)
-            columns.largest_impulse[c.contact] = std::max(columns.largest_impulse[c.contact], normal);
     }
 }
 

@@ -136,14 +136,6 @@ void SubstepBooks<Real>::book_substep(const StepView<Real>& step, const WorldSta
 }
 
 template <class Real>
-void book_bounces(const StepView<Real>& step, const Column<Real>& before, Books& books) {
-    const ContactRows<Real>&pairs = step.graph.pairs, &supports = step.supports;
-    const auto from = [&](std::int32_t row) { return body_at(before, row); };
-    book_kinds<Real>(step, {supports.bounce_impulse, supports.bounce_friction, supports.bounce_rolling},
-                     {pairs.bounce_impulse, pairs.bounce_friction, pairs.bounce_rolling}, from, books);
-}
-
-template <class Real>
 void SubstepBooks<Real>::book_displacements(std::size_t rows, const WorldState<Real>& world,
                                             const Column<Real>& motion, Books& books) {
     double fall = 0;
@@ -160,7 +152,5 @@ void SubstepBooks<Real>::book_displacements(std::size_t rows, const WorldState<R
 
 template class SubstepBooks<float>;
 template class SubstepBooks<double>;
-template void book_bounces(const StepView<float>&, const Column<float>&, Books&);
-template void book_bounces(const StepView<double>&, const Column<double>&, Books&);
 
 }  // namespace carom

@@ -31,11 +31,6 @@ class SubstepBooks {
     void book_free_flight(const StepView<Real>& step, const WorldState<Real>& world, Books& books);
 };
 
-/// Books the impulses of restitution, after all substeps.
-/// @param before  velocity records before they acted
-template <class Real>
-void book_bounces(const StepView<Real>& step, const Column<Real>& before, Books& books);
-
 extern template class SubstepBooks<float>;
 extern template class SubstepBooks<double>;
 

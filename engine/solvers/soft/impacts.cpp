@@ -23,7 +23,7 @@ constexpr double kOverlap = 1e-3;
 constexpr double kDeepening = 0.01;
 
 // The budget of a body in a step: docs/decisions/0022-impacts-in-soft.md has the measurements.
-constexpr float kBudget = 8;
+constexpr float kBudget = 2;
 /// Spent beyond the budget, on impacts without restitution; what more there is has to wait for the sweeps.
 constexpr float kOverdraft = 8;
 /// An impact costs so much for each unit of 1 - e, but at most 1; and so much besides.

@@ -63,6 +63,8 @@ class Impacts {
     /// @param gravity_work  J, gravity's work on velocities, to be booked
     void carry_out_all(const SubstepBodies<Real>& bodies, Books& books, double& gravity_work);
 
+    /// Rows have changed: which contacts each body is in is found anew.
+    void forget() { known_version_ = -1; }
     std::size_t bytes() const;
 
   private:

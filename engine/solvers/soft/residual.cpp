@@ -17,7 +17,6 @@ SolveQuality quality_of(const ContactRows<Real>& pairs, const ContactRows<Real>&
         const double impulse = contacts.normal_impulse[i], mass = contacts.mass[i], nx = contacts.normal_x[i],
                      ny = contacts.normal_y[i], floor = contacts.floor[i];
         if (impulse > 0) ++quality.touching;
-        if (!contacts.bounce_impulse.empty() && contacts.bounce_impulse[i] > 0) return;
         const double velocity = normal_velocity(body_at(records.velocity, contacts.a[i]), other, nx, ny);
         const auto sweep = push_only(impulse, impulse + mass * (floor - velocity));
         if (impulse == 0 && sweep.impulse == 0) return;

@@ -15,8 +15,7 @@ struct SolveQuality {
 };
 
 /// Looks at the contacts of the last step again: what one more sweep would change in the relative normal
-/// velocity of each, on its own, with the velocities at the end of the step. Contacts that bounced have left
-/// the law on purpose and are left out.
+/// velocity of each, on its own, with the velocities at the end of the step. Impacts are no contacts.
 /// Cost: O(contacts), and nothing in the step itself.
 template <class Real>
 SolveQuality quality_of(const ContactRows<Real>& pairs, const ContactRows<Real>& supports,

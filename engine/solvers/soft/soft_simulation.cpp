@@ -43,7 +43,7 @@ template <class Real>
 void SoftSimulation<Real>::report(Profile& profile) const {
     const SoftCounters& counters = soft.counters;
     profile.contacts = counters.contacts, profile.colours = counters.colours;
-    profile.overflow = counters.overflow, profile.bounces += counters.bounces;
+    profile.overflow = counters.overflow, profile.bounces += this->soft.impacts.counters.impacts;
     const SolveQuality solve = soft.quality();
     profile.touching = solve.touching;
     profile.residual = solve.residual, profile.residual_max = solve.residual_max;

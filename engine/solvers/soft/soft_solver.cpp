@@ -49,7 +49,6 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const EdgeCa
     if (is_new && masses_.are_uneven()) uneven_.find(graph.pairs, masses_.inverse_column(), records_.count());
     support_finder_.find(view(), world, edges);
     uneven_.begin_step(graph.pairs, supports_);
-    if (settings_.effects.restitution) bounces_.begin_step(view());
     counters.contacts = static_cast<std::int64_t>(
         std::accumulate(graph.pairs.live_count.begin(), graph.pairs.live_count.end(), supports_.contacts()));
     counters.colours = static_cast<std::int64_t>(graph.pairs.count.size());
@@ -67,10 +66,8 @@ void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
     using Blocks = typename Sweeps::Blocks;
     terms_.elapsed = number * terms_.substep_dt;
     const ContactKernels<Real>& kernels = *loops_.contacts;
-    SolveContacts<Real> on_supports = Sweeps::arguments(view(), supports_),
-                        on_pairs = Sweeps::arguments(view(), graph.pairs);
-    if (number == 0)  // what contacts hold is of the step before
-        on_supports.contacts.largest_impulse = on_pairs.contacts.largest_impulse = nullptr;
+    const SolveContacts<Real> on_supports = Sweeps::arguments(view(), supports_),
+                              on_pairs = Sweeps::arguments(view(), graph.pairs);
     const bool starts_anew = number == 0 && warm_start_.starts_anew();
     // A scene that asks for more sweeps wants contacts solved better: then none is left out.
     const bool only_restless =
@@ -116,7 +113,6 @@ void SoftSolver<Real>::carry_out_impacts(const Column<Real>& motion, Books& book
                                      settings_.friction,
                                      settings_.rolling};
     impacts.carry_out_all(bodies, books, books_.gravity_work);
-    counters.bounces = impacts.counters.impacts;
 }
 
 template <class Real>
@@ -136,7 +132,7 @@ template <class Real>
 std::size_t SoftSolver<Real>::bytes() const {
     return graph.bytes() + impacts.bytes() + masses_.bytes() + records_.bytes() + supports_.bytes() +
            support_finder_.bytes() + warm_start_.bytes() + sweeps_.bytes() + loads_.bytes() +
-           uneven_.bytes() + bounces_.bytes() + projection_.bytes();
+           uneven_.bytes() + projection_.bytes();
 }
 
 template class SoftSolver<float>;

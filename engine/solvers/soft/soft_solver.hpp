@@ -10,7 +10,6 @@
 #include "solvers/soft/body_masses.hpp"
 #include "solvers/soft/body_records.hpp"
 #include "solvers/soft/books.hpp"
-#include "solvers/soft/bounces.hpp"
 #include "solvers/soft/contact_settings.hpp"
 #include "solvers/soft/contact_sweeps.hpp"
 #include "solvers/soft/impacts.hpp"
@@ -32,7 +31,6 @@ struct SoftCounters {
     std::int64_t contacts = 0;  ///< in the last step
     std::int64_t colours = 0;
     std::int64_t overflow = 0;
-    std::int64_t bounces = 0;  ///< ever
 };
 
 /// Solver `soft`: contacts at rest, with friction and rotation.
@@ -40,8 +38,8 @@ struct SoftCounters {
 /// A step finds the contacts once and is then cut into substeps. In each, two Gauss-Seidel sweeps over the
 /// coloured contacts bring the velocities to what the contact laws allow; the first also takes away a share
 /// of every overlap, by displacement, never by velocity. Contacts keep their impulses from substep to substep
-/// and from step to step (warm start), which is what carries a pile. Restitution comes last, at the speed of
-/// the impact, repeated until it has converged.
+/// and from step to step (warm start), which is what carries a pile. What comes fast and has restitution is
+/// no contact but an impact, which is carried out at its own time in the substep (impacts.hpp).
 ///
 /// The class owns the parts and the order of what they do within a stage; each part has a header of its own.
 ///
@@ -92,10 +90,6 @@ class SoftSolver {
     /// Moves the bodies through the substep that was solved.
     void advance_bodies(bool is_last) { records_.advance(is_last, terms_, loops_); }
 
-    /// Restitution.
-    void bounce(const WorldState<Real>& world, Books& books) {
-        counters.bounces += bounces_.bounce(view(), sweeps_, world, books);
-    }
     /// The impulses back to the candidates.
     void end_contacts();
     /// Parts bodies that have ended the step deep in others, by displacement alone.
@@ -127,8 +121,9 @@ class SoftSolver {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.graph, self.counters, self.warm_start_, self.loads_);
-        if constexpr (!std::is_const_v<Self>) self.forget_rows(), self.records_.forget();
+        archive(self.graph, self.counters, self.impacts.counters, self.warm_start_, self.loads_);
+        if constexpr (!std::is_const_v<Self>)
+            self.forget_rows(), self.records_.forget(), self.impacts.forget();
     }
 
   private:
@@ -150,7 +145,6 @@ class SoftSolver {
     ContactSweeps<Real> sweeps_;
     LoadCorrection<Real> loads_;
     LocalSolve<Real> uneven_;
-    Bounces<Real> bounces_;
     EndProjection<Real> projection_;
     SubstepBooks<Real> books_;
 };

@@ -38,8 +38,8 @@ struct ContactBench {
     std::vector<std::int32_t> row_of;     // of each disc
     std::int32_t dummy;                   // row that padding names
     Column<std::int32_t> a, b;
-    Column<Real> normal_x, normal_y, start_separation, mass, along, tangent, friction, floor, largest,
-        surface_normal, surface_tangent, roll, rolling, share, surface_rolling;
+    Column<Real> normal_x, normal_y, start_separation, mass, along, tangent, friction, floor, surface_normal,
+        surface_tangent, roll, rolling, share, surface_rolling;
     Column<Real> velocity, displacement;
     Column<std::uint8_t> needs_second_sweep;
     Real uniform_friction = Real(0.4), uniform_rolling = Real(0.2);
@@ -133,9 +133,9 @@ struct ContactBench {
     }
     std::int32_t dummy_row() const { return static_cast<std::int32_t>(2 * count + 3); }
     std::vector<Column<Real>*> columns() {
-        return {&normal_x, &normal_y,        &start_separation, &mass,           &along, &tangent,
-                &friction, &floor,           &largest,          &surface_normal, &roll,  &rolling,
-                &share,    &surface_rolling, &surface_tangent};
+        return {&normal_x,        &normal_y,       &start_separation, &mass, &along,   &tangent,
+                &friction,        &floor,          &surface_normal,   &roll, &rolling, &share,
+                &surface_rolling, &surface_tangent};
     }
     /// Uniform in [low, high], a number that Real has.
     long double draw(double low, double high) {
@@ -188,7 +188,7 @@ struct ContactBench {
         set(friction, c.friction), set(rolling, c.rolling);
         set(share, c.b->radius / (c.a->radius + c.b->radius));
         c.floor = draw(-0.3, 0);
-        set(floor, c.floor), set(largest, 0.25L);
+        set(floor, c.floor);
         if (!kind.is_support) return;
         set(surface_normal, dot(c.b->velocity, c.normal));
         set(surface_tangent, dot(c.b->velocity_at(c.arm_b()), turned(c.normal)));

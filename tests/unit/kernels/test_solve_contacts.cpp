@@ -112,9 +112,6 @@ void check_first_sweep(bool is_support) {
         SolveContacts<Real> k = bench.arguments();
         k.calm = static_cast<Real>(kCalm), k.over_relaxation = static_cast<Real>(kOverRelaxation);
         k.calm_over_relaxation = static_cast<Real>(kCalmOverRelaxation);
-        k.contacts.largest_impulse = bench.largest.data();
-        std::vector<long double> before;
-        for (const DiscContact& c : bench.expected) before.push_back(c.along);
         (is_support ? kernels.first_supports : kernels.first_pairs)(k, bench.kFirst, bench.last);
         long double worst = 0, worst_floor = 0, worst_moved = 0;
         std::vector<int> restless(bench.needs_second_sweep.size(), 0), unclear(restless);
@@ -136,8 +133,6 @@ void check_first_sweep(bool is_support) {
                 const Vector d = bench.discs[disc].moved;
                 worst_moved = std::max({worst_moved, std::fabs(moved[0] - d.x), std::fabs(moved[1] - d.y)});
             }
-            CHECK(bench.largest[bench.kFirst + i] ==
-                  std::max(static_cast<Real>(0.25), static_cast<Real>(before[i])));
         }
         // Floors are a separation over 4 ms.
         CHECK(worst <= 10 * kAllowed<Real>);
