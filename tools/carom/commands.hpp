@@ -21,6 +21,7 @@ void add_prices_command(CLI::App& program, Action& action);
 void add_scaling_command(CLI::App& program, Action& action);
 void add_report_command(CLI::App& program, Action& action);
 void add_accuracy_command(CLI::App& program, Action& action);
+void add_torture_command(CLI::App& program, Action& action);
 
 /// Version, instruction sets, threads, xsimd: the answer to --version.
 std::string version_text();

@@ -37,6 +37,7 @@ int run_program(int argc, char** argv) {
     add_scaling_command(program, action);
     add_report_command(program, action);
     add_accuracy_command(program, action);
+    add_torture_command(program, action);
     try {
         program.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -1,0 +1,12 @@
+#include <vector>
+
+#include "torture/case.hpp"
+
+namespace carom::torture {
+
+std::span<const Case> all_cases() {
+    static const std::vector<Case> cases{passive(), drop(), rest(), impacts()};
+    return cases;
+}
+
+}  // namespace carom::torture

@@ -1,0 +1,80 @@
+#include <algorithm>
+#include <cmath>
+
+#include "torture/energy_rule.hpp"
+#include "torture/passive_scene.hpp"
+#include "torture/runs.hpp"
+#include "torture/watch.hpp"
+
+namespace carom::torture {
+namespace {
+
+constexpr std::int64_t kStepsARun = 300, kMostBodies = 10'000;
+constexpr std::int64_t kStepsALook = 10;  // between two measurements of overlap
+
+/// Whether `auto` takes that solver, so that its run is the same.
+bool is_automatic_choice(const Scene& scene, Solver solver, Precision precision) {
+    if (solver == Solver::automatic) return false;
+    return Watch(scene, Solver::automatic, precision, 1).simulation().plan().solver == carom::name_of(solver);
+}
+
+std::size_t outside_of(const Watch& watch, const PassiveScene& passive) {
+    std::size_t outside = 0;
+    for (std::size_t i = 0; i < passive.scene.bodies.size(); ++i)
+        if (passive.scene.bodies[i].type == BodyType::dynamic_body)
+            outside += !(passive.enclosure.clearance(watch.state(i).position) > 0);
+    return outside;
+}
+
+Outcome run(const PassiveTraits& traits, Solver solver, Precision precision, std::int64_t steps,
+            double limit) {
+    const PassiveScene passive = passive_scene(traits);
+    if (is_automatic_choice(passive.scene, solver, precision)) return {.is_skipped = true};
+    Watch watch(passive.scene, solver, precision, limit);
+    EnergyBooks books(watch, passive.scene, passive.lowest);
+    double overlap = 0;
+    std::size_t outside = 0;
+    while (watch.steps() < steps && watch.step()) {
+        books.look(watch);
+        if (watch.steps() % kStepsALook != 0 && watch.steps() != steps) continue;
+        overlap = std::fmax(overlap, watch.simulation().overlaps().max);
+        outside = std::max(outside, outside_of(watch, passive));
+    }
+    Outcome outcome{.measures = {{"energy rise", books.rise(), kLargestRise},
+                                 {"quarantined", static_cast<double>(watch.quarantined()), 0},
+                                 {"outside", static_cast<double>(outside), 0},
+                                 {"by restitution", books.restitution_gain()},
+                                 {"by correction", books.correction_gain()},
+                                 {"overlap", overlap}},
+                    .failure = watch.failure()};
+    tell_times(outcome, watch);
+    return outcome;
+}
+
+std::vector<Task> tasks(const Options& asked) {
+    std::vector<Task> all;
+    const std::int64_t first = asked.only.value_or(0), last = asked.only ? first + 1 : asked.scenes;
+    for (std::int64_t index = first; index < last; ++index) {
+        const PassiveTraits traits =
+            passive_traits(asked.seed, static_cast<std::uint64_t>(index), asked.bodies.value_or(kMostBodies));
+        const Precision precision = asked.precision.value_or(traits.precision);
+        for (const Solver solver :
+             solvers_of(asked, {Solver::automatic, Solver::soft, Solver::impulse, Solver::event}))
+            all.push_back({"passive", in_words(traits), std::string(carom::name_of(solver)),
+                           name_of(precision),
+                           [traits, solver, precision, steps = asked.steps.value_or(kStepsARun),
+                            limit = asked.limit] { return run(traits, solver, precision, steps, limit); }});
+    }
+    return all;
+}
+
+}  // namespace
+
+Case passive() {
+    return {.id = "passive",
+            .title = "random scenes that nothing drives; overlaps in radii, energies over the first",
+            .is_summed_up = true,
+            .tasks = tasks};
+}
+
+}  // namespace carom::torture

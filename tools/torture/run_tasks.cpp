@@ -1,0 +1,170 @@
+#include "torture/run_tasks.hpp"
+
+#include <carom/errors.hpp>
+
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "measure/text.hpp"
+#include "torture/results.hpp"
+#include "torture/watch.hpp"
+
+namespace carom::torture {
+namespace {
+
+[[noreturn]] void fail(const char* what) {
+    throw std::runtime_error(measure::joined("torture: ", what, ": ", std::strerror(errno)));
+}
+
+/// A step counter that parent and child both see.
+class SharedCounter {
+  public:
+    SharedCounter() {
+        void* const memory =
+            mmap(nullptr, sizeof(std::int64_t), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+        if (memory == MAP_FAILED) fail("no shared memory");
+        value_ = new (memory) std::int64_t(0);
+    }
+    ~SharedCounter() { munmap(value_, sizeof(std::int64_t)); }
+    SharedCounter(const SharedCounter&) = delete;
+    SharedCounter& operator=(const SharedCounter&) = delete;
+    std::int64_t* get() { return value_; }
+
+  private:
+    std::int64_t* value_;
+};
+
+/// A child and the task it runs.
+struct Running {
+    pid_t process = -1;
+    int pipe = -1;
+    std::size_t task = 0;
+    std::string text{};
+    std::unique_ptr<SharedCounter> step{};
+};
+
+Outcome outcome_of(const Task& task) {
+    try {
+        return task.run();
+    } catch (const Error& error) {
+        // A solver that was asked for by its name may refuse; `auto` may not.
+        return {.failure = error.what(), .is_skipped = task.solver != name_of(Solver::automatic)};
+    } catch (const std::exception& error) {
+        return {.failure = error.what()};
+    }
+}
+
+/// Processor time after which the system ends a child that does not look at the clock between steps.
+void limit_processor_time(double limit) {
+    const auto seconds = static_cast<rlim_t>(std::ceil(1.5 * limit)) + 1;
+    const rlimit time{seconds, seconds + 1}, core{0, 0};
+    setrlimit(RLIMIT_CPU, &time), setrlimit(RLIMIT_CORE, &core);
+}
+
+[[noreturn]] void run_child(const Task& task, int pipe, double limit, std::int64_t* step) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
+    limit_processor_time(limit);
+    step_in_progress = step;
+    const std::string text = to_json(outcome_of(task)).dump();
+    std::size_t written = 0;
+    while (written < text.size()) {
+        const ssize_t part = write(pipe, text.data() + written, text.size() - written);
+        if (part <= 0) _exit(1);
+        written += static_cast<std::size_t>(part);
+    }
+    _exit(0);
+}
+
+Running start(std::span<const Task> tasks, std::size_t index, double limit) {
+    Running running{.task = index, .step = std::make_unique<SharedCounter>()};
+    int ends[2];
+    if (pipe(ends) != 0) fail("no pipe");
+    running.pipe = ends[0];
+    running.process = fork();
+    if (running.process < 0) fail("no process");
+    if (running.process == 0) {
+        close(ends[0]);
+        run_child(tasks[index], ends[1], limit, running.step->get());
+    }
+    close(ends[1]);
+    return running;
+}
+
+std::string reason_of(int status, std::int64_t step) {
+    const auto number = static_cast<long long>(step) + 1;
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
+        return measure::format("ended in step %lld, which took too long", number);
+    if (WIFSIGNALED(status))
+        return measure::format("crashed in step %lld: %s", number, strsignal(WTERMSIG(status)));
+    return "ended without an answer";
+}
+
+/// @return whether there is nothing more to read
+bool read_some(Running& running) {
+    char part[65536];
+    const ssize_t count = read(running.pipe, part, sizeof part);
+    if (count > 0) running.text.append(part, static_cast<std::size_t>(count));
+    return count == 0 || (count < 0 && errno != EINTR && errno != EAGAIN);
+}
+
+Outcome finish(Running& running) {
+    close(running.pipe);
+    int status = 0;
+    while (waitpid(running.process, &status, 0) < 0 && errno == EINTR) {
+    }
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return outcome_from(Json::parse(running.text));
+    return {.failure = reason_of(status, *running.step->get())};
+}
+
+void end_all(std::vector<Running>& all) {
+    for (Running& running : all) {
+        kill(running.process, SIGKILL);
+        finish(running);
+    }
+    all.clear();
+}
+
+}  // namespace
+
+std::vector<Row> run_tasks(std::span<const Task> tasks, const RunSettings& settings,
+                           const std::function<void(std::size_t)>& report,
+                           const std::function<bool()>& stop) {
+    constexpr int kPatience = 100;  // ms between two looks at `stop`
+    std::vector<std::optional<Outcome>> outcomes(tasks.size());
+    std::vector<Running> all;
+    std::size_t next = 0, done = 0;
+    while ((next < tasks.size() || !all.empty()) && !stop()) {
+        while (next < tasks.size() && all.size() < static_cast<std::size_t>(settings.processes))
+            all.push_back(start(tasks, next++, settings.limit));
+        std::vector<pollfd> pipes;
+        for (const Running& running : all) pipes.push_back({running.pipe, POLLIN, 0});
+        poll(pipes.data(), pipes.size(), kPatience);
+        for (std::size_t i = all.size(); i-- > 0;) {
+            if ((pipes[i].revents & (POLLIN | POLLHUP | POLLERR)) == 0 || !read_some(all[i])) continue;
+            outcomes[all[i].task] = finish(all[i]);
+            all.erase(all.begin() + static_cast<std::ptrdiff_t>(i));
+            report(++done);
+        }
+    }
+    end_all(all);
+    std::vector<Row> rows;
+    for (std::size_t i = 0; i < tasks.size(); ++i)
+        if (outcomes[i] && !outcomes[i]->is_skipped)
+            rows.push_back({tasks[i].case_id, tasks[i].scene, tasks[i].solver, tasks[i].precision,
+                            std::move(*outcomes[i])});
+    return rows;
+}
+
+}  // namespace carom::torture

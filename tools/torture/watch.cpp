@@ -1,0 +1,119 @@
+#include "torture/watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "measure/clocks.hpp"
+#include "measure/statistics.hpp"
+#include "measure/text.hpp"
+#include "simulation/body_mass.hpp"
+#include "torture/energy_rule.hpp"
+
+namespace carom::torture {
+namespace {
+
+Scene with(Scene scene, Solver solver, Precision precision) {
+    scene.accuracy.solver = solver, scene.accuracy.precision = precision;
+    return scene;
+}
+
+bool is_dynamic(const Body& body) {
+    return body.type == BodyType::dynamic_body;
+}
+
+}  // namespace
+
+std::int64_t* step_in_progress = nullptr;
+
+Watch::Watch(const Scene& scene, Solver solver, Precision precision, double limit)
+    : scene_(with(scene, solver, precision)),
+      limit_(limit),
+      simulation_(tool::make_simulation(scene_, {.threads = 1})) {}
+
+bool Watch::step() {
+    if (gave_up()) return false;
+    if (step_in_progress) *step_in_progress = steps();
+    const double start = measure::thread_seconds();
+    simulation_->step(scene_.step.dt);
+    seconds_.push_back(measure::thread_seconds() - start);
+    spent_ += seconds_.back();
+    return true;
+}
+
+bool Watch::advance_to(double time) {
+    while (simulation_->time() < time - 0.5 * scene_.step.dt)
+        if (!step()) return false;
+    return true;
+}
+
+double Watch::median_step() const {
+    return seconds_.empty() ? 0 : measure::quantile(seconds_, 0.5);
+}
+
+double Watch::longest_step() const {
+    return seconds_.empty() ? 0 : *std::max_element(seconds_.begin(), seconds_.end());
+}
+
+std::string Watch::failure() const {
+    if (!gave_up()) return {};
+    return measure::format("given up after %lld steps, which took %.0f s", static_cast<long long>(steps()),
+                           spent_);
+}
+
+double Watch::kinetic_energy() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i)
+        if (is_dynamic(scene_.bodies[i])) sum += tool::kinetic_energy_of(scene_.bodies[i], state(i));
+    return sum;
+}
+
+double Watch::rms_speed() const {
+    double squares = 0, count = 0;
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+        if (!is_dynamic(scene_.bodies[i])) continue;
+        const Vec2 v = state(i).velocity;
+        squares += v.x * v.x + v.y * v.y, count += 1;
+    }
+    return count > 0 ? std::sqrt(squares / count) : 0;
+}
+
+double Watch::mean_height() const {
+    double sum = 0, count = 0;
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i)
+        if (is_dynamic(scene_.bodies[i])) sum += state(i).position.y, count += 1;
+    return count > 0 ? sum / count : 0;
+}
+
+EnergyBooks::EnergyBooks(const Watch& watch, const Scene& scene, std::vector<double> lowest)
+    : lowest_(std::move(lowest)) {
+    for (const Body& body : scene.bodies)
+        weight_.push_back(is_dynamic(body) ? -scene.gravity.y * tool::mass_of(body) : 0);
+    start_ = energy(watch);
+}
+
+double EnergyBooks::energy(const Watch& watch) const {
+    double potential = 0;
+    for (std::size_t i = 0; i < weight_.size(); ++i)
+        if (weight_[i] != 0) potential += weight_[i] * (watch.state(i).position.y - lowest_[i]);
+    return watch.kinetic_energy() + potential;
+}
+
+void EnergyBooks::look(const Watch& watch) {
+    const double rise = rise_of(energy(watch), start_, start_);
+    if (!(rise <= rise_)) rise_ = rise;  // not a number stays
+    if (!watch.simulation().keeps_ledger()) return;
+    const EnergyByCause cause = watch.simulation().ledger().energy_by_cause;
+    restitution_gain_ += std::fmax(0, cause.restitution - last_restitution_) / start_;
+    last_restitution_ = cause.restitution;
+    correction_gain_ = std::fmax(correction_gain_, cause.correction / start_);
+}
+
+void tell_times(Outcome& outcome, const Watch& watch) {
+    constexpr double kMilliseconds = 1e3;
+    const double median = watch.median_step(), longest = watch.longest_step();
+    outcome.measures.push_back({"median ms", kMilliseconds * median});
+    outcome.measures.push_back({"worst ms", kMilliseconds * longest});
+    outcome.measures.push_back({"worst/median", median > 0 ? longest / median : 0});
+}
+
+}  // namespace carom::torture

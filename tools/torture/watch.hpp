@@ -1,0 +1,80 @@
+#pragma once
+
+#include <carom/scene.hpp>
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "simulation/simulation.hpp"
+#include "torture/options.hpp"
+#include "torture/outcome.hpp"
+
+namespace carom::torture {
+
+/// A world on one thread, whose steps are timed one by one. Looking at it is not in the times.
+class Watch {
+  public:
+    /// @param limit  s of processor time of all steps together, after which `step` gives up
+    /// @throws carom::Error if the solver refuses the scene
+    Watch(const Scene& scene, Solver solver, Precision precision, double limit);
+
+    /// One step of the scene's length. @return false, without a step, once the limit is exceeded
+    bool step();
+    /// Steps up to a time of the world [s]. @return false once the limit is exceeded
+    bool advance_to(double time);
+
+    const tool::Simulation& simulation() const { return *simulation_; }
+    BodyState state(std::size_t body) const { return simulation_->state(body); }
+    std::int64_t steps() const { return static_cast<std::int64_t>(seconds_.size()); }
+    double median_step() const;   ///< s
+    double longest_step() const;  ///< s
+    bool gave_up() const { return spent_ > limit_; }
+    /// Empty, or why there are no more steps.
+    std::string failure() const;
+
+    double kinetic_energy() const;  ///< J, spin included, of dynamic bodies
+    double rms_speed() const;       ///< m/s, of dynamic bodies
+    double mean_height() const;     ///< m, of dynamic bodies
+    std::size_t quarantined() const { return simulation_->quarantined().size(); }
+
+  private:
+    Scene scene_;
+    double limit_;
+    std::unique_ptr<tool::Simulation> simulation_;
+    std::vector<double> seconds_;  // of each step
+    double spent_ = 0;
+};
+
+/// Follows the energy of a passive world. Potential energy is 0 where each body is as low as it can be, so
+/// that the start's total is what the world can ever have in motion.
+class EnergyBooks {
+  public:
+    /// @param lowest  m, of each body's centre, [bodies]
+    EnergyBooks(const Watch& watch, const Scene& scene, std::vector<double> lowest);
+
+    /// After every step.
+    void look(const Watch& watch);
+
+    double start() const { return start_; }  ///< J
+    double rise() const { return rise_; }    ///< largest (E - E0) / E0 so far
+    /// Steps in which restitution gave energy, the sum of what they gave over E0; 0 without a ledger.
+    double restitution_gain() const { return restitution_gain_; }
+    /// The most that displacement had lifted bodies by, over E0; 0 without a ledger.
+    double correction_gain() const { return correction_gain_; }
+
+  private:
+    double energy(const Watch& watch) const;
+
+    std::vector<double> weight_, lowest_;  // N and m, [bodies]
+    double start_ = 0, rise_ = -1, restitution_gain_ = 0, correction_gain_ = 0;
+    double last_restitution_ = 0;  // J
+};
+
+/// What a step took: median, longest, and one over the other. None has a mark: times are told.
+void tell_times(Outcome& outcome, const Watch& watch);
+
+/// In which step the run that goes on in this process is, for those who wait for it.
+extern std::int64_t* step_in_progress;
+
+}  // namespace carom::torture
