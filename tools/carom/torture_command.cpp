@@ -24,8 +24,9 @@ namespace {
 namespace fs = std::filesystem;
 using torture::Row;
 
-constexpr std::int64_t kLargestNumber = 1'000'000;  // of scenes, steps, bodies
-constexpr double kLongestLimit = 1e5;               // s
+constexpr std::int64_t kLargestNumber = 1'000'000;         // of scenes, steps, bodies
+constexpr std::int64_t kLargestIndex = 1'000'000'000'000;  // of a random scene
+constexpr double kLongestLimit = 1e5;                      // s
 
 struct Torture {
     std::vector<std::string> cases;
@@ -56,7 +57,7 @@ std::vector<Row> rows_of(const Torture& asked, const torture::Case& of) {
     const std::vector<torture::Task> tasks = of.tasks(asked.options);
     ProgressBar bar(static_cast<std::int64_t>(tasks.size()), true, "run");
     return torture::run_tasks(
-        tasks, {.processes = static_cast<int>(asked.jobs), .limit = asked.options.limit},
+        tasks, static_cast<int>(asked.jobs),
         [&](std::size_t done) { bar.update(static_cast<std::int64_t>(done)); }, is_interrupted);
 }
 
@@ -120,7 +121,7 @@ void add_numbers(CLI::App& command, const std::shared_ptr<Torture>& asked) {
         [&options](std::int64_t value) { options.scenes = value; });
     add("--seed", "Seed of random scenes (default 1)", 0, INT64_MAX,
         [&options](std::int64_t value) { options.seed = static_cast<std::uint64_t>(value); });
-    add("--only", "The random scene of that index alone", 0, INT64_MAX,
+    add("--only", "The random scene of that index alone", 0, kLargestIndex,
         [&options](std::int64_t value) { options.only = value; });
     add("--steps", "Steps of a run (default: the case's own)", 1, kLargestNumber,
         [&options](std::int64_t value) { options.steps = value; });

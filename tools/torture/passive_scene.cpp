@@ -16,7 +16,6 @@ constexpr std::array kRestitutions{.0, .1, .2, .3, .4, .5, .6, .7, .8, .9, 1., .
 constexpr std::array kFrictions{0., 0.1, 0.5};
 constexpr std::array kSteps{1. / 30, 1. / 60, 1. / 120, 1. / 240};       // s
 constexpr double kFewest = 10, kMost = 10'000;                           // bodies
-constexpr double kGravity = 9.81;                                        // m/s²
 const double kHexagonal = std::numbers::pi / (2 * std::numbers::sqrt3);  // fill where all discs touch
 
 /// Numbers of bodies from 10 to 10,000, every octave there, most of them small: half below 30.

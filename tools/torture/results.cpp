@@ -24,19 +24,26 @@ std::string cell_of(const Measure& measure) {
     return joined(format("%.3g", measure.value), measure.passes() ? " " : "!");
 }
 
-/// Lines of cells with columns as wide as their widest cell; the first `left` columns begin at the left.
-std::string aligned(const std::vector<std::vector<std::string>>& lines, std::size_t left) {
+/// Cells, and a text behind them that has no column.
+struct Line {
+    std::vector<std::string> cells;
+    std::string remark{};
+};
+
+/// Columns are as wide as their widest cell; the first `left` of them begin at the left.
+std::string aligned(const std::vector<Line>& all, std::size_t left) {
     std::vector<int> widths;
-    for (const auto& line : lines) {
+    for (const auto& [line, remark] : all) {
         widths.resize(std::max(widths.size(), line.size()), 0);
         for (std::size_t i = 0; i < line.size(); ++i)
             widths[i] = std::max(widths[i], static_cast<int>(line[i].size()));
     }
     std::string text;
-    for (const auto& line : lines) {
+    for (const auto& [line, remark] : all) {
         std::string one;
         for (std::size_t i = 0; i < line.size(); ++i)
             one += format(i < left ? "  %-*s" : "  %*s", widths[i], line[i].c_str());
+        one += "  " + remark;
         one.erase(one.find_last_not_of(' ') + 1);
         text += one + '\n';
     }
@@ -49,10 +56,9 @@ std::string mark_of(const Measure& measure) {
 
 constexpr std::size_t kTextColumns = 4;  // verdict, scene, solver, precision
 
-std::vector<std::string> line_of(const Row& row) {
-    std::vector<std::string> line{row.passes() ? "PASS" : "FAIL", row.scene, row.solver, row.precision};
-    for (const Measure& measure : row.outcome.measures) line.push_back(cell_of(measure));
-    if (!row.outcome.failure.empty()) line.push_back(row.outcome.failure);
+Line line_of(const Row& row) {
+    Line line{{row.passes() ? "PASS" : "FAIL", row.scene, row.solver, row.precision}, row.outcome.failure};
+    for (const Measure& measure : row.outcome.measures) line.cells.push_back(cell_of(measure));
     return line;
 }
 
@@ -66,15 +72,15 @@ bool have_one_head(const Row& a, const Row& b) {
 /// Rows that measure the same follow each other under one head: names, and below them the marks.
 std::string full_table(std::span<const Row> rows) {
     std::string text;
-    std::vector<std::vector<std::string>> lines;
+    std::vector<Line> lines;
     const Row* last = nullptr;
     for (const Row& row : rows) {
         const bool is_new = !row.outcome.measures.empty() && (!last || !have_one_head(row, *last));
         if (is_new) {
             text += aligned(lines, kTextColumns);
-            lines = {{"", "scene", "solver", "precision"}, {"", "", "", "mark"}};
+            lines = {{{"", "scene", "solver", "precision"}}, {{"", "", "", "mark"}}};
             for (const Measure& measure : row.outcome.measures)
-                lines[0].push_back(measure.name + " "), lines[1].push_back(mark_of(measure));
+                lines[0].cells.push_back(measure.name + " "), lines[1].cells.push_back(mark_of(measure));
             last = &row;
         }
         lines.push_back(line_of(row));
@@ -102,17 +108,17 @@ std::string summary_table(std::span<const Row> rows) {
                 sum->largest[i].value = row.outcome.measures[i].value;
     }
     if (sums.empty()) return {};
-    std::vector<std::vector<std::string>> lines{{"", "solver", "precision", "runs", "failed", "not ended"},
-                                                {"", "", "largest; mark", "", "", ""}};
+    std::vector<Line> lines{{{"", "solver", "precision", "runs", "failed", "not ended"}},
+                            {{"", "", "largest; mark", "", "", ""}}};
     const auto with_head = std::max_element(sums.begin(), sums.end(), [](const Sum& a, const Sum& b) {
         return a.largest.size() < b.largest.size();
     });
     for (const Measure& measure : with_head->largest)
-        lines[0].push_back(measure.name + " "), lines[1].push_back(mark_of(measure));
+        lines[0].cells.push_back(measure.name + " "), lines[1].cells.push_back(mark_of(measure));
     for (const Sum& sum : sums) {
-        lines.push_back({sum.failed ? "FAIL" : "PASS", sum.solver, sum.precision, std::to_string(sum.rows),
-                         std::to_string(sum.failed), std::to_string(sum.unfinished)});
-        for (const Measure& measure : sum.largest) lines.back().push_back(cell_of(measure));
+        lines.push_back({{sum.failed ? "FAIL" : "PASS", sum.solver, sum.precision, std::to_string(sum.rows),
+                          std::to_string(sum.failed), std::to_string(sum.unfinished)}});
+        for (const Measure& measure : sum.largest) lines.back().cells.push_back(cell_of(measure));
     }
     return aligned(lines, 3);
 }

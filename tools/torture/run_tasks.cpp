@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cmath>
 #include <csignal>
 #include <cstring>
 #include <limits>
@@ -66,17 +65,11 @@ Outcome outcome_of(const Task& task) {
     }
 }
 
-/// Processor time after which the system ends a child that does not look at the clock between steps.
-void limit_processor_time(double limit) {
-    const auto seconds = static_cast<rlim_t>(std::ceil(1.5 * limit)) + 1;
-    const rlimit time{seconds, seconds + 1}, core{0, 0};
-    setrlimit(RLIMIT_CPU, &time), setrlimit(RLIMIT_CORE, &core);
-}
-
-[[noreturn]] void run_child(const Task& task, int pipe, double limit, std::int64_t* step) {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
-    limit_processor_time(limit);
-    step_in_progress = step;
+[[noreturn]] void run_child(const Task& task, int pipe, std::int64_t* step) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPROF}) std::signal(signal, SIG_DFL);
+    const rlimit no_core{0, 0};
+    setrlimit(RLIMIT_CORE, &no_core);
+    watch_over_steps(step);
     const std::string text = to_json(outcome_of(task)).dump();
     std::size_t written = 0;
     while (written < text.size()) {
@@ -87,7 +80,7 @@ void limit_processor_time(double limit) {
     _exit(0);
 }
 
-Running start(std::span<const Task> tasks, std::size_t index, double limit) {
+Running start(std::span<const Task> tasks, std::size_t index) {
     Running running{.task = index, .step = std::make_unique<SharedCounter>()};
     int ends[2];
     if (pipe(ends) != 0) fail("no pipe");
@@ -96,7 +89,7 @@ Running start(std::span<const Task> tasks, std::size_t index, double limit) {
     if (running.process < 0) fail("no process");
     if (running.process == 0) {
         close(ends[0]);
-        run_child(tasks[index], ends[1], limit, running.step->get());
+        run_child(tasks[index], ends[1], running.step->get());
     }
     close(ends[1]);
     return running;
@@ -104,7 +97,7 @@ Running start(std::span<const Task> tasks, std::size_t index, double limit) {
 
 std::string reason_of(int status, std::int64_t step) {
     const auto number = static_cast<long long>(step) + 1;
-    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGPROF)
         return measure::format("ended in step %lld, which took too long", number);
     if (WIFSIGNALED(status))
         return measure::format("crashed in step %lld: %s", number, strsignal(WTERMSIG(status)));
@@ -138,7 +131,7 @@ void end_all(std::vector<Running>& all) {
 
 }  // namespace
 
-std::vector<Row> run_tasks(std::span<const Task> tasks, const RunSettings& settings,
+std::vector<Row> run_tasks(std::span<const Task> tasks, int processes,
                            const std::function<void(std::size_t)>& report,
                            const std::function<bool()>& stop) {
     constexpr int kPatience = 100;  // ms between two looks at `stop`
@@ -146,8 +139,8 @@ std::vector<Row> run_tasks(std::span<const Task> tasks, const RunSettings& setti
     std::vector<Running> all;
     std::size_t next = 0, done = 0;
     while ((next < tasks.size() || !all.empty()) && !stop()) {
-        while (next < tasks.size() && all.size() < static_cast<std::size_t>(settings.processes))
-            all.push_back(start(tasks, next++, settings.limit));
+        while (next < tasks.size() && all.size() < static_cast<std::size_t>(processes))
+            all.push_back(start(tasks, next++));
         std::vector<pollfd> pipes;
         for (const Running& running : all) pipes.push_back({running.pipe, POLLIN, 0});
         poll(pipes.data(), pipes.size(), kPatience);

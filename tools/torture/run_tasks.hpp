@@ -8,18 +8,14 @@
 
 namespace carom::torture {
 
-struct RunSettings {
-    int processes = 1;  ///< at a time
-    double limit = 20;  ///< s of processor time, as in Options: a step that goes on far beyond is ended
-};
-
 /// Runs every task in a process of its own, so that one that crashes, or stays in a step for ever, is a row
 /// with a failure. Worlds run on one thread each.
+/// @param processes  at a time
 /// @param report  called whenever a task has ended, with the number of those that have
 /// @param stop    asked now and then; then those that run are ended, and the rows so far are returned
 /// @return in the order of the tasks, without those that were skipped
 /// @throws std::runtime_error if the system gives no process or pipe
-std::vector<Row> run_tasks(std::span<const Task> tasks, const RunSettings& settings,
+std::vector<Row> run_tasks(std::span<const Task> tasks, int processes,
                            const std::function<void(std::size_t)>& report, const std::function<bool()>& stop);
 
 }  // namespace carom::torture

@@ -10,6 +10,8 @@
 
 namespace carom::torture {
 
+inline constexpr double kGravity = 9.81;  // m/s²
+
 /// The solvers asked for, or these.
 inline std::vector<Solver> solvers_of(const Options& asked, std::initializer_list<Solver> otherwise) {
     return asked.solvers.empty() ? std::vector<Solver>(otherwise) : asked.solvers;

@@ -1,5 +1,7 @@
 #include "torture/watch.hpp"
 
+#include <sys/time.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +9,6 @@
 #include "measure/statistics.hpp"
 #include "measure/text.hpp"
 #include "simulation/body_mass.hpp"
-#include "torture/energy_rule.hpp"
 
 namespace carom::torture {
 namespace {
@@ -21,9 +22,20 @@ bool is_dynamic(const Body& body) {
     return body.type == BodyType::dynamic_body;
 }
 
+std::int64_t* step_in_progress = nullptr;
+
+/// The system ends this process after so much more processor time [s].
+void allow(double seconds) {
+    const auto whole = static_cast<time_t>(seconds) + 1;
+    const itimerval timer{{0, 0}, {whole, 0}};
+    setitimer(ITIMER_PROF, &timer, nullptr);
+}
+
 }  // namespace
 
-std::int64_t* step_in_progress = nullptr;
+void watch_over_steps(std::int64_t* step) {
+    step_in_progress = step;
+}
 
 Watch::Watch(const Scene& scene, Solver solver, Precision precision, double limit)
     : scene_(with(scene, solver, precision)),
@@ -32,7 +44,10 @@ Watch::Watch(const Scene& scene, Solver solver, Precision precision, double limi
 
 bool Watch::step() {
     if (gave_up()) return false;
-    if (step_in_progress) *step_in_progress = steps();
+    if (step_in_progress) {
+        *step_in_progress = steps();
+        allow(limit_);
+    }
     const double start = measure::thread_seconds();
     simulation_->step(scene_.step.dt);
     seconds_.push_back(measure::thread_seconds() - start);
@@ -99,7 +114,7 @@ double EnergyBooks::energy(const Watch& watch) const {
 }
 
 void EnergyBooks::look(const Watch& watch) {
-    const double rise = rise_of(energy(watch), start_, start_);
+    const double rise = energy(watch) / start_ - 1;
     if (!(rise <= rise_)) rise_ = rise;  // not a number stays
     if (!watch.simulation().keeps_ledger()) return;
     const EnergyByCause cause = watch.simulation().ledger().energy_by_cause;

@@ -74,7 +74,9 @@ class EnergyBooks {
 /// What a step took: median, longest, and one over the other. None has a mark: times are told.
 void tell_times(Outcome& outcome, const Watch& watch);
 
-/// In which step the run that goes on in this process is, for those who wait for it.
-extern std::int64_t* step_in_progress;
+/// From here on a step of a Watch that goes on for longer than its limit ends this process by SIGPROF: a step
+/// cannot be asked to end.
+/// @param step  where the number of the step is kept, for the process that waits for this one
+void watch_over_steps(std::int64_t* step);
 
 }  // namespace carom::torture

@@ -1,4 +1,5 @@
 #include "accuracy/cases/parts.hpp"
+#include "accuracy/galperin.hpp"
 
 namespace carom::accuracy {
 namespace {
@@ -19,24 +20,10 @@ Scene scene_of(int) {
     return scene;
 }
 
-/// The heavy disc's velocity at the end, impact by impact.
-double exact_velocity() {
-    long double light = 0, heavy = -1;
-    for (std::int64_t i = 0; i < kCollisions; ++i) {
-        if (i % 2 == 1) {
-            light = -light;  // the wall
-            continue;
-        }
-        const long double mean = (light + kRatio * heavy) / (1 + kRatio);
-        light = 2 * mean - light, heavy = 2 * mean - heavy;
-    }
-    return static_cast<double>(heavy);
-}
-
 std::vector<double> run(Stepper& stepper, const Scene&, int) {
     stepper.advance_to(kTime);
     const double impacts = count_impacts(stepper, true);
-    return {stepper.state(1).velocity.x - exact_velocity(), impacts / kCollisions - 1};
+    return {stepper.state(1).velocity.x - galperin_velocity(kRatio, kCollisions), impacts / kCollisions - 1};
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
-#include <carom/generators.hpp>
-
 #include <algorithm>
 #include <cmath>
 
 #include "measure/text.hpp"
+#include "torture/add_runs.hpp"
+#include "torture/crowd_scene.hpp"
 #include "torture/energy_rule.hpp"
 #include "torture/runs.hpp"
 #include "torture/watch.hpp"
@@ -11,32 +11,10 @@
 namespace carom::torture {
 namespace {
 
-constexpr std::int64_t kDiscs = 1800, kSteps = 1800;
-constexpr double kSmallest = 0.2, kLargest = 0.5;  // m
-constexpr double kWidth = 40, kFill = 0.35;        // m, of the box for 1,800; of the crowd at its start
-constexpr double kGravity = 9.81, kStart = 5;      // m/s²; m above the floor
+constexpr std::int64_t kSteps = 1800;
 constexpr double kLargestOverlap = 0.1, kLargestOverlapAtRest = 0.01, kLargestRms = 1e-3;  // radii, m/s
 /// Up to here a heap of some twenty layers loses its energy within the run: layers (1 - e) is above 4.
 constexpr double kRestsUpTo = 0.8;
-
-Scene scene_of(std::int64_t discs, double restitution, double friction) {
-    const double mean_square = (kSmallest * kSmallest + kSmallest * kLargest + kLargest * kLargest) / 3;
-    const double area = static_cast<double>(discs) * 3.14159265358979 * mean_square / kFill;
-    const double width = kWidth * std::sqrt(static_cast<double>(discs) / kDiscs);
-    Scene scene;
-    scene.gravity = {0, -kGravity};
-    scene.effects.ledger = true;
-    scene.walls = Walls{.min = {0, kStart},
-                        .max = {width, kStart + area / width},
-                        .top = false,
-                        .material = material_of(restitution, friction)};
-    Gas gas;
-    gas.count = discs, gas.radius = {kSmallest, kLargest}, gas.velocity_rms = 1, gas.seed = 1;
-    gas.body.material = material_of(restitution, friction);
-    add_gas(scene, gas);
-    scene.walls->min.y = 0;
-    return scene;
-}
 
 std::vector<double> lowest_of(const Scene& scene) {
     std::vector<double> lowest;
@@ -79,18 +57,25 @@ Outcome run(const Scene& scene, Solver solver, Precision precision, const Option
 
 std::vector<Task> tasks(const Options& asked) {
     std::vector<Task> all;
-    const std::int64_t discs = asked.bodies.value_or(kDiscs);
+    const std::int64_t discs = asked.bodies.value_or(kCrowd);
     for (const double friction : {0., 0.3})
-        for (const double e : {0., .1, .2, .3, .4, .5, .6, .7, .8, .9, .95, .98, .99, 1.})
-            for (const Solver solver : solvers_of(asked, {Solver::automatic})) {
-                const Precision precision = asked.precision.value_or(Precision::single_);
-                const bool should_rest = e <= kRestsUpTo && asked.steps.value_or(kSteps) >= kSteps;
-                all.push_back({"drop", measure::format("e %g friction %g", e, friction),
-                               std::string(carom::name_of(solver)), name_of(precision), [=] {
-                                   return run(scene_of(discs, e, friction), solver, precision, asked,
-                                              should_rest);
+        for (const double e : {0., .1, .2, .3, .4, .5, .6, .7, .8, .9, .95, .98, .99, 1.}) {
+            const bool should_rest = e <= kRestsUpTo && asked.steps.value_or(kSteps) >= kSteps;
+            add_runs(all, {.case_id = "drop",
+                           .scene = measure::format("e %g friction %g", e, friction),
+                           .solvers = solvers_of(asked, {Solver::automatic}),
+                           .precisions = {asked.precision.value_or(Precision::single_)},
+                           .make =
+                               [=] {
+                                   Scene scene = falling_crowd(discs, e, friction);
+                                   scene.effects.ledger = true;
+                                   return scene;
+                               },
+                           .run =
+                               [=](const Scene& scene, Solver solver, Precision precision) {
+                                   return run(scene, solver, precision, asked, should_rest);
                                }});
-            }
+        }
     return all;
 }
 

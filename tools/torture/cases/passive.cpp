@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "torture/add_runs.hpp"
 #include "torture/energy_rule.hpp"
 #include "torture/passive_scene.hpp"
 #include "torture/runs.hpp"
@@ -12,12 +13,6 @@ namespace {
 constexpr std::int64_t kStepsARun = 300, kMostBodies = 10'000;
 constexpr std::int64_t kStepsALook = 10;  // between two measurements of overlap
 
-/// Whether `auto` takes that solver, so that its run is the same.
-bool is_automatic_choice(const Scene& scene, Solver solver, Precision precision) {
-    if (solver == Solver::automatic) return false;
-    return Watch(scene, Solver::automatic, precision, 1).simulation().plan().solver == carom::name_of(solver);
-}
-
 std::size_t outside_of(const Watch& watch, const PassiveScene& passive) {
     std::size_t outside = 0;
     for (std::size_t i = 0; i < passive.scene.bodies.size(); ++i)
@@ -26,11 +21,10 @@ std::size_t outside_of(const Watch& watch, const PassiveScene& passive) {
     return outside;
 }
 
-Outcome run(const PassiveTraits& traits, Solver solver, Precision precision, std::int64_t steps,
-            double limit) {
+Outcome run(const PassiveTraits& traits, Solver solver, Precision precision, const Options& asked) {
     const PassiveScene passive = passive_scene(traits);
-    if (is_automatic_choice(passive.scene, solver, precision)) return {.is_skipped = true};
-    Watch watch(passive.scene, solver, precision, limit);
+    const std::int64_t steps = asked.steps.value_or(kStepsARun);
+    Watch watch(passive.scene, solver, precision, asked.limit);
     EnergyBooks books(watch, passive.scene, passive.lowest);
     double overlap = 0;
     std::size_t outside = 0;
@@ -57,13 +51,14 @@ std::vector<Task> tasks(const Options& asked) {
     for (std::int64_t index = first; index < last; ++index) {
         const PassiveTraits traits =
             passive_traits(asked.seed, static_cast<std::uint64_t>(index), asked.bodies.value_or(kMostBodies));
-        const Precision precision = asked.precision.value_or(traits.precision);
-        for (const Solver solver :
-             solvers_of(asked, {Solver::automatic, Solver::soft, Solver::impulse, Solver::event}))
-            all.push_back({"passive", in_words(traits), std::string(carom::name_of(solver)),
-                           name_of(precision),
-                           [traits, solver, precision, steps = asked.steps.value_or(kStepsARun),
-                            limit = asked.limit] { return run(traits, solver, precision, steps, limit); }});
+        add_runs(all, {.case_id = "passive",
+                       .scene = in_words(traits),
+                       .solvers = solvers_of(
+                           asked, {Solver::automatic, Solver::soft, Solver::impulse, Solver::event}),
+                       .precisions = {asked.precision.value_or(traits.precision)},
+                       .make = [traits] { return passive_scene(traits).scene; },
+                       .run = [=](const Scene&, Solver solver,
+                                  Precision precision) { return run(traits, solver, precision, asked); }});
     }
     return all;
 }
