@@ -5,9 +5,7 @@ import unittest
 from program import ProgramTest, scaled
 
 SCENES = scaled(20, 4)  # random scenes
-# All scenes of this seed keep the energy rule today; of seeds 1 to 5 each other one has a scene or two in which `soft`
-# gains energy where bodies bounce often (`carom torture passive --scenes 20 --bodies 200 --seed 5`).
-SEED = 3
+SEED = 1
 TIMES = {"median ms", "worst ms", "worst/median"}
 
 
@@ -21,12 +19,6 @@ class TortureTest(ProgramTest):
         done = self.carom("torture", *arguments, "--json", "--out", "out", expect=expect)
         self.assertEqual(done.stdout, (self.folder / "out/torture.json").read_text())
         return json.loads(done.stdout)
-
-    def test_random_passive_scenes_gain_no_energy_under_impulse(self):
-        # The solver that this holds for whatever the scene. `soft` gains where bodies bounce often.
-        found = self.torture("passive", "--scenes", SCENES, "--bodies", 200, "--seed", 1, "--solver", "impulse")
-        self.assertGreaterEqual(len(found["rows"]), scaled(2, 1))
-        self.assert_passed(found)
 
     def test_random_passive_scenes_gain_no_energy(self):
         found = self.torture("passive", "--scenes", SCENES, "--bodies", 200, "--seed", SEED, "--solver", "auto,soft,impulse")

@@ -4,6 +4,9 @@
 
 #include <poll.h>
 #include <sys/mman.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,7 +14,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <limits>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -66,7 +69,12 @@ Outcome outcome_of(const Task& task) {
 }
 
 [[noreturn]] void run_child(const Task& task, int pipe, std::int64_t* step) {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPROF}) std::signal(signal, SIG_DFL);
+    // Ctrl-C goes to the whole group: the parent ends its children, and none of them looks as if it crashed.
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_IGN);
+    std::signal(SIGPROF, SIG_DFL);
+#ifdef __linux__
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+#endif
     const rlimit no_core{0, 0};
     setrlimit(RLIMIT_CORE, &no_core);
     watch_over_steps(step);

@@ -49,20 +49,20 @@ Outcome run_wedge(const Scene& scene, Solver solver, Precision precision, double
 
 constexpr double kSide = 10;  // m, of a closed box
 
-Scene pushed(double height, double friction) {
-    const Material material = material_of(0, friction);
+Scene pushed(double height, double restitution, double friction) {
+    const Material material = material_of(restitution, friction);
     Scene scene;
     scene.walls = Walls{.min = {0, 0}, .max = {kSide, kSide}, .material = material};
     scene.add(disc_of(0.5, {5, 5}, {}, material));
-    Body pusher = disc_of(1, {2, 5 + height}, {2, 0}, material);
+    Body pusher = disc_of(0.5, {3, 5 + height}, {2, 0}, material);
     pusher.type = BodyType::kinematic_body;
     scene.add(pusher);
     return scene;
 }
 
 /// A crowd that a large disc drives through.
-Scene pushed_crowd(double friction) {
-    const Material material = material_of(0, friction);
+Scene pushed_crowd(double restitution, double friction) {
+    const Material material = material_of(restitution, friction);
     Scene scene;
     scene.walls = Walls{.min = {4, 0}, .max = {kSide, kSide}, .material = material};
     Gas gas;
@@ -109,17 +109,16 @@ void add_squeezes(std::vector<Task>& all, const Options& asked) {
                 [=](const Scene& scene, Solver solver, Precision precision) {
                     return run_wedge(scene, solver, precision, limit);
                 });
-    for (const double friction : {0., 0.3}) {
-        add_impacts(
-            all, asked, measure::format("pushed against a wall, friction %g", friction), precisions_of(asked),
-            [=] { return pushed(0, friction); }, run_one);
-        add_impacts(
-            all, asked, measure::format("pushed aside, friction %g", friction), precisions_of(asked),
-            [=] { return pushed(0.1, friction); }, run_one);
-        add_impacts(
-            all, asked, measure::format("a crowd that is pushed, friction %g", friction),
-            precisions_of(asked), [=] { return pushed_crowd(friction); }, run_one);
-    }
+    for (const double friction : {0., 0.3})
+        for (const double e : {0., 0.6}) {
+            const auto add = [&](const char* what, const std::function<Scene()>& make) {
+                add_impacts(all, asked, measure::format("%s, e %g friction %g", what, e, friction),
+                            precisions_of(asked), make, run_one);
+            };
+            add("pushed against a wall", [=] { return pushed(0, e, friction); });
+            add("pushed aside", [=] { return pushed(0.1, e, friction); });
+            add("a crowd that is pushed", [=] { return pushed_crowd(e, friction); });
+        }
 }
 
 }  // namespace carom::torture
