@@ -26,7 +26,7 @@ class WrongInputTest(ProgramTest):
     def test_command_lines_that_make_no_sense_are_refused(self):
         for arguments in ([], ["fly"], ["run"], ["check"], ["explain"], ["run", SEED, SEED], ["--bogus"],
                           ["run", SEED, "--bogus"], ["run", "--out"], [""], ["run", ""], ["check", SEED, "--steps", "3"],
-                          ["prices"], ["report"], ["torture"], ["accuracy", "A99"], ["accuracy", "--out"]):
+                          ["prices"], ["report"], ["torture", "B99x"], ["accuracy", "A99"], ["accuracy", "--out"]):
             self.check_refused(*arguments)
 
     def test_values_out_of_range_are_refused(self):
