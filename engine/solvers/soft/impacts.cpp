@@ -31,9 +31,6 @@ constexpr double kCostOfLoss = 10, kCostOfOne = 0.02;
 /// Impacts at this share of the fastest of the step are not those of a collapse: they cost a tenth.
 constexpr double kFastShare = 0.15, kCostOfFast = 0.1;
 
-/// A velocity that changes in a substep as gravity would change it, to this share of it, squared, falls.
-constexpr double kOffFall = 1e-6;
-
 /// Two surfaces touch if they are as near as this, in their reach.
 template <class Real>
 constexpr double kTouching = sizeof(Real) == sizeof(float) ? 1e-7 : 1e-14;
@@ -138,9 +135,9 @@ auto Impacts<Real>::path_of(std::size_t row) const -> Mover {
     Mover curved = straight;
     curved.v = {start_x, start_y};
     // Bodies that fall alike meet on straight lines: they have the same bits of acceleration.
-    const Real off_x = change_x - fall_x, off_y = change_y - fall_y;
-    const bool falls =
-        off_x * off_x + off_y * off_y <= fall * static_cast<Real>(kOffFall) && bodies_->decay == 1;
+    const Real off = std::fabs(change_x - fall_x) + std::fabs(change_y - fall_y),
+               speed = std::fabs(start_x) + std::fabs(start_y);
+    const bool falls = bodies_->decay == 1 && off <= Real(8) * std::numeric_limits<Real>::epsilon() * speed;
     curved.acceleration = falls ? gravity_ : (1 / bodies_->h) * Vec2{change_x, change_y};
     return curved;
 }
@@ -396,8 +393,8 @@ bool Impacts<Real>::carry_out(Place place, double time, Books& books, double& gr
         const double called_for = restitution_of(place);
         const bool has_enough = spend(place, called_for, speed);
         const bool bounces = has_enough && speed > rest_speed_;
-        counters.capped += !has_enough;
         ++counters.impacts;
+        counters.of_walls += other.is_wall(), counters.inelastic += !bounces;
         terms.mass = 1 / inverse_mass(a, side);
         terms.tangent_mass = tangent_mass<kEveryEffect>(a, side, terms.mass);
         terms.floor = bounces ? called_for * speed : 0;

@@ -30,7 +30,8 @@ struct SubstepBodies {
 /// What impacts did to the sums of a substep besides the books.
 struct ImpactCounters {
     std::int64_t impacts = 0;
-    std::int64_t capped = 0;  ///< those without restitution, as their bodies had too many
+    std::int64_t of_walls = 0;   ///< of these
+    std::int64_t inelastic = 0;  ///< of these too: slow ones, or of bodies that had too many
 };
 
 /// Impacts of solver `soft`: each at its own time within a substep, by the exact law, with friction and spin.

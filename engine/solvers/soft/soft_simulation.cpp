@@ -43,7 +43,10 @@ template <class Real>
 void SoftSimulation<Real>::report(Profile& profile) const {
     const SoftCounters& counters = soft.counters;
     profile.contacts = counters.contacts, profile.colours = counters.colours;
-    profile.overflow = counters.overflow, profile.bounces += this->soft.impacts.counters.impacts;
+    profile.overflow = counters.overflow;
+    const ImpactCounters& impacts = soft.impacts.counters;
+    profile.impacts += impacts.impacts, profile.wall_impacts += impacts.of_walls;
+    profile.bounces += impacts.impacts - impacts.inelastic;
     const SolveQuality solve = soft.quality();
     profile.touching = solve.touching;
     profile.residual = solve.residual, profile.residual_max = solve.residual_max;
