@@ -2,6 +2,7 @@
 // and in every step some leave their margins. They get new ones, and only the pairs that come with these are
 // looked for.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "broadphase/candidates.hpp"
@@ -95,7 +96,12 @@ void Candidates<Real>::renew_margins(const Bodies<Real>& bodies, const FlightClo
     if (new_pairs_.empty()) return;
     std::sort(new_pairs_.begin(), new_pairs_.end());
     new_pairs_.erase(std::unique(new_pairs_.begin(), new_pairs_.end()), new_pairs_.end());
-    spare_pairs_.resize(added_pairs_.size() + new_pairs_.size());
+    const std::size_t merged = added_pairs_.size() + new_pairs_.size();
+    // Of both lists, which take turns, and for a pair a body: a size that is reached now and then needs no
+    // memory.
+    const std::size_t room = std::bit_ceil(std::max(merged, bodies.count));
+    spare_pairs_.reserve(room), added_pairs_.reserve(room);
+    spare_pairs_.resize(merged);
     std::merge(added_pairs_.begin(), added_pairs_.end(), new_pairs_.begin(), new_pairs_.end(),
                spare_pairs_.begin());
     added_pairs_.swap(spare_pairs_);

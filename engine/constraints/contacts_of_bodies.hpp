@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -37,6 +38,9 @@ class ContactsOfBodies {
             });
         });
     }
+
+    /// Makes room for that many contacts of supports, or half as many pairs, so that later calls need none.
+    void reserve(std::size_t contacts) { entries_.reserve(std::bit_ceil(contacts)); }
 
     /// In the order of the store.
     std::span<const Entry> of(std::size_t row) const {

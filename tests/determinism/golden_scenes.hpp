@@ -29,6 +29,7 @@ inline Scene gas(std::int64_t count, RadiusRange radius, double restitution) {
 inline Scene falling_sizes() {
     Scene scene = gas(300, {0.01, 1}, 0.6);
     scene.name = "falling sizes";
+    scene.accuracy.solver = Solver::impulse;
     scene.gravity = {0.5, -9.81};
     scene.drag = {.linear = 0.3, .angular = 0.1};
     scene.bodies[5].angular_velocity = 2;
@@ -38,6 +39,7 @@ inline Scene falling_sizes() {
 inline Scene moving_obstacles() {
     Scene scene = gas(200, {0.3, 0.5}, 0.8);
     scene.name = "moving obstacles";
+    scene.accuracy.solver = Solver::impulse;
     scene.gravity = {0, -5};
     const double side = scene.walls->max.x;
     Body post;
@@ -54,6 +56,7 @@ inline Scene moving_obstacles() {
 inline Scene stack_at_rest() {
     Scene scene;
     scene.name = "stack at rest";
+    scene.accuracy.solver = Solver::impulse;
     scene.gravity = {0, -10};
     scene.walls.emplace();
     scene.walls->max = {3, 30};
@@ -68,6 +71,7 @@ inline Scene stack_at_rest() {
 inline Scene rough_sizes() {
     Scene scene = moving_obstacles();
     scene.name = "rough sizes";
+    scene.accuracy.solver = Solver::automatic;
     scene.drag = {.linear = 0.1, .angular = 0.1};
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
         Material& material = scene.bodies[i].material;
@@ -110,6 +114,7 @@ inline Scene rough_gas() {
 inline Scene rolling_sizes() {
     Scene scene = rough_sizes();
     scene.name = "rolling sizes";
+    scene.accuracy.solver = Solver::automatic;
     for (std::size_t i = 0; i < scene.bodies.size(); ++i)
         scene.bodies[i].material.rolling_resistance = i % 5 == 0 ? 0.3 : 0.05;
     return scene;

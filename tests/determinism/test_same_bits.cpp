@@ -47,9 +47,9 @@ constexpr Golden kGolden[] = {
     {"falling sizes", 0x4fe0c9b61ea50e9c, 0xc84f698047eb650e},
     {"moving obstacles", 0x9450532e75523df8, 0x81f8d27062c9d725},
     {"stack at rest", 0xa436021f760768ad, 0xfd75b447dc578a50},
-    {"rough sizes", 0x59824835c1599f4c, 0xca63e3f90a57adf8},
-    {"rolling sizes", 0x656fe53eeeebf7d6, 0x51162436d5a21692},
-    {"turning chain", 0x8c80ae69cfcf4cb0, 0x5b14a005697d255f},
+    {"rough sizes", 0x6fc41d68b1af5f68, 0xb593c1b64a6a0946},
+    {"rolling sizes", 0xee1079478178d33a, 0xecd0fa42009fd927},
+    {"turning chain", 0xd74cf98aedce56f3, 0x11d700e0570acc1a},
     {"woken sleepers", 0xc96d16ac37412fb, 0x73b51f7b255f0ebe},
 };
 

@@ -1,6 +1,7 @@
 #include "solvers/soft/impacts.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "effects/restitution.hpp"
@@ -106,6 +107,10 @@ void Impacts<Real>::mark(const WorldState<Real>& world, ContactRows<Real>& pairs
     gravity_ = (1 / h) * gravity_change;
     ++step_;
     impacts_.clear();
+    // Room that no later step of the same world outgrows, unless it gets more pairs than ever.
+    impacts_.reserve(std::bit_ceil(pairs.a.size() + supports.a.size()));
+    queue_.reserve(std::bit_ceil(pairs.a.size() + supports.a.size()));
+    of_pairs_.reserve(2 * pairs.a.size()), of_supports_.reserve(candidates.a.size());
     are_supports_known_ = false;
     version_ = version;
     for (std::size_t group = 0; group < pairs.groups(); ++group) {

@@ -321,6 +321,7 @@ void EndProjection<Real>::project(const StepView<Real>& step, const WorldState<R
     if (!any_deflected && !any_stuck && !has_deep_pairs) return;
     projection_.is_moved.assign(count, 0);
     projection_.place.resize(count);
+    projection_.pairs.reserve(2 * count);  // as many as a crowd has: rare ones need no memory
     for (std::size_t row = 0; row < count; ++row) projection_.place[row] = step.records.end_of(row, flight);
     push_in_rounds(in, any_deflected);
     put_back_thrown(in);
