@@ -49,7 +49,7 @@ constexpr Golden kGolden[] = {
     {"stack at rest", 0xa436021f760768ad, 0xfd75b447dc578a50},
     {"rough sizes", 0x6fc41d68b1af5f68, 0xb593c1b64a6a0946},
     {"rolling sizes", 0xee1079478178d33a, 0xecd0fa42009fd927},
-    {"turning chain", 0xd74cf98aedce56f3, 0x11d700e0570acc1a},
+    {"turning chain", 0x55680eecf27436b5, 0xe7892b034bf097e6},
     {"woken sleepers", 0xc96d16ac37412fb, 0x73b51f7b255f0ebe},
 };
 

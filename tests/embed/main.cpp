@@ -59,7 +59,7 @@ int main() {
     // Every line, whatever the others say: all new hashes are then known at once.
     const bool same[] = {ends_with<carom::World>("bouncing, float", bouncing, 0x930c3dbb0b0e2ee2),
                          ends_with<carom::World64>("bouncing, double", bouncing, 0x9e561f1cdb4b735a),
-                         ends_with<carom::World>("rough, float", rough, 0xf2d562e00abb1e84),
-                         ends_with<carom::World64>("rough, double", rough, 0xd2981ef464706eaf)};
+                         ends_with<carom::World>("rough, float", rough, 0xcd96dd185c1424c2),
+                         ends_with<carom::World64>("rough, double", rough, 0x23fc7d87ecf8dbfe)};
     return same[0] && same[1] && same[2] && same[3] ? 0 : 1;
 }

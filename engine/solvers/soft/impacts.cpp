@@ -1,10 +1,13 @@
 #include "solvers/soft/impacts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
+#include "effects/friction.hpp"
 #include "effects/restitution.hpp"
+#include "effects/rolling_resistance.hpp"
 #include "math/vec2_math.hpp"
 #include "narrowphase/coincident.hpp"
 #include "narrowphase/impact_time.hpp"
@@ -23,39 +26,46 @@ constexpr double kOverlap = 1e-3;
 /// end of the substep, in radii of the smaller one.
 constexpr double kDeepening = 0.01;
 
-// The budget of a body in a step: docs/decisions/0022-impacts-in-soft.md has the measurements.
-constexpr float kBudget = 2;
-/// Spent beyond the budget, on impacts without restitution; what more there is has to wait for the sweeps.
-constexpr float kOverdraft = 8;
-/// An impact costs so much for each unit of 1 - e, but at most 1; and so much besides.
-constexpr double kCostOfLoss = 10, kCostOfOne = 0.02;
-/// Impacts at this share of the fastest of the step are not those of a collapse: they cost a tenth.
-constexpr double kFastShare = 0.15, kCostOfFast = 0.1;
-
 /// Two surfaces touch if they are as near as this, in their reach.
 template <class Real>
 constexpr double kTouching = sizeof(Real) == sizeof(float) ? 1e-7 : 1e-14;
 
-constexpr std::uint32_t kIndexBits = 0x7fffffffu;  // of a Place
+DoubleBody body_of(const std::array<double, 4>& record) {
+    return {{{record[0], record[1], record[2], record[3]}}};
+}
+
+std::array<double, 3> difference(const DoubleBody& after, const DoubleBody& before) {
+    std::array<double, 3> added;
+    for (std::size_t k = 0; k < added.size(); ++k) added[k] = after.record[k] - before.record[k];
+    return added;
+}
+
+constexpr std::uint32_t kIndexBits = 0x3fffffffu;  // of a Place
 
 }  // namespace
 
 template <class Real>
+std::int32_t Impacts<Real>::row_of(Place place) const {
+    return place.has_row() ? store_of(place).a[place.index] : strangers_[place.index].a;
+}
+
+template <class Real>
 Partner Impacts<Real>::partner_of(Place place) const {
-    return place.is_support
+    if (place.kind == kStrangers) return Partner::body(strangers_[place.index].b);
+    return place.is_support()
                ? candidates_->partner(static_cast<std::size_t>(supports_->candidate[place.index]))
                : Partner::body(pairs_->b[place.index]);
 }
 
 template <class Real>
 bool Impacts<Real>::is_impact(Place place) const {
-    return store_of(place).separation[place.index] == kFar<Real>;
+    return !place.has_row() || store_of(place).separation[place.index] == kFar<Real>;
 }
 
 template <class Real>
 double Impacts<Real>::restitution_of(Place place) const {
     const Bodies<Real>& bodies = world_->bodies;
-    const double of_a = bodies.restitution[static_cast<std::size_t>(store_of(place).a[place.index])];
+    const double of_a = bodies.restitution[static_cast<std::size_t>(row_of(place))];
     const Partner other = partner_of(place);
     if (other.is_wall()) return pair_restitution(of_a, world_->walls->material.restitution);
     const auto row = static_cast<std::size_t>(
@@ -66,32 +76,48 @@ double Impacts<Real>::restitution_of(Place place) const {
 
 template <class Real>
 double Impacts<Real>::smaller_radius(Place place) const {
-    const double of_a = world_->bodies.radius[static_cast<std::size_t>(store_of(place).a[place.index])];
+    const auto radius_of = [&](std::int32_t row) {
+        return static_cast<double>(world_->bodies.radius[static_cast<std::size_t>(row)]);
+    };
+    const double of_a = radius_of(row_of(place));
     const Partner other = partner_of(place);
-    return other.is_body()
-               ? std::min(of_a,
-                          static_cast<double>(world_->bodies.radius[static_cast<std::size_t>(other.row())]))
-               : of_a;
+    return other.is_body() ? std::min(of_a, radius_of(other.row())) : of_a;
 }
 
+/// What decides the tangential and rolling impulses; zero where nothing turns.
 template <class Real>
-auto Impacts<Real>::tally_of(std::int32_t row) -> Tally& {
-    Tally& tally = tallies_[static_cast<std::size_t>(row)];
-    if (tally.step != step_) tally = {step_, 0, 0};
-    return tally;
+void Impacts<Real>::set_materials(Place place, ContactTerms<double>& terms) const {
+    terms.of_a = 0.5;
+    if (!settings_->effects.friction) return;
+    if (place.has_row()) {
+        const ContactRows<Real>& rows = store_of(place);
+        const auto value = [&](const Column<Real>& column, double uniform) {
+            return column.empty() ? uniform : static_cast<double>(column[place.index]);
+        };
+        terms.friction = value(rows.friction, settings_->friction);
+        if (settings_->effects.rolling) terms.rolling = value(rows.rolling, settings_->rolling);
+        terms.of_a = value(rows.rolling_share, 0.5);
+        return;
+    }
+    const Bodies<Real>& bodies = world_->bodies;
+    const auto a = static_cast<std::size_t>(row_of(place)),
+               b = static_cast<std::size_t>(partner_of(place).row());
+    terms.friction = pair_friction(bodies.friction[a], bodies.friction[b]);
+    if (settings_->effects.rolling)
+        terms.rolling = pair_rolling_resistance(bodies.rolling_resistance[a], bodies.rolling_resistance[b]);
+    terms.of_a = rolling_share(bodies.radius[a], bodies.radius[b]);
 }
 
 /// What comes fast enough, and may come to touch in this step, is an impact.
 template <class Real>
-void Impacts<Real>::mark_in(ContactRows<Real>& rows, bool are_supports, std::size_t first, std::size_t last,
-                            double dt) {
-    const double slack = std::sqrt(length_squared(gravity_)) * dt * dt;
+void Impacts<Real>::mark_in(ContactRows<Real>& rows, Kind kind, std::size_t first, std::size_t last) {
+    const double slack = std::sqrt(length_squared(gravity_)) * dt_ * dt_;
     for (std::size_t i = first; i < last; ++i) {
         const double approach = rows.approach[i];
         if (rows.normal_impulse[i] > 0 || !(approach < -rest_speed_) || !(rows.mass[i] > 0)) continue;
         const double separation = rows.separation[i];
-        if (separation > slack - dt * approach) continue;
-        const Place place{static_cast<std::uint32_t>(i) & kIndexBits, are_supports};
+        if (separation > slack - dt_ * approach) continue;
+        const Place place{static_cast<std::uint32_t>(i) & kIndexBits, kind};
         if (separation < -kOverlap * smaller_radius(place) || !(restitution_of(place) > 0)) continue;
         rows.separation[i] = kFar<Real>;
         impacts_.push_back(place);
@@ -99,83 +125,33 @@ void Impacts<Real>::mark_in(ContactRows<Real>& rows, bool are_supports, std::siz
 }
 
 template <class Real>
-void Impacts<Real>::mark(const WorldState<Real>& world, ContactRows<Real>& pairs, std::int64_t version,
-                         ContactRows<Real>& supports, const ContactRows<Real>& candidates, double dt,
-                         double h, Vec2 gravity_change) {
-    world_ = &world, pairs_ = &pairs, supports_ = &supports, candidates_ = &candidates;
-    rest_speed_ = kRestingFalls * std::sqrt(length_squared(gravity_change));
-    gravity_ = (1 / h) * gravity_change;
-    ++step_;
-    impacts_.clear();
+void Impacts<Real>::mark(const WorldState<Real>& world, const StepView<Real>& step,
+                         const Candidates<Real>& neighbours) {
+    ContactRows<Real>&pairs = step.graph.pairs, &supports = step.supports;
+    world_ = &world, pairs_ = &pairs, supports_ = &supports, candidates_ = &step.graph.supports;
+    neighbours_ = &neighbours, settings_ = &step.settings;
+    dt_ = step.terms.dt, rest_speed_ = kRestingFalls * step.terms.fall_speed();
+    gravity_ = (1 / step.terms.substep_dt) * step.terms.gravity_change;
+    for (const Strangers& pair : strangers_)
+        first_strangers_[static_cast<std::size_t>(pair.a)] =
+            first_strangers_[static_cast<std::size_t>(pair.b)] = -1;
+    strangers_.clear(), impacts_.clear();
+    overshoot_ = 0;
     // Room that no later step of the same world outgrows, unless it gets more pairs than ever.
     impacts_.reserve(std::bit_ceil(pairs.a.size() + supports.a.size()));
     queue_.reserve(std::bit_ceil(pairs.a.size() + supports.a.size()));
-    of_pairs_.reserve(2 * pairs.a.size()), of_supports_.reserve(candidates.a.size());
+    of_pairs_.reserve(2 * pairs.a.size()), of_supports_.reserve(candidates_->a.size());
     are_supports_known_ = false;
-    version_ = version;
+    version_ = step.graph.version;
+    budget_.begin_step(step.records.count());
+    first_strangers_.resize(std::max(first_strangers_.size(), step.records.count()), -1);
     for (std::size_t group = 0; group < pairs.groups(); ++group) {
         const typename ContactRows<Real>::Run* run =
             pairs.run.data() + pairs.first_place(group) / kContactBlock;
         for (std::size_t r = 0; r < pairs.run_count[group]; ++r)
-            mark_in(pairs, false, kContactBlock * run[r].first, kContactBlock * run[r].last, dt);
+            mark_in(pairs, kPair, kContactBlock * run[r].first, kContactBlock * run[r].last);
     }
-    supports.for_each([&](std::size_t i) { mark_in(supports, true, i, i + 1, dt); });
-}
-
-/// Of a body that is awake.
-template <class Real>
-auto Impacts<Real>::path_of(std::size_t row) const -> Mover {
-    const Real* record = bodies_->velocity + 4 * row;
-    const Real start_x = bodies_->start.x[row], start_y = bodies_->start.y[row];
-    const Vec2 x = Vec2{bodies_->origin[4 * row], bodies_->origin[4 * row + 1]} +
-                   Vec2{bodies_->displacement[2 * row], bodies_->displacement[2 * row + 1]};
-    const Mover straight{x, {record[0], record[1]}, {}, world_->bodies.radius[row], 0, substep_};
-    if (record[3] == 0) return straight;
-    const Real change_x = record[0] - start_x, change_y = record[1] - start_y;
-    const Real fall_x = bodies_->decay * start_x + bodies_->gain_x - start_x,
-               fall_y = bodies_->decay * start_y + bodies_->gain_y - start_y;
-    const Real fall = fall_x * fall_x + fall_y * fall_y;
-    const bool is_smooth = change_x * change_x + change_y * change_y <= fall * Real(1.0001);
-    if (!is_smooth) return straight;
-    Mover curved = straight;
-    curved.v = {start_x, start_y};
-    // Bodies that fall alike meet on straight lines: they have the same bits of acceleration.
-    const Real off = std::fabs(change_x - fall_x) + std::fabs(change_y - fall_y),
-               speed = std::fabs(start_x) + std::fabs(start_y);
-    const bool falls = bodies_->decay == 1 && off <= Real(8) * std::numeric_limits<Real>::epsilon() * speed;
-    curved.acceleration = falls ? gravity_ : (1 / bodies_->h) * Vec2{change_x, change_y};
-    return curved;
-}
-
-template <class Real>
-auto Impacts<Real>::mover_of(std::int32_t number) -> const Mover& {
-    const auto row = static_cast<std::size_t>(number);
-    Mover& mover = movers_[row];
-    if (mover.substep != substep_) {
-        const std::uint32_t impacts = mover.impacts;
-        mover = path_of(row), mover.impacts = impacts;
-    }
-    return mover;
-}
-
-/// The other body of a contact: a support may sleep, and then has no record.
-template <class Real>
-auto Impacts<Real>::other_of(Place place, Partner other) -> Mover {
-    const auto row = static_cast<std::size_t>(other.row());
-    if (!place.is_support || row < bodies_->count) return mover_of(other.row());
-    const Bodies<Real>& bodies = world_->bodies;
-    return {{bodies.position_x[row], bodies.position_y[row]}, {}, {}, bodies.radius[row], 0, substep_};
-}
-
-template <class Real>
-DoubleBody Impacts<Real>::body_of(std::int32_t row, const Mover& mover, double time) const {
-    DoubleBody body{{{0, 0, 0, 0}}};
-    if (static_cast<std::size_t>(row) < bodies_->count) {
-        body = body_at(bodies_->velocity, row);
-        const Vec2 v = mover.velocity_at(time);
-        body.record[0] = v.x, body.record[1] = v.y;
-    }
-    return body;
+    supports.for_each([&](std::size_t i) { mark_in(supports, kSupport, i, i + 1); });
 }
 
 template <class Real>
@@ -201,10 +177,10 @@ double noise_of(Vec2 a, Vec2 b) {
 template <class Real>
 void Impacts<Real>::foresee(Place place, double time) {
     if (!(time <= bodies_->h)) return;
-    const auto impacts_of = [&](std::int32_t row) { return movers_[static_cast<std::size_t>(row)].impacts; };
-    const std::int32_t a = store_of(place).a[place.index];
+    const std::int32_t a = row_of(place);
     const Partner b = partner_of(place);
-    queue_.push_back({time, place, a, b.stored(), impacts_of(a), place.is_support ? 0 : impacts_of(b.row())});
+    queue_.push_back({time, place, a, b.stored(), paths_.impacts_of(a),
+                      place.is_support() ? 0 : paths_.impacts_of(b.row())});
     std::push_heap(queue_.begin(), queue_.end(), Later{});
 }
 
@@ -253,9 +229,9 @@ void Impacts<Real>::look_at_pair(Place place, const Mover& a, const Mover& b, do
 /// Likewise of a disc and what supports it.
 template <class Real>
 void Impacts<Real>::look_at_support(Place place, double from) {
-    const Mover& a = mover_of(supports_->a[place.index]);
+    const Mover& a = paths_.of(supports_->a[place.index]);
     const Partner other = partner_of(place);
-    if (other.is_body()) return look_at_pair(place, a, other_of(place, other), from);
+    if (other.is_body()) return look_at_pair(place, a, paths_.of_any(other.row()), from);
     const Clearance c = clearance_of(place, a);
     const double speed = -(c.rate + from * c.acceleration), left = bodies_->h - from;
     if (!(speed > 0) && !(is_impact(place) && c.acceleration < 0)) return;
@@ -263,63 +239,88 @@ void Impacts<Real>::look_at_support(Place place, double from) {
         foresee(place, wall_impact_time(c.width, c.rate, c.acceleration, {from, bodies_->h, 0}));
 }
 
+template <class Real>
+void Impacts<Real>::look_at(Place place, double from) {
+    if (place.is_support())
+        look_at_support(place, from);
+    else
+        look_at_pair(place, paths_.of(row_of(place)), paths_.of(partner_of(place).row()), from);
+}
+
+/// Calls fn(place, row of the other one).
+template <class Real>
+template <class Fn>
+void Impacts<Real>::for_each_stranger_of(std::int32_t row, const Fn& fn) const {
+    for (std::int32_t n = first_strangers_[static_cast<std::size_t>(row)]; n >= 0;) {
+        const Strangers& pair = strangers_[static_cast<std::size_t>(n)];
+        const bool is_a = pair.a == row;
+        fn(Place{static_cast<std::uint32_t>(n) & kIndexBits, kStrangers}, is_a ? pair.b : pair.a);
+        n = is_a ? pair.next_a : pair.next_b;
+    }
+}
+
+template <class Real>
+bool Impacts<Real>::is_known(std::int32_t row, std::int32_t other) const {
+    for (const auto& entry : of_pairs_.of(static_cast<std::size_t>(row)))
+        if (entry.other == other) return true;
+    bool is_known = false;
+    for_each_stranger_of(row, [&](Place, std::int32_t known) { is_known = is_known || known == other; });
+    return is_known;
+}
+
+/// A body that leaves its margin may hit bodies that are no candidates.
+template <class Real>
+void Impacts<Real>::find_strangers(std::int32_t row, double from) {
+    const Mover& self = paths_.of(row);
+    const double left = dt_ - bodies_->elapsed - from;
+    const Vec2 way = left * self.velocity_at(from) + (0.5 * left * left) * gravity_;
+    const Vec2 end = self.position_at(from) + way;
+    const double overshoot = neighbours_->overshoot_of(row, self.radius, end);
+    if (!(overshoot > 0)) return;
+    overshoot_ = std::fmax(overshoot_, overshoot);
+    const double reach = self.radius + overshoot_ + std::sqrt(length_squared(way));
+    const std::size_t found = neighbours_->find_around(static_cast<std::size_t>(row), reach, end, near_rows_);
+    for (std::size_t k = 0; k < found; ++k) {
+        const std::int32_t other = near_rows_[k];
+        if (other == row || world_->bodies.is_immovable(static_cast<std::size_t>(other)) ||
+            is_known(row, other))
+            continue;
+        const auto number = static_cast<std::int32_t>(strangers_.size());
+        const std::int32_t a = std::min(row, other), b = std::max(row, other);
+        strangers_.push_back({a, b, first_strangers_[static_cast<std::size_t>(a)],
+                              first_strangers_[static_cast<std::size_t>(b)]});
+        first_strangers_[static_cast<std::size_t>(a)] = first_strangers_[static_cast<std::size_t>(b)] =
+            number;
+    }
+}
+
 /// What a deflected body may hit next.
 template <class Real>
 void Impacts<Real>::look_at_all_of(std::int32_t row, double from) {
-    const Mover& self = mover_of(row);
-    for (const auto& entry : of_pairs_.of(static_cast<std::size_t>(row))) {
-        const Mover& other = mover_of(entry.other);
-        look_at_pair({entry.contact & kIndexBits, false}, self, other, from);
-    }
+    find_strangers(row, from);
+    const Mover& self = paths_.of(row);
+    for (const auto& entry : of_pairs_.of(static_cast<std::size_t>(row)))
+        look_at_pair({entry.contact & kIndexBits, kPair}, self, paths_.of(entry.other), from);
+    for_each_stranger_of(
+        row, [&](Place place, std::int32_t other) { look_at_pair(place, self, paths_.of(other), from); });
     for (const auto& entry : of_supports_.of(static_cast<std::size_t>(row)))
-        look_at_support({entry.contact & kIndexBits, true}, from);
-}
-
-/// Takes the cost of an impact from the budgets of its bodies. @return whether both had enough left
-template <class Real>
-bool Impacts<Real>::spend(Place place, double restitution, double speed) {
-    bool has_enough = true;
-    const auto pay = [&](std::int32_t row) {
-        if (world_->bodies.is_immovable(static_cast<std::size_t>(row))) return;
-        Tally& tally = tally_of(row);
-        ++movers_[static_cast<std::size_t>(row)].impacts;
-        has_enough = has_enough && tally.spent < kBudget;
-        double cost = std::fmin(1, kCostOfLoss * (1 - restitution)) + kCostOfOne;
-        if (speed > kFastShare * static_cast<double>(tally.fastest)) cost *= kCostOfFast;
-        tally.spent += static_cast<float>(cost);
-        tally.fastest = std::max(tally.fastest, static_cast<float>(speed));
-    };
-    pay(store_of(place).a[place.index]);
-    if (!place.is_support) pay(pairs_->b[place.index]);
-    return has_enough;
-}
-
-/// Whether a body of the contact has spent all of its budget and more.
-template <class Real>
-bool Impacts<Real>::is_exhausted(Place place) {
-    const auto is_over = [&](std::int32_t row) { return tally_of(row).spent >= kBudget + kOverdraft; };
-    return is_over(store_of(place).a[place.index]) || (!place.is_support && is_over(pairs_->b[place.index]));
+        look_at_support({entry.contact & kIndexBits, kSupport}, from);
 }
 
 /// The sweeps of the next substeps see it from now on.
 template <class Real>
 void Impacts<Real>::make_contact(Place place, Vec2 normal, double gap, double time) {
+    if (!place.has_row() || !is_impact(place)) return;
     ContactRows<Real>& rows = store_of(place);
-    if (!is_impact(place)) return;
-    const auto moved_by = [&](std::int32_t number) {
-        const auto row = static_cast<std::size_t>(number);
-        return mover_of(number).position_at(time) -
-               Vec2{bodies_->origin[4 * row], bodies_->origin[4 * row + 1]};
-    };
-    if (place.is_support && !partner_of(place).is_body()) {
+    if (place.is_support() && !partner_of(place).is_body()) {
         rows.separation[place.index] = rows.clearance[place.index];
         return;
     }
-    Vec2 relative = -1.0 * moved_by(rows.a[place.index]);
-    if (!place.is_support) relative += moved_by(rows.b[place.index]);
+    Vec2 relative = -1.0 * paths_.displacement_of(rows.a[place.index], time);
+    if (!place.is_support()) relative += paths_.displacement_of(rows.b[place.index], time);
     double separation = gap - dot(relative, normal);
-    if (place.is_support) {
-        const double surface = dot(other_of(place, partner_of(place)).v, normal);
+    if (place.is_support()) {
+        const double surface = dot(paths_.of_any(partner_of(place).row()).v, normal);
         rows.surface_normal[place.index] = static_cast<Real>(surface);
         separation -= surface * (bodies_->elapsed + time);
     }
@@ -328,76 +329,46 @@ void Impacts<Real>::make_contact(Place place, Vec2 normal, double gap, double ti
     rows.separation[place.index] = static_cast<Real>(separation);
 }
 
-/// Gives a body its new velocity at a time in the substep: the records are of the substep's end, and the
-/// displacement makes up for the time in which the body did not have it yet.
-template <class Real>
-void Impacts<Real>::change(std::int32_t number, const DoubleBody& before, const DoubleBody& after,
-                           double time, double& gravity_work) {
-    const auto row = static_cast<std::size_t>(number);
-    if (row >= bodies_->count || bodies_->velocity[4 * row + 3] == 0) return;
-    const Vec2 acceleration = mover_of(number).acceleration;
-    const auto add = [](Real& velocity, Real* start, Real& moved, double added, Real decay, double at) {
-        const Real old = velocity;
-        velocity = static_cast<Real>(static_cast<double>(old) + added);
-        const Real really = velocity - old;
-        // What contacts did in this substep they will do again in the next one; this not.
-        *start = decay == Real(1) ? velocity - (old - *start) : *start + really / decay;
-        moved -= static_cast<Real>(at * static_cast<double>(really));
-        return static_cast<double>(really);
-    };
-    Real* record = bodies_->velocity + 4 * row;
-    const Vec2 added{add(record[0], bodies_->start.x + row, bodies_->displacement[2 * row],
-                         after.record[0] - before.record[0], bodies_->decay, time),
-                     add(record[1], bodies_->start.y + row, bodies_->displacement[2 * row + 1],
-                         after.record[1] - before.record[1], bodies_->decay, time)};
-    if (bodies_->turn && after.record[2] != before.record[2])
-        add(record[2], bodies_->start.rim + row, bodies_->turn[row], after.record[2] - before.record[2],
-            bodies_->spin_decay, time);
-    gravity_work +=
-        static_cast<double>(world_->bodies.mass[row]) * dot(acceleration, added) * (bodies_->h - time);
-    movers_[row].substep = 0;  // it moves otherwise from now on
-}
-
 template <class Real>
 bool Impacts<Real>::carry_out(Place place, double time, Books& books, double& gravity_work) {
-    ContactRows<Real>& rows = store_of(place);
-    const std::size_t i = place.index;
-    const std::int32_t row_a = rows.a[i];
+    const std::int32_t row_a = row_of(place);
     const Partner other = partner_of(place);
-    const Mover mover_a = mover_of(row_a);
-    DoubleBody a = body_of(row_a, mover_a, time);
-    Vec2 n{rows.normal_x[i], rows.normal_y[i]};
+    const Mover mover_a = paths_.of(row_a);
+    DoubleBody a = body_of(paths_.record_of(row_a, mover_a, time)), b{{{0, 0, 0, 0}}};
+    Vec2 n;
     double gap = 0;
-    DoubleBody b{{{0, 0, 0, 0}}};
     if (other.is_body()) {
-        const Mover mover_b = other_of(place, other);
-        b = body_of(other.row(), mover_b, time);
+        const Mover mover_b = paths_.of_any(other.row());
+        b = body_of(paths_.record_of(other.row(), mover_b, time));
         const Vec2 d = mover_b.position_at(time) - mover_a.position_at(time);
         const double distance = std::sqrt(length_squared(d));
         n = distance > 0 ? (1 / distance) * d
                          : normal_of_coincident(static_cast<std::uint32_t>(row_a),
                                                 static_cast<std::uint32_t>(other.row()));
         gap = distance - mover_a.radius - mover_b.radius;
+    } else {
+        n = {supports_->normal_x[place.index], supports_->normal_y[place.index]};
     }
-    const double noise =
-        noise_of<Real>({a.record[0], a.record[1]}, other.is_body() ? Vec2{b.record[0], b.record[1]} : Vec2{});
+    const double noise = noise_of<Real>({a.record[0], a.record[1]}, {b.record[0], b.record[1]});
     ContactTerms<double> terms{};
     terms.nx = n.x, terms.ny = n.y;
-    const auto value = [i](const Column<Real>& column, double uniform) {
-        return column.empty() ? uniform : static_cast<double>(column[i]);
+    set_materials(place, terms);
+    const auto for_each_mover = [&](const auto& fn) {
+        fn(row_a);
+        if (!place.is_support()) fn(other.row());
     };
-    if (bodies_->turn) {
-        terms.friction = value(rows.friction, bodies_->uniform_friction);
-        terms.rolling = rows.rolling_impulse.empty() ? 0 : value(rows.rolling, bodies_->uniform_rolling);
-    }
-    terms.of_a = value(rows.rolling_share, 0.5);
     const auto collide = [&](auto& side) {
         const double speed = -normal_velocity(a, side, n.x, n.y);
         if (!(speed > noise)) return false;
-        if (is_exhausted(place)) return make_contact(place, n, gap, time), false;
+        bool has_enough = true, is_exhausted = false;
+        for_each_mover([&](std::int32_t row) {
+            has_enough = has_enough && budget_.has_enough(row);
+            is_exhausted = is_exhausted || budget_.is_exhausted(row);
+        });
+        if (is_exhausted) return make_contact(place, n, gap, time), false;
         const double called_for = restitution_of(place);
-        const bool has_enough = spend(place, called_for, speed);
         const bool bounces = has_enough && speed > rest_speed_;
+        for_each_mover([&](std::int32_t row) { budget_.spend(row, called_for, speed); });
         ++counters.impacts;
         counters.of_walls += other.is_wall(), counters.inelastic += !bounces;
         terms.mass = 1 / inverse_mass(a, side);
@@ -408,8 +379,8 @@ bool Impacts<Real>::carry_out(Place place, double time, Books& books, double& gr
                      rolling = rolling_velocity(a, side, terms.of_a);
         ContactImpulses<double> j{0, 0, 0};
         solve_contact<kEveryEffect>(a, side, terms, j, [](double wanted) { return wanted; });
-        change(row_a, before_a, a, time, gravity_work);
-        if (other.is_body()) change(other.row(), before_b, b, time, gravity_work);
+        gravity_work += paths_.change(row_a, difference(a, before_a), time);
+        if (!place.is_support()) gravity_work += paths_.change(other.row(), difference(b, before_b), time);
         if (!bounces) make_contact(place, n, gap, time);
 
         const auto of_both = [](double before, double after) { return 0.5 * (before + after); };
@@ -418,7 +389,7 @@ bool Impacts<Real>::carry_out(Place place, double time, Books& books, double& gr
         books.restitution += j.normal * of_both(-speed, normal_velocity(a, side, n.x, n.y));
         books.friction += j.tangent * of_both(slip, tangent_velocity(a, side, n.x, n.y)) +
                           j.rolling * of_both(rolling, rolling_velocity(a, side, terms.of_a));
-        if (!place.is_support) return true;
+        if (!place.is_support()) return true;
         const Vec2 t{-n.y, n.x};
         (other.is_wall() ? books.wall_momentum : books.immovable_momentum) -= j.normal * n + j.tangent * t;
         DoubleBody still{{{0, 0, 0, 0}}};  // seen from it, what the support does is its own motion
@@ -427,42 +398,33 @@ bool Impacts<Real>::carry_out(Place place, double time, Books& books, double& gr
                        j.rolling * rolling_velocity(still, side, terms.of_a);
         return true;
     };
-    if (other.is_body()) {
-        return collide(b);
-    } else {
-        DoubleSurface surface{static_cast<double>(rows.surface_normal[i]),
-                              static_cast<double>(rows.surface_tangent[i]), value(rows.surface_rolling, 0)};
-        return collide(surface);
-    }
+    if (other.is_body()) return collide(b);
+    const auto value = [&](const Column<Real>& column) {
+        return column.empty() ? 0 : static_cast<double>(column[place.index]);
+    };
+    DoubleSurface surface{value(supports_->surface_normal), value(supports_->surface_tangent),
+                          value(supports_->surface_rolling)};
+    return collide(surface);
 }
 
 template <class Real>
 void Impacts<Real>::carry_out_all(const SubstepBodies<Real>& bodies, Books& books, double& gravity_work) {
     bodies_ = &bodies;
-    queue_.clear();
-    const std::size_t found = impacts_.size();
+    const std::size_t found = impacts_.size(), strangers = strangers_.size();
     if (found == 0) return;
-    ++substep_;
-    tallies_.resize(std::max(tallies_.size(), bodies.count));
-    movers_.resize(std::max(movers_.size(), bodies.count));
-    for (std::size_t i = 0; i < found; ++i) {
-        const Place place = impacts_[i];
-        if (!is_impact(place)) continue;
-        if (place.is_support)
-            look_at_support(place, 0);
-        else
-            look_at_pair(place, mover_of(pairs_->a[place.index]), mover_of(pairs_->b[place.index]), 0);
-    }
+    queue_.clear();
+    paths_.begin_substep(*world_, bodies, gravity_);
+    for (std::size_t i = 0; i < found; ++i)
+        if (is_impact(impacts_[i])) look_at(impacts_[i], 0);
+    for (std::size_t i = 0; i < strangers; ++i)
+        look_at({static_cast<std::uint32_t>(i) & kIndexBits, kStrangers}, 0);
     while (!queue_.empty()) {
         std::pop_heap(queue_.begin(), queue_.end(), Later{});
         const Event event = queue_.back();
         queue_.pop_back();
         const Partner other(event.b);
-        const auto is_void = [&](std::int32_t row, std::uint32_t impacts) {
-            return movers_[static_cast<std::size_t>(row)].impacts != impacts;
-        };
-        if (is_void(event.a, event.impacts_a) ||
-            (!event.place.is_support && is_void(other.row(), event.impacts_b)))
+        if (paths_.impacts_of(event.a) != event.impacts_a ||
+            (!event.place.is_support() && paths_.impacts_of(other.row()) != event.impacts_b))
             continue;
         if (known_version_ != version_) of_pairs_.find(*pairs_, bodies.count, true);
         known_version_ = version_;
@@ -470,15 +432,16 @@ void Impacts<Real>::carry_out_all(const SubstepBodies<Real>& bodies, Books& book
         are_supports_known_ = true;
         if (!carry_out(event.place, event.time, books, gravity_work)) continue;
         look_at_all_of(event.a, event.time);
-        if (!event.place.is_support) look_at_all_of(other.row(), event.time);
+        if (!event.place.is_support()) look_at_all_of(other.row(), event.time);
     }
 }
 
 template <class Real>
 std::size_t Impacts<Real>::bytes() const {
-    return impacts_.capacity() * sizeof(Place) + queue_.capacity() * sizeof(Event) +
-           tallies_.capacity() * sizeof(Tally) + movers_.capacity() * sizeof(Mover) + of_pairs_.bytes() +
-           of_supports_.bytes();
+    return impacts_.capacity() * sizeof(Place) + strangers_.capacity() * sizeof(Strangers) +
+           first_strangers_.capacity() * sizeof(std::int32_t) + near_rows_.bytes() +
+           queue_.capacity() * sizeof(Event) + of_pairs_.bytes() + of_supports_.bytes() + paths_.bytes() +
+           budget_.bytes();
 }
 
 template class Impacts<float>;

@@ -90,9 +90,8 @@ void SoftSolver<Real>::solve_uneven_contacts() {
 }
 
 template <class Real>
-void SoftSolver<Real>::mark_impacts(const WorldState<Real>& world) {
-    impacts.mark(world, graph.pairs, graph.version, supports_, graph.supports, terms_.dt, terms_.substep_dt,
-                 terms_.gravity_change);
+void SoftSolver<Real>::mark_impacts(const WorldState<Real>& world, const Candidates<Real>& neighbours) {
+    impacts.mark(world, view(), neighbours);
 }
 
 template <class Real>
@@ -109,9 +108,7 @@ void SoftSolver<Real>::carry_out_impacts(const Column<Real>& motion, Books& book
                                      real(terms_.gravity_change.x),
                                      real(terms_.gravity_change.y),
                                      real(terms_.decay),
-                                     real(terms_.spin_decay),
-                                     settings_.friction,
-                                     settings_.rolling};
+                                     real(terms_.spin_decay)};
     impacts.carry_out_all(bodies, books, books_.gravity_work);
 }
 

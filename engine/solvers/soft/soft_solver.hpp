@@ -65,7 +65,7 @@ class SoftSolver {
     void find_contacts(const WorldState<Real>& world, const EdgeCandidates<Real>& edges, Column<Real>& motion,
                        double dt);
     /// Tells what bounces from what rests (impacts.hpp).
-    void mark_impacts(const WorldState<Real>& world);
+    void mark_impacts(const WorldState<Real>& world, const Candidates<Real>& neighbours);
     /// Whether bodies are gone on which others rested.
     bool has_lost_loads() const { return !graph.lost.empty(); }
     /// Spreads what they carried over other contacts.

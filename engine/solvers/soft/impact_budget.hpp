@@ -1,0 +1,59 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace carom {
+
+/// How many impacts a body may have in a step. A crowd that collapses has ever more of them, ever slower; a
+/// dense gas has many that are as fast as others. So an impact costs the more the more energy it takes, and a
+/// tenth if it is fast beside the step's fastest of the body; elastic ones are nearly free.
+/// docs/decisions/0022-impacts-in-soft.md has the measurements.
+class ImpactBudget {
+  public:
+    /// Nothing is spent yet. @param bodies  rows from zero on
+    void begin_step(std::size_t bodies) {
+        ++step_;
+        tallies_.resize(std::max(tallies_.size(), bodies));
+    }
+    /// Whether a body may still have restitution.
+    bool has_enough(std::int32_t row) { return tally_of(row).spent < kBudget; }
+    /// Whether it has to wait for the sweeps of the next substep.
+    bool is_exhausted(std::int32_t row) { return tally_of(row).spent >= kBudget + kOverdraft; }
+    /// Takes the cost of an impact. @param speed  m/s, along the normal
+    void spend(std::int32_t row, double restitution, double speed) {
+        Tally& tally = tally_of(row);
+        double cost = std::fmin(1, kCostOfLoss * (1 - restitution)) + kCostOfOne;
+        if (speed > kFastShare * static_cast<double>(tally.fastest)) cost *= kCostOfFast;
+        tally.spent += static_cast<float>(cost);
+        tally.fastest = std::max(tally.fastest, static_cast<float>(speed));
+    }
+    std::size_t bytes() const { return tallies_.capacity() * sizeof(Tally); }
+
+  private:
+    static constexpr float kBudget = 2;
+    /// Spent beyond the budget, on impacts without restitution.
+    static constexpr float kOverdraft = 8;
+    /// The cost for each unit of 1 - e, but at most 1; and what every impact costs besides.
+    static constexpr double kCostOfLoss = 10, kCostOfOne = 0.002;
+    /// Impacts of this share of the fastest are not those of a collapse: they cost less.
+    static constexpr double kFastShare = 0.15, kCostOfFast = 0.1;
+
+    struct Tally {
+        std::uint32_t step = 0;  // of the other two
+        float spent = 0;
+        float fastest = 0;  // m/s
+    };
+    Tally& tally_of(std::int32_t row) {
+        Tally& tally = tallies_[static_cast<std::size_t>(row)];
+        if (tally.step != step_) tally = {step_, 0, 0};
+        return tally;
+    }
+
+    std::vector<Tally> tallies_;
+    std::uint32_t step_ = 0;
+};
+
+}  // namespace carom

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "kernels/contact_arguments.hpp"
+#include "math/vec2_math.hpp"
+#include "state/world_state.hpp"
+
+namespace carom {
+
+/// The bodies of a substep whose contacts are solved, before they move.
+template <class Real>
+struct SubstepBodies {
+    std::size_t count;         ///< rows below it have records, those beyond sleep
+    const Real* origin;        ///< [rows][4]: x, y [m] at the start of the step, and two numbers more
+    Real* velocity;            ///< [rows][4], at the end of the substep
+    StartColumns<Real> start;  ///< velocities at the start of the substep
+    Real* displacement;        ///< [rows][2], m, until the start of the substep
+    Real* turn;                ///< m, at the rim, until the start of the substep; null without rotation
+    double h, elapsed;         ///< s: the substep's length, and the step's time at its start
+    Real gain_x, gain_y;       ///< m/s, what gravity adds in a substep
+    Real decay, spin_decay;    ///< what drag leaves in a substep
+};
+
+/// How a body moves through a substep: by what kernels/advance_bodies.hpp will move it. A cache line.
+struct alignas(64) Mover {
+    Vec2 x, v, acceleration;    // m, m/s, m/s², at the start of the substep
+    double radius = 0;          // m
+    std::uint32_t impacts = 0;  // ever: what was foreseen with another number is void
+    std::uint32_t substep = 0;  // for which this holds
+
+    Vec2 position_at(double t) const { return x + t * v + (0.5 * t * t) * acceleration; }
+    Vec2 velocity_at(double t) const { return v + t * acceleration; }
+};
+/// The paths of bodies through a substep, and how an impact changes them (impacts.hpp). The records of the
+/// bodies are the state; what is kept here is read from them when it is asked for.
+template <class Real>
+class ImpactPaths {
+  public:
+    /// Forgets the paths of the substep before.
+    /// @param gravity  m/s², as drag lets it act
+    void begin_substep(const WorldState<Real>& world, const SubstepBodies<Real>& bodies, Vec2 gravity);
+
+    /// Of a body that is awake.
+    const Mover& of(std::int32_t row);
+    /// Of any body: one that sleeps has no record, and stands.
+    Mover of_any(std::int32_t row);
+    /// How far a body has moved since the start of the step [m], at a time in the substep.
+    Vec2 displacement_of(std::int32_t row, double time);
+    /// Impacts that a body has had, ever: what was foreseen with another number is void.
+    std::uint32_t impacts_of(std::int32_t row) const {
+        return movers_[static_cast<std::size_t>(row)].impacts;
+    }
+
+    /// Its velocity record at a time in the substep; zeros if it sleeps.
+    std::array<double, 4> record_of(std::int32_t row, const Mover& mover, double time) const;
+    /// Gives a body its new velocity at a time in the substep: the records are of the substep's end, and the
+    /// displacement makes up for the time in which the body did not have it yet.
+    /// @param added  m/s: vx, vy, rim speed
+    /// @return J, what gravity does to the velocity that was added until the end of the substep
+    double change(std::int32_t row, const std::array<double, 3>& added, double time);
+
+    std::size_t bytes() const { return movers_.capacity() * sizeof(Mover); }
+
+  private:
+    Mover path_of(std::size_t row) const;
+
+    const WorldState<Real>* world_ = nullptr;
+    const SubstepBodies<Real>* bodies_ = nullptr;
+    Vec2 gravity_;
+    std::vector<Mover> movers_;
+    std::uint32_t substep_ = 0;
+};
+
+extern template class ImpactPaths<float>;
+extern template class ImpactPaths<double>;
+
+}  // namespace carom
