@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
 
 #include "effects/friction.hpp"
@@ -39,6 +40,9 @@ std::array<double, 3> difference(const DoubleBody& after, const DoubleBody& befo
     for (std::size_t k = 0; k < added.size(); ++k) added[k] = after.record[k] - before.record[k];
     return added;
 }
+
+/// Share of an energy or speed that is not told from zero, in double precision.
+[[maybe_unused]] constexpr double kRoundOff = 1e-9;
 
 constexpr std::uint32_t kIndexBits = 0x3fffffffu;  // of a Place
 
@@ -383,12 +387,15 @@ bool Impacts<Real>::carry_out(Place place, double time, Books& books, double& gr
         if (!place.is_support()) gravity_work += paths_.change(other.row(), difference(b, before_b), time);
         if (!bounces) make_contact(place, n, gap, time);
 
-        const auto of_both = [](double before, double after) { return 0.5 * (before + after); };
+        const double by_normal = impact_work(j.normal, -speed, normal_velocity(a, side, n.x, n.y)),
+                     by_friction = impact_work(j.tangent, slip, tangent_velocity(a, side, n.x, n.y)) +
+                                   impact_work(j.rolling, rolling, rolling_velocity(a, side, terms.of_a));
+        assert(by_normal <= kRoundOff * j.normal * speed && "an impact never adds energy");
+        assert(by_friction <= kRoundOff * j.normal * (speed + std::fabs(slip) + std::fabs(rolling)) &&
+               "friction never adds energy");
         if (other.is_wall()) books.wall_impulse += j.normal;
         if (!books.is_open) return true;
-        books.restitution += j.normal * of_both(-speed, normal_velocity(a, side, n.x, n.y));
-        books.friction += j.tangent * of_both(slip, tangent_velocity(a, side, n.x, n.y)) +
-                          j.rolling * of_both(rolling, rolling_velocity(a, side, terms.of_a));
+        books.restitution += by_normal, books.friction += by_friction;
         if (!place.is_support()) return true;
         const Vec2 t{-n.y, n.x};
         (other.is_wall() ? books.wall_momentum : books.immovable_momentum) -= j.normal * n + j.tangent * t;
