@@ -163,9 +163,36 @@ inline Scene woken_sleepers() {
     return scene;
 }
 
+/// What bounces, each impact at its own time: discs of many restitutions, with friction and without, a
+/// segment, a moving disc, walls.
+inline Scene bouncing_crowd() {
+    Scene scene = gas(100, {0.3, 0.5}, 0.3);
+    scene.name = "bouncing crowd";
+    scene.gravity = {0, -5};
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+        Material& material = scene.bodies[i].material;
+        material.restitution = 0.3 + 0.1 * static_cast<double>(i % 8);
+        material.friction = i % 3 == 0 ? 0 : 0.4;
+        scene.bodies[i].fixed_rotation = i % 7 == 0;
+    }
+    scene.walls->material = {.friction = 0.3, .restitution = 0.9};
+    const double side = scene.walls->max.x;
+    scene.walls->max.x += 6;
+    scene.add({.type = BodyType::static_body,
+               .shape = Segment{{side + 0.5, 2}, {side + 5.5, 4}},
+               .material = {.friction = 0.2, .restitution = 0.8}});
+    scene.add({.type = BodyType::kinematic_body,
+               .shape = Disc{0.8},
+               .position = {side + 2, side / 2},
+               .velocity = {-1, 0.25},
+               .angular_velocity = 5,
+               .material = {.friction = 0.5, .restitution = 0.9}});
+    return scene;
+}
+
 inline std::vector<Scene> golden_scenes() {
-    return {woken_sleepers(), rolling_sizes(), gas(400, {0.5, 0.5}, 1), falling_sizes(), moving_obstacles(),
-            stack_at_rest(),  rough_sizes(),   turning_chain(),         rough_gas()};
+    return {bouncing_crowd(),   woken_sleepers(), rolling_sizes(), gas(400, {0.5, 0.5}, 1), falling_sizes(),
+            moving_obstacles(), stack_at_rest(),  rough_sizes(),   turning_chain(),         rough_gas()};
 }
 
 }  // namespace carom::test

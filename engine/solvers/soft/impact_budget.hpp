@@ -20,6 +20,8 @@ class ImpactBudget {
     }
     /// Whether a body may still have restitution.
     bool has_enough(std::int32_t row) { return tally_of(row).spent < kBudget; }
+    /// Whether it has had so many that it may be in a crowd that collapses.
+    bool may_collapse(std::int32_t row) { return tally_of(row).spent > kCollapsing; }
     /// Whether it has to wait for the sweeps of the next substep.
     bool is_exhausted(std::int32_t row) { return tally_of(row).spent >= kBudget + kOverdraft; }
     /// Takes the cost of an impact. @param speed  m/s, along the normal
@@ -34,6 +36,7 @@ class ImpactBudget {
 
   private:
     static constexpr float kBudget = 2;
+    static constexpr float kCollapsing = 1;
     /// Spent beyond the budget, on impacts without restitution.
     static constexpr float kOverdraft = 8;
     /// The cost for each unit of 1 - e, but at most 1; and what every impact costs besides.

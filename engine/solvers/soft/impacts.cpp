@@ -122,7 +122,9 @@ void Impacts<Real>::mark_in(ContactRows<Real>& rows, Kind kind, std::size_t firs
         const double separation = rows.separation[i];
         if (separation > slack - dt_ * approach) continue;
         const Place place{static_cast<std::uint32_t>(i) & kIndexBits, kind};
-        if (separation < -kOverlap * smaller_radius(place) || !(restitution_of(place) > 0)) continue;
+        // What lies no deeper than it came in one step is an impact that was missed, not a crowd's overlap.
+        const double deepest = std::fmax(kOverlap * smaller_radius(place), -dt_ * approach);
+        if (separation < -deepest || !(restitution_of(place) > 0)) continue;
         rows.separation[i] = kFar<Real>;
         impacts_.push_back(place);
     }
@@ -203,12 +205,27 @@ bool Impacts<Real>::takes_part(Place place, double speed, double left, double no
     return speed * left > kDeepening * smaller_radius(place);
 }
 
+/// The normal that the sweeps know of a deflected body's contact is of another path: with it they would stop
+/// bodies that pass each other. Where nothing presses they are to see no more of it, unless a body is in a
+/// crowd that collapses, in which they are to come between.
+/// @param v  m/s, relative velocity
+template <class Real>
+void Impacts<Real>::hide_from_sweeps(Place place, Vec2 v) {
+    if (is_impact(place) || is_pressed(place) || !(length_squared(v) > rest_speed_ * rest_speed_) ||
+        budget_.may_collapse(row_of(place)) ||
+        (!place.is_support() && budget_.may_collapse(partner_of(place).row())) ||
+        !(restitution_of(place) > 0))
+        return;
+    store_of(place).separation[place.index] = kFar<Real>;
+    impacts_.push_back(place);
+}
+
 /// Foresees the impact of two discs from a time in the substep on.
 template <class Real>
 void Impacts<Real>::look_at_pair(Place place, const Mover& a, const Mover& b, double from) {
     const Vec2 d = b.position_at(from) - a.position_at(from), v = b.velocity_at(from) - a.velocity_at(from);
     const double closing = dot(d, v);
-    if (!(closing < 0)) return;
+    if (!(closing < 0)) return hide_from_sweeps(place, v);
     const Vec2 acceleration = b.acceleration - a.acceleration;
     const double left = bodies_->h - from, reach = a.radius + b.radius, squared = length_squared(d);
     // The distance of points on straight lines shrinks ever more slowly: they meet in time only if
@@ -217,7 +234,7 @@ void Impacts<Real>::look_at_pair(Place place, const Mover& a, const Mover& b, do
     const double nearest = squared + left * closing;
     const bool may_meet = nearest <= 0 || nearest * nearest <= bend * bend * squared;
     const bool is_slow = closing * closing <= rest_speed_ * rest_speed_ * squared;
-    if (!may_meet && is_slow) return;
+    if (!may_meet && is_slow) return hide_from_sweeps(place, v);
     const double speed = squared > 0 ? -closing / std::sqrt(squared) : 0;
     if (!takes_part(place, speed, left, noise_of<Real>(a.velocity_at(from), b.velocity_at(from))) ||
         !may_meet)

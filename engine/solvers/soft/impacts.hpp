@@ -101,6 +101,7 @@ class Impacts {
     void mark_in(ContactRows<Real>& rows, Kind kind, std::size_t first, std::size_t last);
     void foresee(Place place, double time);
     bool takes_part(Place place, double speed, double left, double noise);
+    void hide_from_sweeps(Place place, Vec2 v);
     void look_at_pair(Place place, const Mover& a, const Mover& b, double from);
     void look_at_support(Place place, double from);
     void look_at(Place place, double from);
