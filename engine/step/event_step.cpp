@@ -24,6 +24,10 @@ class EventStep final : public EventSimulation<Real> {
             this->times.start();
             run_stages(kStep, 0, static_cast<Sim&>(*this), this->times);
             this->times.finish();
+            if (this->interruption.has_stopped()) {
+                this->world.time += this->flight_dt;
+                return;
+            }
         }
         this->world.time += dt;
         ++this->step_count;

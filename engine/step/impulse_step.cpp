@@ -45,7 +45,14 @@ class ImpulseStep final : public ImpulseSimulation<Real> {
             const int substeps = this->substeps_for_drag(dt);
             this->flight_dt = dt / substeps;
             this->times.start();
-            for (int i = 0; i < substeps; ++i) run_stages(kSubstep, 0, static_cast<Sim&>(*this), this->times);
+            for (int i = 0; i < substeps; ++i) {
+                this->forget_start_of_substep();
+                if (run_interruptible(kSubstep, 0, static_cast<Sim&>(*this), this->times)) continue;
+                this->take_back_substep();
+                this->world.time += i * this->flight_dt;
+                this->times.finish();
+                return;
+            }
             this->times.finish();
         }
         this->world.time += dt;

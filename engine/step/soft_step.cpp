@@ -80,8 +80,9 @@ class SoftStep final : public SoftSimulation<Real> {
          KernelChoice::scalar_f64, "contacts, velocity records", "impulses, velocity records"},
         {"book_substep", [](Sim& sim) { sim.soft.book_substep(sim.world, sim.world.books); }, has_books,
          KernelChoice::none, "contacts, velocity records", "books"},
-        {"carry_out_impacts", [](Sim& sim) { sim.soft.carry_out_impacts(sim.motion, sim.world.books); },
-         bounces, KernelChoice::scalar_f64, "impacts, velocity records, displacements",
+        {"carry_out_impacts",
+         [](Sim& sim) { sim.soft.carry_out_impacts(sim.motion, sim.world.books, sim.interruption); }, bounces,
+         KernelChoice::scalar_f64, "impacts, velocity records, displacements",
          "velocity records, displacements, contacts, books"},
         {"advance_bodies", [](Sim& sim) { sim.soft.advance_bodies(sim.substep + 1 == sim.substep_count); },
          always, KernelChoice::isa, "velocity records", "velocity records, displacements"},
@@ -130,11 +131,13 @@ class SoftStep final : public SoftSimulation<Real> {
             Sim& sim = *this;
             StageTimes& watch = this->times;
             watch.start();
-            run_stages(kBegin, 0, sim, watch);
-            for (this->substep = 0; this->substep < this->substep_count; ++this->substep)
-                run_stages(kSubstep, kFirstOfSubstep, sim, watch);
-            run_stages(kEnd, kFirstOfEnd, sim, watch);
+            this->keep_start_of_step();
+            bool goes_on = run_interruptible(kBegin, 0, sim, watch);
+            for (this->substep = 0; goes_on && this->substep < this->substep_count; ++this->substep)
+                goes_on = run_interruptible(kSubstep, kFirstOfSubstep, sim, watch);
+            if (goes_on) run_stages(kEnd, kFirstOfEnd, sim, watch);
             watch.finish();
+            if (!goes_on) return this->take_back_step();
         }
         this->world.time += dt;
         ++this->step_count;

@@ -6,6 +6,7 @@
 #include "scene/choose_solver.hpp"
 #include "scene/mass.hpp"
 #include "scene/validation.hpp"
+#include "scene/wording.hpp"
 #include "state/state_hash.hpp"
 #include "step/make_simulation.hpp"
 #include "step/plan.hpp"
@@ -37,6 +38,17 @@ void check_options(const Scene& scene, const WorldOptions& options) {
                                                  std::to_string(kMostThreads) + ".");
 }
 
+/// A step that ended before its time.
+template <class Real>
+[[noreturn]] void throw_early_end(const Simulation<Real>& sim, double begin, double dt) {
+    constexpr std::string_view kWhere = "World::step: ";
+    if (const std::string& exceeded = sim.interruption.exceeded(); !exceeded.empty())
+        throw Error(ErrorCode::given_up, join(kWhere, exceeded));
+    throw Error(ErrorCode::interrupted,
+                join(kWhere, "should_stop ended the step of ", dt, " s from ", begin,
+                     " s on; the world is at ", sim.world.time, " s. It can go on from there."));
+}
+
 /// A body of a world, in messages: by the index of its handle.
 Item item_of(BodyId body) {
     return {"body", "/bodies", static_cast<std::ptrdiff_t>(body.index), ""};
@@ -57,6 +69,14 @@ struct BasicWorld<Real>::Implementation : WorldSettings {
     Bodies<Real>& bodies() { return simulation->world.bodies; }
     std::size_t row_of(BodyId body, std::string_view where) const {
         return simulation->world.handles.row_of(body, where);
+    }
+
+    /// A simulation of another solver in place of the present one, without its state.
+    std::unique_ptr<Simulation<Real>> make_next(Solver solver) {
+        std::unique_ptr<Simulation<Real>> next = make_simulation<Real>(solver);
+        next->kernels = sim().kernels, next->executor = std::move(sim().executor);
+        next->interruption.set_question(sim().interruption.question());
+        return next;
     }
 
     void turn_rotation_on() {
@@ -104,8 +124,7 @@ struct BasicWorld<Real>::Implementation : WorldSettings {
         if (solver == old.solver()) return;
         old.wake_all();  // the others know no sleep
         add_counts(old, of_earlier_solvers);
-        std::unique_ptr<Simulation<Real>> next = make_simulation<Real>(solver);
-        next->kernels = old.kernels, next->executor = std::move(old.executor);
+        std::unique_ptr<Simulation<Real>> next = make_next(solver);
         next->step_count = old.step_count;
         next->substeps_asked_for = substeps.value_or(default_substeps(solver));
         next->set_iterations(iterations);
@@ -216,6 +235,7 @@ BasicWorld<Real>::BasicWorld(const Scene& scene, const WorldOptions& options) {
                                                 : "asked for";
     implementation_->threads = options.threads, implementation_->parallel_for = options.parallel_for;
 
+    sim.interruption.set_question(options.should_stop);
     set_up(sim, scene, options, implementation_->called.effects);
     sim.check_bodies("World");
 }
@@ -228,6 +248,7 @@ BasicWorld<Real>::BasicWorld(const BasicWorld& other) : implementation_(std::mak
     copy.simulation = make_simulation<Real>(original.sim().solver());
     copy.sim().kernels = original.sim().kernels;
     copy.sim().executor = Executor(copy.threads, copy.parallel_for);
+    copy.sim().interruption.set_question(original.sim().interruption.question());
     std::vector<std::byte> bytes(other.state_bytes());
     other.save_state(bytes);
     restore_state(bytes);
@@ -249,12 +270,16 @@ void BasicWorld<Real>::step(double dt) {
     validate_dt(dt, "World::step");
     if (dt == 0) return;
     Simulation<Real>& sim = implementation_->sim();
+    const double begin = sim.world.time;
+    sim.interruption.start();
     const auto step = [&] { sim.step(dt); };
     if (sim.has_long_loops())
         sim.executor.with_team(step);
     else
         step();
     sim.executor.rethrow_host_error();
+    sim.interruption.rethrow();
+    if (sim.interruption.has_stopped()) throw_early_end(sim, begin, dt);
 }
 
 template <class Real>
@@ -444,11 +469,7 @@ template <class Real>
 void BasicWorld<Real>::restore_state(std::span<const std::byte> state) {
     const Solver solver = solver_of_snapshot<Real>(state);
     Implementation& own = *implementation_;
-    if (solver != own.sim().solver()) {
-        std::unique_ptr<Simulation<Real>> next = make_simulation<Real>(solver);
-        next->kernels = own.sim().kernels, next->executor = std::move(own.sim().executor);
-        own.simulation = std::move(next);
-    }
+    if (solver != own.sim().solver()) own.simulation = own.make_next(solver);
     restore_snapshot(own.sim(), own, state);
 }
 

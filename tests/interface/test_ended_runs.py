@@ -81,6 +81,51 @@ class InterruptTest(ProgramTest):
         self.assertFalse(whole["interrupted"])
 
 
+class LongStepTest(ProgramTest):
+    def check_last_moment(self):
+        """Ledger, trajectory and final.csv end at the moment that the step came to."""
+        results = Results(self.folder / "out")
+        summary, ledger, frames = results.summary, results.ledger(), results.trajectory()
+        self.assertTrue(summary["interrupted"])
+        for moment in (ledger["time"][-1], frames["time"][-1]):
+            self.assertEqual(moment, summary["time"])
+        numpy.testing.assert_array_equal(
+            numpy.array([float(row["x"]) for row in results.final], dtype=numpy.float32), frames["position"][-1, :, 0])
+        return summary
+
+    def test_ctrl_c_ends_a_run_within_a_step(self):
+        scene = gas(60, solver="event", steps=3, speed=200.0)
+        scene["step"]["dt"] = 10
+        program = subprocess.Popen([PROGRAM, "run", self.write_scene(scene), "--out", "out", "--quiet"],
+                                   cwd=self.folder, stderr=subprocess.PIPE, text=True)
+        while not (self.folder / "out/ledger.csv.part").exists():
+            time.sleep(0.01)
+        time.sleep(0.5)
+        self.assertIsNone(program.poll())
+        program.send_signal(signal.SIGINT)
+        errors = program.communicate(timeout=60)[1]
+        self.assertEqual(program.returncode, 0, errors)
+        self.assertIn("interrupted after 0 of 3 steps", errors)
+        summary = self.check_last_moment()
+        self.assertEqual(summary["steps"], 0)
+        self.assertGreater(summary["time"], 0)
+        self.assertLess(summary["time"], 10)
+
+    def test_a_step_that_is_given_up_ends_the_run_with_what_it_has(self):
+        scene = gas(1, solver="event", speed=0.0)
+        scene["walls"]["max"] = [10, 4]
+        scene["bodies"] = [
+            {"type": "kinematic", "shape": {"disc": {"radius": 0.5}}, "position": [8, 2], "velocity": [1, 0]},
+            {"shape": {"disc": {"radius": 0.5}}, "position": [9.2, 2]}]
+        done = subprocess.run([PROGRAM, "run", self.write_scene(scene), "--out", "out", "--quiet"], cwd=self.folder,
+                              capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("given up", done.stderr)
+        self.assertIn("body 1 (10000) and body 0 (5000)", done.stderr)
+        summary = self.check_last_moment()
+        self.assertAlmostEqual(summary["time"], 0.5, places=2)
+
+
 class ClosedOutputTest(ProgramTest):
     """The table is lost, the results are not."""
 

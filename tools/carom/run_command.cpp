@@ -44,6 +44,7 @@ int run(Run& asked) {
     if (!asked.out) asked.out = joined("out/", folder_name(scene.name));
     asked.choices.scene_text = text_of_file(asked.scene);
 
+    asked.settings.machine.should_stop = &is_interrupted;
     const auto simulation = make_simulation(scene, asked.settings.machine);
     ResultFolder folder(*asked.out);
     catch_interrupts();
@@ -52,7 +53,7 @@ int run(Run& asked) {
     note_results_in(*asked.out);
     if (!asked.choices.quiet) print_results(asked, scene, *simulation, outcome);
     for (const std::string& message : outcome.messages) std::fprintf(stderr, "carom: %s\n", message.c_str());
-    return outcome.quarantined.empty() ? kDone : kDoubtful;
+    return outcome.quarantined.empty() && !outcome.given_up ? kDone : kDoubtful;
 }
 
 }  // namespace

@@ -21,8 +21,9 @@ struct RunOutcome {
     std::int64_t steps = 0;  ///< taken
     std::int64_t steps_asked = 0;
     bool interrupted = false;
-    double dt = 0;    // s
-    double time = 0;  // s, simulated
+    bool given_up = false;  ///< a step needed more work than its solver allows
+    double dt = 0;          // s
+    double time = 0;        // s, simulated
 
     Plan plan;
     Profile profile;

@@ -1,5 +1,6 @@
 #include "run_scene.hpp"
 
+#include <carom/errors.hpp>
 #include <carom/version.hpp>
 
 #include <algorithm>
@@ -101,19 +102,26 @@ class Recorder {
     }
 
     void record(const Simulation& simulation, std::int64_t step) {
-        if (ledger_) ledger_->append(simulation.ledger(), simulation.profile().impacts);
+        append_row(simulation);
         if (trajectory_ && step % every_ == 0) append_frame(simulation, step);
     }
 
-    /// The last state is always the last frame.
+    /// The last state is always the last frame, and the last row, also where a step ended early.
     void close(const Simulation& simulation, std::int64_t step) {
+        const bool is_between = simulation.time() != last_time_;
+        if (is_between) append_row(simulation);
         if (ledger_) ledger_->close();
         if (!trajectory_) return;
-        if (last_frame_ != step) append_frame(simulation, step);
+        if (last_frame_ != step || is_between) append_frame(simulation, step);
         trajectory_->close();
     }
 
   private:
+    void append_row(const Simulation& simulation) {
+        if (ledger_) ledger_->append(simulation.ledger(), simulation.profile().impacts);
+        last_time_ = simulation.time();
+    }
+
     void append_frame(const Simulation& simulation, std::int64_t step) {
         trajectory_->append(simulation);
         last_frame_ = step;
@@ -121,9 +129,23 @@ class Recorder {
 
     std::int64_t every_;
     std::int64_t last_frame_ = 0;
+    double last_time_ = 0;  // s, of the last row
     std::unique_ptr<LedgerCsv> ledger_;
     std::unique_ptr<TrajectoryH5> trajectory_;
 };
+
+/// @return whether the step came to its end
+bool take_step(double dt, Simulation& simulation, RunOutcome& run) {
+    try {
+        simulation.step(dt);
+        return true;
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::interrupted && error.code() != ErrorCode::given_up) throw;
+        run.given_up = error.code() == ErrorCode::given_up;
+        if (run.given_up) run.messages.push_back(error.what());
+        return false;
+    }
+}
 
 void take_steps(const Scene& scene, Simulation& simulation, Recorder& recorder, bool quiet, RunOutcome& run) {
     ProgressBar progress(scene.step.count, !quiet);
@@ -131,7 +153,7 @@ void take_steps(const Scene& scene, Simulation& simulation, Recorder& recorder, 
     const Clock::time_point start = Clock::now();
     Clock::time_point before = start;
     while (run.steps < scene.step.count && !is_interrupted()) {
-        simulation.step(scene.step.dt);
+        if (!take_step(scene.step.dt, simulation, run)) break;
         const Clock::time_point stepped = Clock::now();
         ++run.steps;
         recorder.record(simulation, run.steps);
@@ -161,7 +183,8 @@ void describe_end(const Scene& scene, const Simulation& simulation, RunOutcome& 
     run.quarantined = simulation.quarantined();
     run.state_hash = simulation.state_hash();
     if (run.interrupted)
-        run.messages.push_back(format("interrupted after %lld of %lld steps; the results are those so far",
+        run.messages.push_back(format("%s after %lld of %lld steps; the results are those so far",
+                                      run.given_up ? "ended" : "interrupted",
                                       static_cast<long long>(run.steps),
                                       static_cast<long long>(run.steps_asked)));
     if (!run.quarantined.empty())
@@ -170,8 +193,10 @@ void describe_end(const Scene& scene, const Simulation& simulation, RunOutcome& 
                    "body %zu; see \"quarantined\" in summary.json",
                    run.quarantined.size(), run.bodies, run.quarantined.front()));
     if (run.profile.unresolved_impacts > 0)
-        run.messages.push_back(format("%lld impacts were left to the next step; a shorter step resolves them",
-                                      static_cast<long long>(run.profile.unresolved_impacts)));
+        run.messages.push_back(
+            format("%lld impacts were left to the next step, beyond the limit of solver \"impulse\": bodies "
+                   "may overlap. A shorter step resolves them; for crowds use \"soft\" or \"auto\"",
+                   static_cast<long long>(run.profile.unresolved_impacts)));
 }
 
 /// Drawn from the files that were just written.

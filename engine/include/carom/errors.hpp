@@ -21,6 +21,8 @@ enum class ErrorCode : std::uint8_t {
     wrong_type,       ///< a value of another type than expected (files only)
     missing,          ///< something required that is not there (files only)
     unreadable,       ///< a file that cannot be opened or read
+    interrupted,      ///< a step that `WorldOptions::should_stop` ended
+    given_up,         ///< a step that takes more work than its solver allows for the bodies there are
 };
 
 /// One thing that is wrong with a description, in pieces, so that a reader of files can say where it stands
@@ -31,8 +33,9 @@ struct Problem {
     std::string statement;  ///< what: `body 3 ("ball") has radius -0.4 m; expected ...`
 };
 
-/// The one exception type of the library. Thrown at the door only (scene building, `World` calls), never
-/// while stepping; what the call would have changed is then unchanged.
+/// The one exception type of the library. Thrown at the door only (scene building, `World` calls); what the
+/// call would have changed is then unchanged. Only a step that ended early (interrupted, given_up) may have
+/// come a part of its way: `World::step` says how far.
 ///
 /// `what()` says where, which item, its value, the limit and the remedy, e.g.
 /// `Scene: body 3 ("ball") has radius -0.4 m; expected 0 < radius <= 1e+06 m. Give lengths in metres.`

@@ -22,6 +22,11 @@ namespace carom {
 /// next of these does.
 using ParallelFor = std::function<void(std::size_t count, const std::function<void(std::size_t)>& task)>;
 
+/// Asked within a step, on the thread that called it, after every millisecond or so of work: true ends the
+/// step. Short steps do not ask. How often depends on the work alone, not on time, threads or instruction
+/// sets. What it throws ends the step, too, and comes out of `World::step`.
+using ShouldStop = std::function<bool()>;
+
 /// How a world runs; what is left out comes from the scene, then from the defaults.
 struct WorldOptions {
     std::optional<Solver> solver{};
@@ -31,6 +36,7 @@ struct WorldOptions {
         "auto";       ///< "auto" (or CAROM_ISA from the environment), "scalar", "sse2", "avx2", "avx512"
     int threads = 0;  ///< 0: as many as OpenMP gives; results do not depend on it
     ParallelFor parallel_for{};  ///< an embedding program's own threads in place of OpenMP
+    ShouldStop should_stop{};    ///< ends a step that is too long; copies of the world ask it, too
     EffectOverrides effects{};   ///< over the scene's own
 };
 
@@ -83,8 +89,13 @@ class BasicWorld {
 
     /// Advances the world by dt.
     /// @param dt  s: 0, which changes no bit of any body, or kSmallestStep ... kLargestStep.
-    /// @throws Error if dt is out of range; the world is then unchanged. What `parallel_for` throws; the
-    /// step has been taken then.
+    /// @throws Error if dt is out of range; the world is then unchanged. Error (interrupted) if
+    /// `WorldOptions::should_stop` said so, or Error (given_up) if solver `event` finds more impacts than a
+    /// step may have; the message names the bodies. The step then ends early: the world is as it was at
+    /// `time()`, whole, and can go on. Under `event` that is the time of the impact that was next, under
+    /// `impulse` the start of the present substep, under `soft` of the step. (Under these two bodies may have
+    /// woken, and forces of contacts at rest are found anew.) What `parallel_for` throws; the step has been
+    /// taken then.
     /// Cost: O(bodies + candidate pairs); no allocation once the world has reached its largest size.
     void step(double dt);
 

@@ -16,6 +16,12 @@ constexpr double kContactRoundOff = 1e-13;
 constexpr double kStillApart = 1e-9;
 constexpr double kRoundOff = 1e-14;
 
+/// Impacts in one advance() beyond which it gives up: docs/decisions/0023-interrupted-steps.md.
+constexpr std::int64_t kMostImpacts = 1000000;
+constexpr std::int64_t kMostImpactsADisc = 10000;
+/// Of so many last impacts before that it is told which discs had them.
+constexpr std::int64_t kTallied = 10000;
+
 }  // namespace
 
 /// The first impact a disc is offered, and when the second would be.
@@ -114,29 +120,69 @@ bool EventDynamics::is_void(const EventForecast& f) const {
            store_.forecasts[static_cast<std::size_t>(f.partner)].impacts != f.partner_impacts;
 }
 
-void EventDynamics::advance(double duration) {
-    while (time_ + duration > longest_clock_) {
-        const double part = std::min(duration, longest_clock_);
+double EventDynamics::advance(double duration, Interruption& interruption) {
+    impacts_left_ = most_impacts();
+    double left = duration;
+    while (time_ + left > longest_clock_) {
+        const double part = std::min(left, longest_clock_);
         restart_clock();
-        run_until(part);
-        duration -= part;
+        if (!run_until(part, interruption)) return duration - (left - time_);
+        left -= part;
     }
-    run_until(time_ + duration);
+    const double begin = time_;
+    return run_until(time_ + left, interruption) ? duration : duration - (left - (time_ - begin));
 }
 
-void EventDynamics::run_until(double end) {
+/// @return whether it came to the end; if not, `time_` is that of the next event
+bool EventDynamics::run_until(double end, Interruption& interruption) {
     while (queue_.first_time() <= end) {
         const std::size_t disc = queue_.first();
         const EventForecast& f = store_.forecasts[disc];
         const double now = f.time();
-        if (f.exit_time < f.impact_time)
+        bool is_over = interruption.is_due_after(Interruption::kImpact);
+        if (is_over) {
+        } else if (f.exit_time < f.impact_time) {
             cross(disc, now);
-        else if (is_void(f))
+        } else if (is_void(f)) {
             forecast(disc, now);
-        else
-            impact(disc, now);
+        } else {
+            is_over = !count_impact(disc);
+            if (!is_over) impact(disc, now);
+        }
+        if (!is_over) continue;
+        time_ = std::max(time_, now);
+        return false;
     }
     time_ = end;
+    return true;
+}
+
+std::int64_t EventDynamics::most_impacts() const {
+    return kMostImpacts + kMostImpactsADisc * static_cast<std::int64_t>(store_.first_immovable);
+}
+
+/// Takes an impact that is due off the limit. @return whether there was one left
+bool EventDynamics::count_impact(std::size_t disc) {
+    if (--impacts_left_ >= kTallied) return true;
+    const std::size_t walls = store_.count();
+    if (impacts_left_ + 1 == kTallied) tally_.assign(walls + store_.laws.walls.size(), 0);
+    if (impacts_left_ < 0) return false;
+    const std::int32_t partner = store_.forecasts[disc].partner;
+    ++tally_[static_cast<std::size_t>(store_.row_of[disc])];
+    ++tally_[partner < 0 ? walls + static_cast<std::size_t>(-1 - partner)
+                         : static_cast<std::size_t>(store_.row_of[static_cast<std::size_t>(partner)])];
+    return true;
+}
+
+auto EventDynamics::find_busiest() const -> Busiest {
+    Busiest busiest{kTallied, {}};
+    for (std::size_t i = 0; i < tally_.size(); ++i) {
+        const auto number = static_cast<std::int32_t>(i), walls = static_cast<std::int32_t>(store_.count());
+        if (tally_[i] > 0) busiest.sides.push_back({number < walls ? number : walls - 1 - number, tally_[i]});
+    }
+    const auto more = [](const Busiest::Side& p, const Busiest::Side& q) { return p.impacts > q.impacts; };
+    std::stable_sort(busiest.sides.begin(), busiest.sides.end(), more);
+    return busiest;
 }
 
 /// The contact of a disc and its partner, A the one that can move, or the first of two.
@@ -244,7 +290,8 @@ EventDynamics::State EventDynamics::state(std::size_t row) const {
 
 std::size_t EventDynamics::bytes() const {
     return store_.bytes() + cells_.bytes() + queue_.bytes() + impacts_.bytes() +
-           contacts_.capacity() * sizeof(EventContact) + involved_.capacity() * sizeof(std::int32_t);
+           contacts_.capacity() * sizeof(EventContact) + involved_.capacity() * sizeof(std::int32_t) +
+           tally_.capacity() * sizeof(std::int64_t);
 }
 
 }  // namespace carom

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "parallel/interruption.hpp"
 #include "solvers/event/event_cells.hpp"
 #include "solvers/event/event_impacts.hpp"
 #include "solvers/event/event_queue.hpp"
@@ -45,7 +46,32 @@ class EventDynamics {
 
     /// Carries out everything within the next `duration` [s]. Nothing but round-off depends on where it
     /// stops: the same impacts at the same times follow, whatever the stops in between.
-    void advance(double duration);
+    /// @param interruption  of the step; asked after each event; it ends, too, if there are more impacts
+    /// than most_impacts()
+    /// @return s, until where it came: the whole duration, or the time of the event that was next
+    double advance(double duration, Interruption& interruption);
+    /// The same where nothing interrupts it.
+    double advance(double duration) {
+        Interruption none;
+        return advance(duration, none);
+    }
+    /// Whether the last advance() ended because it had more than most_impacts().
+    bool has_given_up() const { return impacts_left_ < 0; }
+
+    /// Impacts that are carried out in one call of advance(): a million, and ten thousand for each disc that
+    /// can move.
+    std::int64_t most_impacts() const;
+
+    /// Those that had most of the last impacts of an advance() that gave up: rows, most first.
+    struct Busiest {
+        std::int64_t impacts = 0;  ///< how many the last are
+        struct Side {
+            std::int32_t row;      ///< or -1 - side of the walls
+            std::int64_t impacts;  ///< of these
+        };
+        std::vector<Side> sides;
+    };
+    Busiest find_busiest() const;
 
     struct State {
         Vec2 position, velocity;
@@ -73,7 +99,8 @@ class EventDynamics {
         double now;
     };
 
-    void run_until(double time);
+    bool run_until(double time, Interruption& interruption);
+    bool count_impact(std::size_t disc);
     void restart_clock();
     void set_scales();
     double find_cell_radius(Vec2 box) const;
@@ -125,6 +152,8 @@ class EventDynamics {
     double longest_clock_ = 0;               // s
     double cell_radius_ = 0;                 // m, the largest that is not "large"
     std::int64_t sorted_at_ = 0;             // impacts when the discs were last sorted
+    std::int64_t impacts_left_ = 0;          // of this advance
+    std::vector<std::int64_t> tally_;        // [rows, then walls], of the last impacts before it gives up
 };
 
 }  // namespace carom

@@ -1,5 +1,6 @@
 #include "solvers/event/event_simulation.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "effects/touching.hpp"
@@ -85,6 +86,26 @@ void hand_over(EventSimulation<Real>& sim) {
     sim.events.load(bodies, laws_of(sim.world.walls, sim.world.gravity));
 }
 
+/// Ends the step with the words that its error will have.
+template <class Real>
+void give_up(EventSimulation<Real>& sim, double dt) {
+    const EventDynamics::Busiest busiest = sim.events.find_busiest();
+    const auto label = [&](std::int32_t row) -> std::string {
+        if (row < 0) return "a wall";
+        return label_of(
+            sim.world.bodies.id[static_cast<std::size_t>(sim.event_rows[static_cast<std::size_t>(row)])]);
+    };
+    std::string most;
+    for (std::size_t i = 0; i < std::min<std::size_t>(busiest.sides.size(), 2); ++i)
+        most += join(i == 0 ? "" : " and ", label(busiest.sides[i].row), " (", busiest.sides[i].impacts, ")");
+    sim.interruption.give_up(join(
+        "the step of ", dt, " s from ", sim.world.time, " s on was given up after ", sim.flight_dt,
+        " s, because it has more than ", sim.events.most_impacts(),
+        " impacts, the limit of solver \"event\" for so many bodies. Of the last ", busiest.impacts,
+        " most were of ", most,
+        ". Where bodies are squeezed or come to rest use \"soft\" or \"auto\"; else take a shorter step."));
+}
+
 }  // namespace
 
 template <class Real>
@@ -99,7 +120,9 @@ void run_events(EventSimulation<Real>& sim) {
     WorldState<Real>& world = sim.world;
     if (sim.event_rows.empty()) hand_over(sim);
     sim.events.keep_books(&world.books);
-    sim.events.advance(sim.flight_dt);
+    const double wanted = sim.flight_dt;
+    sim.flight_dt = sim.events.advance(wanted, sim.interruption);
+    if (sim.events.has_given_up()) give_up(sim, wanted);
     if (world.books.is_open)
         world.books.gravity_momentum += (world.dynamic_mass * sim.flight_dt) * world.gravity;
     bool any_lost = false;

@@ -37,7 +37,8 @@ class EventSimulation : public Simulation<Real> {
     }
 };
 
-/// A stage: goes from impact to impact to the end of the step.
+/// A stage: goes from impact to impact to the end of the step, or as far as `sim.interruption` lets it; sets
+/// `sim.flight_dt` to the time that it came.
 template <class Real>
 void run_events(EventSimulation<Real>& sim);
 

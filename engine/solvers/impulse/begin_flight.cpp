@@ -53,7 +53,7 @@ void begin_flight(ImpulseSimulation<Real>& sim) {
     const std::size_t count = world.bodies.count;
     flights.end = flight_clock_at(sim.flight_dt, world.drag.linear);
     flights.bodies = &world.bodies;
-    flights.books = &world.books;
+    flights.books = &world.books, flights.interruption = &sim.interruption;
     flights.walls = world.walls ? &*world.walls : nullptr;
     flights.has_friction = world.effects.friction;
     flights.angular_drag = world.effects.friction ? world.drag.angular : 0;
@@ -76,6 +76,7 @@ void begin_flight(ImpulseSimulation<Real>& sim) {
         });
     quarantine_lost(sim, flights.motion);
     set_accelerations(sim);  // those of bodies that were taken out just now
+    sim.keep_start_of_substep();
 }
 
 template void begin_flight(ImpulseSimulation<float>&);

@@ -11,6 +11,7 @@
 #include "effects/restitution.hpp"
 #include "effects/touching.hpp"
 #include "narrowphase/coincident.hpp"
+#include "parallel/interruption.hpp"
 #include "shapes/walls.hpp"
 #include "state/bodies.hpp"
 #include "state/books.hpp"
@@ -67,6 +68,12 @@ class Flights {
     const Walls* walls = nullptr;
     Bodies<Real>* bodies = nullptr;
     Books* books = nullptr;
+    Interruption* interruption = nullptr;  // of the step; null: none can be
+
+    /// Whether the step is to end here, after so much more work. Loops that may be long ask.
+    bool is_interrupted_after(std::size_t work) const {
+        return interruption && interruption->is_due_after(work);
+    }
 
     double drag() const { return end.drag; }
 

@@ -1,5 +1,8 @@
 #include "solvers/impulse/impulse_simulation.hpp"
 
+#include <algorithm>
+#include <utility>
+
 namespace carom {
 
 template <class Real>
@@ -7,6 +10,26 @@ void ImpulseSimulation<Real>::forget_derived_state() {
     this->candidates.invalidate();
     impulse.forget_contacts();
     impulse.flights.accelerations.clear();
+}
+
+template <class Real>
+void ImpulseSimulation<Real>::keep_start_of_substep() {
+    if (!this->interruption.question()) return;
+    start_.books = this->world.books, has_start_ = true;
+    const Bodies<Real>& bodies = this->world.bodies;
+    if (!bodies.has_rotation) return;
+    start_.angle.assign(bodies.angle.begin(), bodies.angle.begin() + bodies.count);
+    start_.spin.assign(bodies.angular_velocity.begin(), bodies.angular_velocity.begin() + bodies.count);
+}
+
+template <class Real>
+void ImpulseSimulation<Real>::take_back_substep() {
+    if (!std::exchange(has_start_, false)) return;
+    this->world.books = start_.books;
+    Bodies<Real>& bodies = this->world.bodies;
+    std::copy(start_.angle.begin(), start_.angle.end(), bodies.angle.begin());
+    std::copy(start_.spin.begin(), start_.spin.end(), bodies.angular_velocity.begin());
+    forget_derived_state();
 }
 
 template <class Real>
@@ -23,7 +46,8 @@ template <class Real>
 std::size_t ImpulseSimulation<Real>::bytes() const {
     std::size_t bytes = Simulation<Real>::bytes() + sizeof(*this) + impulse.bytes() + wall_rows.bytes() +
                         meetings.capacity() * sizeof(FoundMeeting) +
-                        immovable_turns.capacity() * sizeof(Turn);
+                        immovable_turns.capacity() * sizeof(Turn) +
+                        (start_.angle.capacity() + start_.spin.capacity()) * sizeof(Real);
     for (const auto& of_chunk : chunk_meetings) bytes += of_chunk.capacity() * sizeof(FoundMeeting);
     return bytes;
 }

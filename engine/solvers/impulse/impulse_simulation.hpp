@@ -22,6 +22,13 @@ class ImpulseSimulation : public Simulation<Real> {
     void visit_state(StateWriter& archive) const override { visit_all(*this, archive); }
     void visit_state(StateReader& archive) override { visit_all(*this, archive); }
 
+    void forget_start_of_substep() { has_start_ = false; }
+    /// Keeps what a substep writes before its end, if it may be interrupted. To be called when its rows are
+    /// in their order.
+    void keep_start_of_substep();
+    /// Gives up the present substep: the state is that of its start.
+    void take_back_substep();
+
     struct Turn {
         Real angle, spin;  // rad, rad/s
     };
@@ -34,6 +41,14 @@ class ImpulseSimulation : public Simulation<Real> {
     std::vector<Turn> immovable_turns;                      ///< kept over the turn of all others
 
   private:
+    /// Of the start of the present substep; nothing if no substep has come that far.
+    struct Start {
+        Books books;
+        std::vector<Real> angle, spin;  // rad, rad/s, [rows] or empty
+    };
+    Start start_;
+    bool has_start_ = false;
+
     template <class Self, class Archive>
     static void visit_all(Self& self, Archive& archive) {
         Simulation<Real>::visit_common(self, archive);

@@ -149,6 +149,7 @@ template <class Real>
 void ImpulseSolver<Real>::resolve_impacts() {
     const auto on_tile = [&](std::size_t tile) { prefetch_tile(tile); };
     while (const Impact* next = queue_.next(on_tile)) {
+        if (flights.is_interrupted_after(Interruption::kImpact)) return;
         const Impact first = *next;
         if (budget_ == 0) {
             counters.unresolved_impacts += static_cast<std::int64_t>(queue_.size());
@@ -156,9 +157,9 @@ void ImpulseSolver<Real>::resolve_impacts() {
         }
         queue_.pop();
         if (!is_foreseen_rightly(first)) continue;
-        --budget_;
         moved_.clear();
         take_simultaneous(first);
+        budget_ -= std::min(budget_, std::max<std::size_t>(simultaneous_.size(), 1));
         if (simultaneous_.empty())
             carry_out(first);
         else

@@ -13,6 +13,7 @@ namespace {
 // a pile that is too deep for that converges over several steps.
 constexpr std::size_t kMostUpdates = 1000000;  // updates of single contacts: some 10 ms
 constexpr std::size_t kFewestSweeps = 200;
+constexpr std::size_t kMostSweeps = 10000;  // so that the work is bounded by the contacts there are
 constexpr double kConverged = 1e-13;
 
 // Parts of the rest speed, which is itself a small part of what gravity adds in a step.
@@ -43,8 +44,9 @@ void RestingContacts<Real>::carry(Flights<Real>& flights, std::vector<PressedMee
     };
     for (std::size_t i = 0; i < contacts.size(); ++i) press(i, contacts[i].force);
     const std::size_t most_sweeps =
-        std::max(kFewestSweeps, kMostUpdates / std::max<std::size_t>(contacts.size(), 1));
+        std::clamp(kMostUpdates / std::max<std::size_t>(contacts.size(), 1), kFewestSweeps, kMostSweeps);
     for (std::size_t sweep = 0; sweep < most_sweeps; ++sweep) {
+        if (flights.is_interrupted_after(contacts.size() * Interruption::kUpdate)) return;
         double largest_change = 0, largest = 0;
         for (std::size_t i = 0; i < contacts.size(); ++i) {
             const Meeting m = contacts[i].meeting;

@@ -32,6 +32,7 @@ int separate_overlaps(Flights<Real>& flights, const std::vector<Meeting>& overla
     // A tenth of the slop is as good as there: sweeping on would only move round-off.
     constexpr double kCloseEnough = 0.1 * kSlopFraction;
     for (int sweep = 0; sweep < kSeparationSweeps; ++sweep) {
+        if (flights.is_interrupted_after(overlaps.size() * Interruption::kUpdate)) return 0;
         bool all_there = true;
         for (std::size_t i = 0; i < overlaps.size(); ++i) {
             const Meeting& m = overlaps[i];

@@ -86,10 +86,11 @@ void SimultaneousImpacts<Real>::add_impulses(const Impact& i, const ImpactImpuls
 }
 
 template <class Real>
-void SimultaneousImpacts<Real>::solve(double negligible) {
+void SimultaneousImpacts<Real>::solve(const Flights<Real>& flights, double negligible) {
     double fastest = 0;
     for (const Impact& i : impacts_) fastest = std::fmax(fastest, -i.encounter.normal_velocity);
     for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+        if (flights.is_interrupted_after(impacts_.size() * Interruption::kUpdate)) return;
         double largest_change = 0;
         for (Impact& i : impacts_) {
             const double wanted = i.impulse - (normal_velocity(i) - i.target) / i.inverse_mass_sum;
@@ -104,13 +105,14 @@ void SimultaneousImpacts<Real>::solve(double negligible) {
 
 /// Friction for the normal impulses that were solved before.
 template <class Real>
-void SimultaneousImpacts<Real>::solve_friction(double negligible) {
+void SimultaneousImpacts<Real>::solve_friction(const Flights<Real>& flights, double negligible) {
     double fastest = 0;
     for (Impact& i : impacts_) {
         i.slip_bounced = slip(i);
         fastest = std::fmax(fastest, std::fmax(-i.encounter.normal_velocity, std::fabs(i.slip_bounced)));
     }
     for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+        if (flights.is_interrupted_after(impacts_.size() * Interruption::kUpdate)) return;
         double largest_change = 0;
         for (Impact& i : impacts_) {
             if (!(i.friction > 0 && i.impulse > 0)) continue;
@@ -126,9 +128,9 @@ void SimultaneousImpacts<Real>::solve_friction(double negligible) {
 
 template <class Real>
 void SimultaneousImpacts<Real>::carry_out(Flights<Real>& flights, double negligible) {
-    solve(negligible);
+    solve(flights, negligible);
     for (Impact& i : impacts_) i.normal_velocity_after = normal_velocity(i);
-    if (has_friction_) solve_friction(negligible);
+    if (has_friction_) solve_friction(flights, negligible);
     for (const Impact& i : impacts_) {
         if (i.impulse == 0) continue;
         if (i.friction_impulse == 0)

@@ -57,8 +57,8 @@ class SimultaneousImpacts {
     double normal_velocity(const Impact& i) const;
     double slip(const Impact& i) const;
     void add_impulses(const Impact& i, const ImpactImpulses& added);
-    void solve(double negligible);
-    void solve_friction(double negligible);
+    void solve(const Flights<Real>& flights, double negligible);
+    void solve_friction(const Flights<Real>& flights, double negligible);
 
     std::vector<Impact> impacts_;
     bool has_friction_ = false;

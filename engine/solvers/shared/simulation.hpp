@@ -12,6 +12,7 @@
 #include "broadphase/candidates.hpp"
 #include "isa/kernel_table.hpp"
 #include "parallel/executor.hpp"
+#include "parallel/interruption.hpp"
 #include "state/archive.hpp"
 #include "state/chunked_list.hpp"
 #include "state/world_state.hpp"
@@ -40,7 +41,8 @@ class Simulation {
     Simulation& operator=(const Simulation&) = delete;
 
     virtual Solver solver() const = 0;
-    /// Advances by dt [s], > 0 and within the limits.
+    /// Advances by dt [s], > 0 and within the limits, or by less if `interruption` says so: then the state is
+    /// that of the new time, or of the old one, whole.
     virtual void step(double dt) = 0;
     /// Whether a step has loops that are worth several threads.
     virtual bool has_long_loops() const = 0;
@@ -83,6 +85,7 @@ class Simulation {
     WorldState<Real> world;
     Candidates<Real> candidates;
     Executor executor;
+    Interruption interruption;
     const KernelTable<Real>* kernels = nullptr;
     int substeps_asked_for = 1;  ///< strong drag can make a step take more
     StageTimes times;

@@ -432,7 +432,8 @@ bool Impacts<Real>::carry_out(Place place, double time, Books& books, double& gr
 }
 
 template <class Real>
-void Impacts<Real>::carry_out_all(const SubstepBodies<Real>& bodies, Books& books, double& gravity_work) {
+void Impacts<Real>::carry_out_all(const SubstepBodies<Real>& bodies, Books& books, double& gravity_work,
+                                  Interruption& interruption) {
     bodies_ = &bodies;
     const std::size_t found = impacts_.size(), strangers = strangers_.size();
     if (found == 0) return;
@@ -443,6 +444,7 @@ void Impacts<Real>::carry_out_all(const SubstepBodies<Real>& bodies, Books& book
     for (std::size_t i = 0; i < strangers; ++i)
         look_at({static_cast<std::uint32_t>(i) & kIndexBits, kStrangers}, 0);
     while (!queue_.empty()) {
+        if (interruption.is_due_after(Interruption::kImpact)) return;
         std::pop_heap(queue_.begin(), queue_.end(), Later{});
         const Event event = queue_.back();
         queue_.pop_back();

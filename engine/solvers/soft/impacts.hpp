@@ -8,6 +8,7 @@
 #include "constraints/contact_rows.hpp"
 #include "constraints/contacts_of_bodies.hpp"
 #include "effects/flight.hpp"
+#include "parallel/interruption.hpp"
 #include "solvers/soft/contact_settings.hpp"
 #include "solvers/soft/impact_budget.hpp"
 #include "solvers/soft/impact_paths.hpp"
@@ -47,7 +48,9 @@ class Impacts {
 
     /// Carries out the impacts of a substep.
     /// @param gravity_work  J, gravity's work on velocities, to be booked
-    void carry_out_all(const SubstepBodies<Real>& bodies, Books& books, double& gravity_work);
+    /// @param interruption  of the step: the rest is left if it is to end
+    void carry_out_all(const SubstepBodies<Real>& bodies, Books& books, double& gravity_work,
+                       Interruption& interruption);
 
     /// Rows have changed: which contacts each body is in is found anew.
     void forget() { known_version_ = -1; }

@@ -11,6 +11,13 @@ void SoftSimulation<Real>::forget_derived_state() {
 }
 
 template <class Real>
+void SoftSimulation<Real>::take_back_step() {
+    this->world.books = start_books_;
+    soft.drop_books();
+    forget_derived_state();
+}
+
+template <class Real>
 void SoftSimulation<Real>::remove(std::size_t row) {
     soft.graph.trail.follow_removed(row, this->world.bodies.count - 1);
     const EdgeStore::Removed edges = this->world.remove(row);

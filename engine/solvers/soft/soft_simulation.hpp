@@ -32,6 +32,13 @@ class SoftSimulation : public Simulation<Real> {
     void visit_state(StateWriter& archive) const override { visit_all(*this, archive); }
     void visit_state(StateReader& archive) override { visit_all(*this, archive); }
 
+    /// Keeps what a step writes before its end, if it may be interrupted: the books alone.
+    void keep_start_of_step() {
+        if (this->interruption.question()) start_books_ = this->world.books;
+    }
+    /// Gives up the present step: the state is that of its start.
+    void take_back_step();
+
     /// Where bodies began the present step.
     StepFlight<Real> flight() const {
         return {motion, this->candidates, edge_candidates, this->flight_dt, this->fastest};
@@ -48,6 +55,8 @@ class SoftSimulation : public Simulation<Real> {
     double substep_dt = 0;  ///< s
 
   private:
+    Books start_books_;  // of the present step
+
     template <class Self, class Archive>
     static void visit_all(Self& self, Archive& archive) {
         Simulation<Real>::visit_common(self, archive);

@@ -95,7 +95,8 @@ void SoftSolver<Real>::mark_impacts(const WorldState<Real>& world, const Candida
 }
 
 template <class Real>
-void SoftSolver<Real>::carry_out_impacts(const Column<Real>& motion, Books& books) {
+void SoftSolver<Real>::carry_out_impacts(const Column<Real>& motion, Books& books,
+                                         Interruption& interruption) {
     const auto real = [](double value) { return static_cast<Real>(value); };
     const SubstepBodies<Real> bodies{records_.count(),
                                      motion.data(),
@@ -109,7 +110,7 @@ void SoftSolver<Real>::carry_out_impacts(const Column<Real>& motion, Books& book
                                      real(terms_.gravity_change.y),
                                      real(terms_.decay),
                                      real(terms_.spin_decay)};
-    impacts.carry_out_all(bodies, books, books_.gravity_work);
+    impacts.carry_out_all(bodies, books, books_.gravity_work, interruption);
 }
 
 template <class Real>

@@ -86,7 +86,7 @@ class SoftSolver {
         books_.book_substep(view(), world, books);
     }
     /// Carries out the impacts of a substep.
-    void carry_out_impacts(const Column<Real>& motion, Books& books);
+    void carry_out_impacts(const Column<Real>& motion, Books& books, Interruption& interruption);
     /// Moves the bodies through the substep that was solved.
     void advance_bodies(bool is_last) { records_.advance(is_last, terms_, loops_); }
 
@@ -106,6 +106,9 @@ class SoftSolver {
     void book_displacements(const WorldState<Real>& world, const Column<Real>& motion, Books& books) {
         books_.book_displacements(records_.count(), world, motion, books);
     }
+
+    /// Forgets what was not booked yet of a step that is given up.
+    void drop_books() { books_.gravity_work = 0; }
 
     /// Masses, shapes or rows have changed: what was derived from them is made anew.
     void forget_rows() { masses_.forget(); }

@@ -27,6 +27,7 @@ class Simulation {
   public:
     virtual ~Simulation() = default;
 
+    /// @throws carom::Error (interrupted, given_up) if it ended early; the state is that of time()
     virtual void step(double dt) = 0;
 
     virtual std::size_t body_count() const = 0;
@@ -48,6 +49,7 @@ class Simulation {
 struct MachineSettings {
     std::string isa = "auto";
     int threads = 0;  // 0: as many as there are
+    ShouldStop should_stop{};
 };
 
 /// Makes the simulation the scene asks for.
