@@ -56,10 +56,12 @@ struct SolveContacts {
     Real elapsed;    // s, since the start of the step, at the start of the substep
     Real recovery;   // share of an overlap that one sweep takes away, by displacement
     Real push;       // largest displacement of that kind: m, or of contacts.smaller
+    Real slop;       // overlap that is left, without friction alone: m, or of contacts.smaller
     // Of pairs, in the first sweep.
     Real calm;  // m/s: a contact that changes by no more needs no second sweep; below zero: all need one
-    Real over_relaxation;       // of normal impulses, 1 ... 2
-    Real calm_over_relaxation;  // of those of calm contacts
+    Real over_relaxation;           // of normal impulses, 1 ... 2
+    Real calm_over_relaxation;      // of those of calm contacts
+    Real next_over_relaxation = 1;  // of pairs in the other sweeps, without friction alone
     std::uint8_t*
         needs_second_sweep;  // out, [last / kContactBlock]: set where a contact of the block is not calm
     // The rest is for kernels/coarse_correction.hpp alone.

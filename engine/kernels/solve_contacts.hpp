@@ -59,14 +59,18 @@ template <unsigned kVariant, class Lanes, class Real>
 
 /// The first sweep notes the floor: bodies that are still apart may approach until they touch.
 /// @param separation  m, now
-/// @return how deep they are in each other [m]
-template <class Lanes, class Real>
+/// @return how deep they are in each other [m]; without friction beyond the slop
+template <unsigned kVariant, class Lanes, class Real>
 typename Lanes::Batch begin_contact(const SolveContacts<Real>& k, std::size_t c,
                                     typename Lanes::Batch separation, typename Lanes::Batch& floor) {
     using F = typename Lanes::Batch;
     floor = simd::min(-separation * F(k.inverse_h), F(0));
     Lanes::store(k.contacts.floor + c, floor);
-    return simd::max(-separation, F(0));
+    const F depth = simd::max(-separation, F(0));
+    if constexpr ((kVariant & kRough) != 0) return depth;
+    F slop = F(k.slop);
+    if (k.contacts.smaller) slop *= Lanes::load(k.contacts.smaller + c);
+    return simd::max(depth - slop, F(0));
 }
 
 /// How far the first sweep pushes bodies apart that are in each other, by displacement alone [m], times the
@@ -93,7 +97,7 @@ void note_second_sweep(const SolveContacts<Real>& k, std::size_t c, typename Lan
 }
 
 /// Takes away a share of the overlaps of a batch, by displacing bodies. @return the floors [m/s].
-template <class Lanes, class Real, class A, class B>
+template <unsigned kVariant, class Lanes, class Real, class A, class B>
 [[gnu::always_inline]] inline typename Lanes::Batch part_surfaces(const SolveContacts<Real>& k, std::size_t c,
                                                                   const A& a, const B& b,
                                                                   typename Lanes::Batch nx,
@@ -107,7 +111,7 @@ template <class Lanes, class Real, class A, class B>
         auto moved_b = Lanes::load_rows2(k.displacement, k.contacts.b + c);
         const F now = Lanes::load(k.contacts.separation + c) + (moved_b[0] - moved_a[0]) * nx +
                       (moved_b[1] - moved_a[1]) * ny;
-        const F depth = begin_contact<Lanes>(k, c, now, floor);
+        const F depth = begin_contact<kVariant, Lanes>(k, c, now, floor);
         if (!simd::any(depth > F(0))) return floor;
         const F push = push_of<Lanes>(k, c, mass, depth);
         const F push_a = push * a.inverse_mass(), push_b = push * b.inverse_mass();
@@ -119,7 +123,7 @@ template <class Lanes, class Real, class A, class B>
         auto moved = Lanes::load_rows2(k.displacement, k.contacts.a + c);
         const F now = Lanes::load(k.contacts.separation + c) + b.normal * F(k.elapsed) -
                       (moved[0] * nx + moved[1] * ny);
-        const F depth = begin_contact<Lanes>(k, c, now, floor);
+        const F depth = begin_contact<kVariant, Lanes>(k, c, now, floor);
         if (!simd::any(depth > F(0))) return floor;
         const F push = push_of<Lanes>(k, c, mass, depth);
         const F push_a = push * a.inverse_mass();
@@ -143,7 +147,7 @@ void solve_contacts(const SolveContacts<Real>& arguments, std::size_t first, std
         terms.nx = Lanes::load(k.contacts.normal_x + c), terms.ny = Lanes::load(k.contacts.normal_y + c);
         terms.mass = Lanes::load(k.contacts.mass + c);
         if constexpr (kFirst)
-            terms.floor = part_surfaces<Lanes>(k, c, a, b, terms.nx, terms.ny, terms.mass);
+            terms.floor = part_surfaces<kVariant, Lanes>(k, c, a, b, terms.nx, terms.ny, terms.mass);
         else
             terms.floor = Lanes::load(k.contacts.floor + c);
         terms.tangent_mass = tangent_mass<kVariant>(a, b, terms.mass);
@@ -157,7 +161,8 @@ void solve_contacts(const SolveContacts<Real>& arguments, std::size_t first, std
         ContactImpulses<F> impulses = load_impulses<kVariant, Lanes>(k, c);
         // The first sweep over pairs goes less far where it hardly changes: nothing follows on it there.
         const auto relax = [&](F wanted) {
-            if constexpr (!kFirst || !kOtherMoves) return wanted;
+            if constexpr (!kOtherMoves || (!kFirst && (kVariant & kRough) != 0)) return wanted;
+            if constexpr (!kFirst) return wanted * F(k.next_over_relaxation);
             return wanted * simd::select(simd::abs(wanted) > terms.mass * F(k.calm), F(k.over_relaxation),
                                          F(k.calm_over_relaxation));
         };

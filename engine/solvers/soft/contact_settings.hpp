@@ -22,7 +22,8 @@ inline constexpr double kNearFraction = 0.04;
 struct ContactSettings {
     ContactEffects effects;
     bool has_rotation = false;
-    int iterations = 2;                ///< sweeps a substep, >= 1
+    bool is_smooth_heap = false;  ///< gravity, and no friction: nothing but more sweeps brings it to rest
+    int iterations = 2;           ///< sweeps a substep, >= 1
     double friction = 0, rolling = 0;  ///< coefficients, of contacts that have none of their own
     double radius = 1;                 ///< m, of all bodies; 1 where radii vary
     double fall = 0;                   ///< m, by which gravity brings two bodies nearer in a step
@@ -45,10 +46,22 @@ struct ContactSettings {
     /// @param some_are_fixed  whether some bodies do not turn
     template <class Real>
     const ContactKernels<Real>& kernels_of(const KernelTable<Real>& kernels, bool some_are_fixed) const {
-        if (!effects.friction) return kernels.contacts[0];
+        if (!effects.friction || is_smooth_heap) return kernels.contacts[0];
         return kernels.contacts[(effects.rolling ? 3u : 1u) + (some_are_fixed ? 1u : 0u)];
     }
 };
+
+/// Whether bodies can heap up that nothing but more sweeps brings to rest: there is gravity, and no friction
+/// between bodies, whether or not the effect is on.
+template <class Real>
+bool is_smooth_heap(const WorldState<Real>& world) {
+    const Bodies<Real>& bodies = world.bodies;
+    const auto is_zero = [](const auto& column) {
+        return column.is_uniform() && column.uniform_value() == 0;
+    };
+    return length_squared(world.gravity) > 0 && is_zero(bodies.friction) &&
+           is_zero(bodies.rolling_resistance);
+}
 
 /// Reads effects, coefficients and the radius from the world.
 template <class Real>

@@ -10,6 +10,13 @@ constexpr double kRecovery = 0.4;
 // Of pairs in a substep's first sweep: docs/decisions/0004-soft-solver.md has the measurements.
 constexpr double kOverRelaxation = 1.7;  // of normal impulses
 constexpr double kCalmOverRelaxation = 1.3;
+/// Of pairs in a substep's next sweeps but the last, without friction:
+/// docs/decisions/0023-frictionless-heaps.md.
+constexpr double kSmoothOverRelaxation = 1.7;
+/// Without friction, worlds of kFewestWithSlop bodies leave contacts an overlap of so many smaller radii:
+/// what moves bodies within it would not let them rest. Decision 0023 as well.
+constexpr double kSmoothSlop = 0.005;
+constexpr std::size_t kFewestWithSlop = 64;
 /// A contact is calm if the first sweep changes it by less than gravity does in this share of a substep.
 constexpr double kCalm = 1;
 
@@ -63,12 +70,23 @@ SolveContacts<Real> ContactSweeps<Real>::arguments(const StepView<Real>& step, C
     k.elapsed = real(step.terms.elapsed);
     k.recovery = real(kRecovery), k.push = real(step.settings.largest_correction);
     const double fall = step.terms.fall_speed();
-    k.calm = real(fall > 0 ? kCalm * fall : -1);
+    const bool is_smooth = step.settings.is_smooth_heap;
+    k.calm = real(fall > 0 && !is_smooth ? kCalm * fall : -1);
+    const bool has_slop = is_smooth && step.records.count() >= kFewestWithSlop;
+    k.slop = real(has_slop ? kSmoothSlop * step.settings.radius : 0);
     const bool has_next = step.settings.iterations > 1;  // which takes back what was too much
     k.over_relaxation = has_next ? real(kOverRelaxation) : Real(1);
     k.calm_over_relaxation = has_next ? real(kCalmOverRelaxation) : Real(1);
     k.needs_second_sweep = rows.needs_second_sweep.data();
     return k;
+}
+
+template <class Real>
+auto ContactSweeps<Real>::next(const StepView<Real>& step, Blocks blocks, int times) -> std::array<Sweep, 2> {
+    const ContactKernels<Real>& kernels = *step.loops.contacts;
+    const int relaxed = step.settings.is_smooth_heap ? std::max(times - 1, 0) : 0;
+    return {{{kernels.next_pairs, kernels.next_supports, blocks, relaxed, true},
+             {kernels.next_pairs, kernels.next_supports, blocks, times - relaxed}}};
 }
 
 template <class Real>
@@ -97,11 +115,13 @@ void ContactSweeps<Real>::run(const StepView<Real>& step, std::span<const Sweep>
     using Kind = typename Part::Kind;
     list_parts(sweeps, step.graph);
     const TaskGroups& groups = step.graph.groups;
+    SolveContacts<Real> relaxed = on_pairs;
+    relaxed.next_over_relaxation = static_cast<Real>(kSmoothOverRelaxation);
     const auto part = [&](std::size_t phase, std::size_t task) {
         const Sweep& sweep = *parts_[phase].sweep;
         const Kind kind = parts_[phase].kind;
         const auto pair_group = [&](std::size_t group) {
-            sweep_pairs(step.graph.pairs, group, sweep, on_pairs);
+            sweep_pairs(step.graph.pairs, group, sweep, sweep.is_relaxed ? relaxed : on_pairs);
         };
         const auto support_group = [&](std::size_t group) {
             sweep_supports(step.graph.supports, step.supports, group, sweep, on_supports);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -23,8 +24,13 @@ class ContactSweeps {
     struct Sweep {
         typename ContactKernels<Real>::Solve pair_kernel, support_kernel;
         Blocks blocks = Blocks::all;
-        int times = 1;  ///< that it is repeated, >= 1
+        int times = 1;            ///< that it is repeated, >= 0
+        bool is_relaxed = false;  ///< whether impulses of pairs without friction go farther than wanted
     };
+
+    /// The sweeps after the first: all but the last are over-relaxed where contacts are smooth.
+    /// @param times  how many there are
+    static std::array<Sweep, 2> next(const StepView<Real>& step, Blocks blocks, int times);
 
     /// What kernels are told of contacts of one kind, in a substep.
     /// @param rows  the pairs or the supports of the step
@@ -37,9 +43,9 @@ class ContactSweeps {
     /// Runs the sweeps one after the other.
     void run(const StepView<Real>& step, std::span<const Sweep> sweeps, const SolveContacts<Real>& on_pairs,
              const SolveContacts<Real>& on_supports);
-    /// Runs one sweep, with the arguments that are above.
-    void run(const StepView<Real>& step, const Sweep& sweep) {
-        run(step, {&sweep, 1}, arguments(step, step.graph.pairs), arguments(step, step.supports));
+    /// Runs sweeps with the arguments that are above.
+    void run(const StepView<Real>& step, std::span<const Sweep> sweeps) {
+        run(step, sweeps, arguments(step, step.graph.pairs), arguments(step, step.supports));
     }
 
     std::size_t bytes() const {

@@ -35,8 +35,8 @@ void LoadCorrection<Real>::correct(const StepView<Real>& step, const StepFlight<
                                        flight.candidates.largest_radius(), step.terms.gravity_change,
                                        *step.loops.executor);
     if (is_corrected_) sweeps.run(step, {&scale, 1}, on_pairs, on_supports);
-    sweeps.run(step, {kernels.next_pairs, kernels.next_supports, ContactSweeps<Real>::Blocks::all,
-                      step.settings.iterations - 1});
+    sweeps.run(step, ContactSweeps<Real>::next(step, ContactSweeps<Real>::Blocks::all,
+                                               step.settings.iterations - 1));
 }
 
 template <class Real>

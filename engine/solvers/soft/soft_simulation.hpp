@@ -22,10 +22,8 @@ class SoftSimulation : public Simulation<Real> {
     void wake_at(Vec2 place, double reach) override;
     void wake_all() override;
     std::size_t wake_body(std::size_t row) override;
-    void set_iterations(std::optional<int> wanted) override {
-        soft.iterations = wanted.value_or(kDefaultIterations);
-    }
-    int iterations() const override { return soft.iterations; }
+    void set_iterations(std::optional<int> wanted) override { soft.asked_iterations = wanted; }
+    int iterations() const override { return soft.iterations(this->world); }
     void report(Profile& profile) const override;
     std::size_t bytes() const override;
     void visit_state(StateSize& archive) const override { visit_all(*this, archive); }

@@ -27,8 +27,9 @@ void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Colum
                                       const Vec2 gravity, const KernelTable<Real>& kernels,
                                       const Executor& executor) {
     read_effects(world, settings_);
-    settings_.iterations = iterations;
-    if (masses_.derive(world.bodies, settings_.effects.friction)) pair_finder_.forget(), uneven_.clear();
+    settings_.iterations = iterations(world);
+    if (masses_.derive(world.bodies, settings_.effects.friction && !settings_.is_smooth_heap))
+        pair_finder_.forget(), uneven_.clear();
     loops_ = {&kernels, &settings_.kernels_of(kernels, masses_.some_are_fixed()), &executor, rows_per_task()};
     const FlightClock clock = flight_clock_at(h, world.drag.linear);
     terms_.substep_dt = h, terms_.elapsed = 0;
@@ -58,7 +59,9 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const EdgeCa
 
 template <class Real>
 void SoftSolver<Real>::warm_start() {
-    sweeps_.run(view(), {loops_.contacts->warm_start_pairs, loops_.contacts->warm_start_supports});
+    const typename Sweeps::Sweep give{loops_.contacts->warm_start_pairs,
+                                      loops_.contacts->warm_start_supports};
+    sweeps_.run(view(), {&give, 1});
 }
 
 template <class Real>
@@ -70,13 +73,13 @@ void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
                               on_pairs = Sweeps::arguments(view(), graph.pairs);
     const bool starts_anew = number == 0 && warm_start_.starts_anew();
     // A scene that asks for more sweeps wants contacts solved better: then none is left out.
-    const bool only_restless =
-        !starts_anew && !is_last && !warm_start_.is_rebalanced() && iterations == kDefaultIterations;
-    const int next = iterations - 1;
-    const std::array<typename Sweeps::Sweep, 2> sweeps{
-        {{kernels.first_pairs, kernels.first_supports, Blocks::all_and_mark},
-         {kernels.next_pairs, kernels.next_supports, only_restless ? Blocks::restless : Blocks::all,
-          starts_anew ? std::max(kFirstSweeps, next) : next}}};
+    const bool only_restless = !starts_anew && !is_last && !warm_start_.is_rebalanced() &&
+                               settings_.iterations == kDefaultIterations;
+    const int next = settings_.iterations - 1;
+    const auto others = Sweeps::next(view(), only_restless ? Blocks::restless : Blocks::all,
+                                     starts_anew ? std::max(kFirstSweeps, next) : next);
+    const std::array<typename Sweeps::Sweep, 3> sweeps{
+        {{kernels.first_pairs, kernels.first_supports, Blocks::all_and_mark}, others[0], others[1]}};
     const bool is_first_alone = loads_.begin_substep(view(), number, is_last) || next == 0;
     sweeps_.run(view(), {sweeps.data(), is_first_alone ? std::size_t{1} : sweeps.size()}, on_pairs,
                 on_supports);

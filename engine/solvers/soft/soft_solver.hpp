@@ -24,7 +24,9 @@
 
 namespace carom {
 
-inline constexpr int kDefaultIterations = 2;  // sweeps a substep: docs/decisions/0004-soft-solver.md
+// Sweeps a substep unless asked for.
+inline constexpr int kDefaultIterations = 2;       // docs/decisions/0004-soft-solver.md
+inline constexpr int kIterationsOfSmoothHeap = 5;  // docs/decisions/0023-frictionless-heaps.md
 
 /// What the soft solver counts (the docstrings of Profile say what each means).
 struct SoftCounters {
@@ -55,7 +57,12 @@ class SoftSolver {
     SoftCounters counters;
     /// Sweeps over the contacts a substep, >= 1: a first one and next ones. With 1 the first is not
     /// over-relaxed and loads are not corrected on the coarse grid; with more than 2 no contact is left out.
-    int iterations = kDefaultIterations;
+    /// Not set: as many as suit the world.
+    std::optional<int> asked_iterations;
+    int iterations(const WorldState<Real>& world) const {
+        return asked_iterations.value_or(is_smooth_heap(world) ? kIterationsOfSmoothHeap
+                                                               : kDefaultIterations);
+    }
 
     /// Reads what holds for the step; velocity records of all bodies at its start.
     void begin_substeps(const WorldState<Real>& world, const Column<Real>& motion, double h,

@@ -1,0 +1,105 @@
+// B33 of docs/hard-cases.md: heaps and columns that no friction holds come to rest.
+#include "support/report.hpp"
+#include "support/scenes.hpp"
+
+#include <carom/world.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace carom;
+using namespace carom::test;
+
+namespace {
+
+constexpr double kStep = 1.0 / 60, kGravity = 9.81, kRadius = 0.5;
+constexpr double kLargestRms = 1e-3;  // m/s
+
+/// Discs at fill 0.6 over the floor of a box twice as wide as they are high, let go.
+Scene pile(std::int64_t discs, double smallest, double restitution) {
+    const double mean_square = (smallest * smallest + smallest * kRadius + kRadius * kRadius) / 3;
+    const double area = static_cast<double>(discs) * std::numbers::pi * mean_square / 0.6;
+    const double width = std::sqrt(2 * area);
+    Scene scene;
+    scene.gravity = {0, -kGravity};
+    scene.walls =
+        Walls{.min = {0, 0}, .max = {width, area / width}, .top = false, .material = bouncy(restitution)};
+    Gas gas;
+    gas.count = discs, gas.radius = {smallest, kRadius}, gas.seed = 1;
+    gas.body.material = bouncy(restitution);
+    add_gas(scene, gas);
+    scene.accuracy.solver = Solver::soft;
+    return scene;
+}
+
+/// @param shaft  m, between its sides; 0: there are none
+Scene column(int discs, double shaft) {
+    Scene scene;
+    scene.gravity = {0, -kGravity};
+    scene.walls = floor_at(0);
+    if (shaft > 0) scene.walls = Walls{.min = {-0.5 * shaft, 0}, .max = {0.5 * shaft, 1e3}, .top = false};
+    const double aside = shaft > 0 ? 1e-3 : 0;
+    for (int i = 0; i < discs; ++i)
+        scene.add(disc(kRadius, 1, {i % 2 == 0 ? aside : -aside, kRadius * (2 * i + 1)}));
+    scene.accuracy.solver = Solver::soft;
+    return scene;
+}
+
+template <class Real>
+double rms_speed(const BasicWorld<Real>& world) {
+    const auto bodies = world.bodies();
+    double sum = 0;
+    for (std::size_t i = 0; i < bodies.count; ++i) {
+        const double x = bodies.velocity_x[i], y = bodies.velocity_y[i];
+        sum += x * x + y * y;
+    }
+    return std::sqrt(sum / static_cast<double>(bodies.count));
+}
+
+}  // namespace
+
+TEST_SUITE("hard cases/frictionless heaps") {
+    TEST_CASE_TEMPLATE("B33: a frictionless pile of 1,000 comes to rest", Real, float, double) {
+        for (const double smallest : {kRadius, 0.6 * kRadius}) {
+            BasicWorld<Real> world(pile(1000, smallest, 0), {.threads = 1});
+            for (int i = 0; i < 1800; ++i) world.step(kStep);
+            report("radii from ", smallest, ": rms ", rms_speed(world), " m/s, overlap ",
+                   world.overlaps().max);
+            CHECK(rms_speed(world) < kLargestRms);
+            CHECK(world.overlaps().max < 0.01);
+        }
+    }
+
+    TEST_CASE("B33: frictionless piles sleep") {
+        for (const double restitution : {0.0, 0.5}) {
+            Scene scene = pile(1000, kRadius, restitution);
+            scene.effects.sleep = true;
+            World world(scene, {.threads = 1});
+            for (int i = 0; i < 2400 && world.profile().asleep < 1000; ++i) world.step(kStep);
+            CHECK(world.profile().asleep == 1000);
+        }
+    }
+
+    TEST_CASE_TEMPLATE("B33: a column of 100 lies still after 20 s, alone and in a shaft", Real, float,
+                       double) {
+        for (const double shaft : {0.0, 1.05}) {
+            BasicWorld<Real> world(column(100, shaft), {.threads = 1});
+            double largest = 0;
+            for (int i = 0; i < 1800; ++i) {
+                world.step(kStep);
+                if (i >= 1200) largest = std::fmax(largest, rms_speed(world));
+            }
+            report("shaft ", shaft, " m: rms ", largest, " m/s");
+            CHECK(largest < kLargestRms);
+        }
+    }
+
+    TEST_CASE("a world says how many sweeps its frictionless heaps get, and obeys who asks for others") {
+        CHECK(World(column(3, 0)).plan().iterations == 5);
+        CHECK(World(column(3, 0), {.iterations = 2}).plan().iterations == 2);
+        Scene rough = column(3, 0);
+        for (Body& body : rough.bodies) body.material.friction = 0.1;
+        CHECK(World(rough).plan().iterations == 2);
+    }
+}
