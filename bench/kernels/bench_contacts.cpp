@@ -75,6 +75,7 @@ struct PressedPairs {
                 .elapsed = 0,
                 .recovery = Real(0.1),
                 .push = Real(0.0001),
+                .slop = 0,
                 .calm = 0,
                 .over_relaxation = Real(1.7),
                 .calm_over_relaxation = Real(1.4),

@@ -16,7 +16,7 @@ constexpr double kContactRoundOff = 1e-13;
 constexpr double kStillApart = 1e-9;
 constexpr double kRoundOff = 1e-14;
 
-/// Impacts in one advance() beyond which it gives up: docs/decisions/0023-interrupted-steps.md.
+/// Impacts in one advance() beyond which it gives up: docs/decisions/0024-interrupted-steps.md.
 constexpr std::int64_t kMostImpacts = 1000000;
 constexpr std::int64_t kMostImpactsADisc = 10000;
 /// Of so many last impacts before that it is told which discs had them.

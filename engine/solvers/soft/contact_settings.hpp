@@ -51,16 +51,19 @@ struct ContactSettings {
     }
 };
 
-/// Whether bodies can heap up that nothing but more sweeps brings to rest: there is gravity, and no friction
-/// between bodies, whether or not the effect is on.
+/// Fewer bodies rest with the sweeps that all worlds have, and without keeping an overlap: decision 0023.
+inline constexpr std::size_t kSmallestSmoothHeap = 64;
+
+/// Whether so many bodies can heap up that nothing but more sweeps brings them to rest: there is gravity, and
+/// no friction between bodies, whether or not the effect is on.
 template <class Real>
 bool is_smooth_heap(const WorldState<Real>& world) {
     const Bodies<Real>& bodies = world.bodies;
     const auto is_zero = [](const auto& column) {
         return column.is_uniform() && column.uniform_value() == 0;
     };
-    return length_squared(world.gravity) > 0 && is_zero(bodies.friction) &&
-           is_zero(bodies.rolling_resistance);
+    return bodies.count >= kSmallestSmoothHeap && length_squared(world.gravity) > 0 &&
+           is_zero(bodies.friction) && is_zero(bodies.rolling_resistance);
 }
 
 /// Reads effects, coefficients and the radius from the world.

@@ -13,10 +13,9 @@ constexpr double kCalmOverRelaxation = 1.3;
 /// Of pairs in a substep's next sweeps but the last, without friction:
 /// docs/decisions/0023-frictionless-heaps.md.
 constexpr double kSmoothOverRelaxation = 1.7;
-/// Without friction, worlds of kFewestWithSlop bodies leave contacts an overlap of so many smaller radii:
+/// Without friction, heaps leave contacts an overlap of so many smaller radii:
 /// what moves bodies within it would not let them rest. Decision 0023 as well.
 constexpr double kSmoothSlop = 0.005;
-constexpr std::size_t kFewestWithSlop = 64;
 /// A contact is calm if the first sweep changes it by less than gravity does in this share of a substep.
 constexpr double kCalm = 1;
 
@@ -72,8 +71,7 @@ SolveContacts<Real> ContactSweeps<Real>::arguments(const StepView<Real>& step, C
     const double fall = step.terms.fall_speed();
     const bool is_smooth = step.settings.is_smooth_heap;
     k.calm = real(fall > 0 && !is_smooth ? kCalm * fall : -1);
-    const bool has_slop = is_smooth && step.records.count() >= kFewestWithSlop;
-    k.slop = real(has_slop ? kSmoothSlop * step.settings.radius : 0);
+    k.slop = real(is_smooth ? kSmoothSlop * step.settings.radius : 0);
     const bool has_next = step.settings.iterations > 1;  // which takes back what was too much
     k.over_relaxation = has_next ? real(kOverRelaxation) : Real(1);
     k.calm_over_relaxation = has_next ? real(kCalmOverRelaxation) : Real(1);
