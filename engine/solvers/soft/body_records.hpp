@@ -2,10 +2,10 @@
 
 #include <carom/ledger.hpp>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
-#include "constraints/contact_law.hpp"
 #include "kernels/contact_arguments.hpp"
 #include "solvers/soft/body_masses.hpp"
 #include "solvers/soft/step_terms.hpp"
@@ -46,12 +46,12 @@ class BodyRecords {
     Vec2 end_of(std::size_t row, const StepFlight<Real>& flight) const {
         return flight.start_of(row) + Vec2{displacement[2 * row], displacement[2 * row + 1]};
     }
-    /// Velocity at the start of the substep; its inverse mass is left at zero.
-    DoubleBody start_of_substep(std::int32_t row) const {
+    /// Velocity at the start of the substep [m/s]: vx, vy, rim speed.
+    std::array<double, 3> start_of_substep(std::int32_t row) const {
         const auto value = [i = static_cast<std::size_t>(row)](const Column<Real>& column) {
             return column.empty() ? 0 : static_cast<double>(column[i]);
         };
-        return DoubleBody{{{value(start_x_), value(start_y_), value(start_rim_), 0}}};
+        return {value(start_x_), value(start_y_), value(start_rim_)};
     }
     /// What a row that `end` lists as lost had by the books: the velocity that the impulses gave it, at the
     /// place where it stays.

@@ -97,7 +97,10 @@ void book_kinds(const StepView<Real>& step, const Impulses<Real>& of_supports, c
 /// Velocities at the start of the substep, by row.
 template <class Real>
 auto starts_of_substep(const BodyRecords<Real>& records) {
-    return [&records](std::int32_t row) { return records.start_of_substep(row); };
+    return [&records](std::int32_t row) {
+        const auto [x, y, rim] = records.start_of_substep(row);
+        return DoubleBody{{{x, y, rim, 0}}};  // its mass is not asked for
+    };
 }
 
 }  // namespace
