@@ -41,7 +41,8 @@ std::array<double, 3> difference(const DoubleBody& after, const DoubleBody& befo
     return added;
 }
 
-/// Share of an energy that is round-off: the normals of edges have the length 1 in the world's precision only.
+/// Share of an energy that is round-off: the normals of edges have the length 1 in the world's precision
+/// only.
 [[maybe_unused]] constexpr double kRoundOff = 1e-6;
 
 constexpr std::uint32_t kIndexBits = 0x3fffffffu;  // of a Place
