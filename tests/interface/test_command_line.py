@@ -177,10 +177,8 @@ class OtherCommandsTest(ProgramTest):
 
     def test_help_lists_the_commands_there_are(self):
         text = self.carom("--help").stdout
-        for command in ("run", "explain", "check", "report", "--version"):
+        for command in ("run", "explain", "check", "report", "torture", "--version"):
             self.assertIn(command, text)
-        for later in ("torture",):
-            self.assertNotIn(f"  {later}", text)
         text = self.carom("run", "--help").stdout
         for option in ("--out", "--steps", "--dt", "--solver", "--substeps", "--iterations", "--precision", "--threads",
                        "--isa", "--effects", "--no-report", "--no-trajectory", "--quiet"):
