@@ -97,8 +97,8 @@ void Candidates<Real>::renew_margins(const Bodies<Real>& bodies, const FlightClo
     std::sort(new_pairs_.begin(), new_pairs_.end());
     new_pairs_.erase(std::unique(new_pairs_.begin(), new_pairs_.end()), new_pairs_.end());
     const std::size_t merged = added_pairs_.size() + new_pairs_.size();
-    // Of both lists, which take turns, and for a pair a body: a size that is reached now and then needs no
-    // memory.
+    // Room of both lists, which take turns, and for a pair a body: a size that is reached now and then needs
+    // no memory.
     const std::size_t room = std::bit_ceil(std::max(merged, bodies.count));
     spare_pairs_.reserve(room), added_pairs_.reserve(room);
     spare_pairs_.resize(merged);

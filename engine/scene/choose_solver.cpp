@@ -6,7 +6,8 @@
 namespace carom {
 namespace {
 
-/// Of a pair the larger restitution counts, so what walls and immovable bodies have takes nothing away.
+/// A pair takes the larger restitution of the two, so what walls and immovable bodies have takes nothing
+/// away.
 bool is_inelastic(const Body& body) {
     return body.type == BodyType::dynamic_body && body.material.restitution < 1;
 }

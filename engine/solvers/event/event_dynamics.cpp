@@ -19,7 +19,7 @@ constexpr double kRoundOff = 1e-14;
 /// Impacts in one advance() beyond which it gives up: docs/decisions/0024-interrupted-steps.md.
 constexpr std::int64_t kMostImpacts = 1000000;
 constexpr std::int64_t kMostImpactsADisc = 10000;
-/// Of so many last impacts before that it is told which discs had them.
+/// The number of impacts before the bound in which the discs with most of them are looked for.
 constexpr std::int64_t kTallied = 10000;
 
 }  // namespace

@@ -41,7 +41,7 @@ class ImpulseSimulation : public Simulation<Real> {
     std::vector<Turn> immovable_turns;                      ///< kept over the turn of all others
 
   private:
-    /// Of the start of the present substep; nothing if no substep has come that far.
+    /// What holds at the start of the present substep; nothing if no substep has come that far.
     struct Start {
         Books books;
         std::vector<Real> angle, spin;  // rad, rad/s, [rows] or empty

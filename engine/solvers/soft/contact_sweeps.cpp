@@ -7,10 +7,11 @@ namespace {
 
 /// Share of an overlap that one substep takes away. Below 0.15 piles sink deeper, above 0.5 they jitter.
 constexpr double kRecovery = 0.4;
-// Of pairs in a substep's first sweep: docs/decisions/0004-soft-solver.md has the measurements.
+// Factors by which a substep's first sweep over pairs goes farther: docs/decisions/0004-soft-solver.md has
+// the measurements.
 constexpr double kOverRelaxation = 1.7;  // of normal impulses
 constexpr double kCalmOverRelaxation = 1.3;
-/// Of pairs in a substep's next sweeps but the last, without friction:
+/// The factor of the next sweeps over pairs but the last, without friction:
 /// docs/decisions/0023-frictionless-heaps.md.
 constexpr double kSmoothOverRelaxation = 1.7;
 /// Without friction, heaps leave contacts an overlap of so many smaller radii:

@@ -36,8 +36,8 @@ struct ImpactCounters {
 /// exceeds it, or comes slower than gravity would make it in two substeps, leaves without restitution and is
 /// a contact from then on. So the work of a step is bounded by the bodies there are.
 ///
-/// Cost: nothing where no restitution is called for; else a look at each contact once a step, and about .3 us
-/// an impact. Source: docs/decisions/0022-impacts-in-soft.md.
+/// Cost: nothing where no restitution is called for; else a look at each contact once a step, and about .65
+/// us an impact. Source: docs/decisions/0022-impacts-in-soft.md.
 template <class Real>
 class Impacts {
   public:
