@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "shapes/convex_shape.hpp"
+
+// Plain arguments of the kernels that find the contacts of convex shapes. Columns are padded and 64-byte
+// aligned; `first` and `last` are multiples of kRowPadding, so there is no tail.
+
+namespace carom {
+
+/// Separation of a point that a manifold does not have [m].
+inline constexpr double kNoPoint = 1e30;
+
+/// Where two convex shapes touch: two points on one line, or one point. The normal leads from body a to body
+/// b, the tangent is the normal turned by a quarter counter-clockwise; points are ordered along it.
+///
+/// Levers belong to the points half way between the surfaces, so that both bodies get an impulse at the same
+/// place: r leads there from the body's centre of mass.
+template <class Real>
+struct ManifoldColumns {
+    Real *normal_x, *normal_y;        // no unit
+    Real *lever_a1, *lever_a2;        // m, r x normal of both points, about the centre of a
+    Real *lever_b1, *lever_b2;        // m, about the centre of b
+    Real *lever_a_t, *lever_b_t;      // m, r . normal = r x tangent, the same for both points
+    Real *separation1, *separation2;  // m; a single point is the first, then the second is kNoPoint.
+                                      // Both are kNoPoint where shapes are farther apart than the margin
+};
+
+/// Contacts of pairs of convex shapes.
+template <class Real>
+struct FindManifolds {
+    const Real* pose;                 // [rows][4]: x, y [m], cosine and sine of the angle
+    const std::int32_t* shape;        // by row: number in `shapes`
+    const ConvexShape<Real>* shapes;  //
+    const std::int32_t *a, *b;        // rows of the bodies of each pair
+    const Real* margin;               // m, by pair: shapes that are farther apart do not count
+    ManifoldColumns<Real> out;
+};
+
+}  // namespace carom
