@@ -5,7 +5,7 @@
 
 #include "constraints/contact_rows.hpp"
 #include "isa/kernel_table.hpp"
-#include "solvers/soft/step_terms.hpp"
+#include "solvers/substeps/step_terms.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "solvers/soft/body_masses.hpp"
+#include "solvers/substeps/body_masses.hpp"
 #include "solvers/soft/step_view.hpp"
 
 namespace carom {

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "constraints/contact_rows.hpp"
-#include "solvers/soft/body_records.hpp"
+#include "solvers/substeps/body_records.hpp"
 
 namespace carom {
 

@@ -2,9 +2,9 @@
 
 #include "constraints/contact_graph.hpp"
 #include "constraints/contact_rows.hpp"
-#include "solvers/soft/body_records.hpp"
+#include "solvers/substeps/body_records.hpp"
 #include "solvers/soft/contact_settings.hpp"
-#include "solvers/soft/step_terms.hpp"
+#include "solvers/substeps/step_terms.hpp"
 
 namespace carom {
 

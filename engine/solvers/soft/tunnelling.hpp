@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "constraints/contact_rows.hpp"
-#include "solvers/soft/step_terms.hpp"
+#include "solvers/substeps/step_terms.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {

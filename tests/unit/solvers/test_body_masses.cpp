@@ -1,4 +1,4 @@
-#include "solvers/soft/body_masses.hpp"
+#include "solvers/substeps/body_masses.hpp"
 
 #include <doctest/doctest.h>
 
@@ -19,7 +19,7 @@ Bodies<Real> bodies_of(const std::vector<double>& masses) {
 
 }  // namespace
 
-TEST_SUITE("solvers/soft/body_masses") {
+TEST_SUITE("solvers/substeps/body_masses") {
     TEST_CASE_TEMPLATE("like masses need no column, and nothing besides the sweeps", Real, float, double) {
         BodyMasses<Real> masses;
         CHECK(masses.derive(bodies_of<Real>({2, 2, 2}), true));

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "kernels/contact_arguments.hpp"
-#include "solvers/soft/body_masses.hpp"
-#include "solvers/soft/step_terms.hpp"
+#include "solvers/substeps/body_masses.hpp"
+#include "solvers/substeps/step_terms.hpp"
 #include "state/chunked_list.hpp"
 #include "state/world_state.hpp"
 
@@ -37,6 +37,10 @@ class BodyRecords {
     StartColumns<Real> start_columns();
     /// m, by row: rim displacement since the start of the step; null without rotation.
     Real* turn();
+    /// Rows behind all others, of bodies that nothing moves: at rest until the next `begin`.
+    void add_still_rows(std::size_t rows);
+    /// All rows, padding and such still ones included.
+    std::size_t rows() const { return displacement.size() / 2; }
     /// Nothing of the last step is known any more.
     void forget() { count_ = 0; }
 

@@ -1,4 +1,4 @@
-#include "solvers/soft/body_records.hpp"
+#include "solvers/substeps/body_records.hpp"
 
 #include <algorithm>
 
@@ -49,6 +49,13 @@ void BodyRecords<Real>::begin(const WorldState<Real>& world, const Column<Real>&
     std::fill(velocity.data() + 4 * count_, velocity.data() + 4 * rows, Real(0));
     for (Column<Real>* column : {&start_x_, &start_y_, &start_rim_})
         if (!column->empty()) std::fill(column->data() + count_, column->data() + rows, Real(0));
+}
+
+template <class Real>
+void BodyRecords<Real>::add_still_rows(std::size_t added) {
+    const std::size_t all = padded(rows() + added);
+    velocity.resize(4 * all), displacement.resize(2 * all);
+    if (has_rotation_) turn_.resize(all);
 }
 
 template <class Real>

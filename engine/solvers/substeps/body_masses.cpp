@@ -1,4 +1,4 @@
-#include "solvers/soft/body_masses.hpp"
+#include "solvers/substeps/body_masses.hpp"
 
 #include <cmath>
 
