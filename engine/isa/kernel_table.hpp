@@ -1,5 +1,6 @@
 #pragma once
 
+#include "isa/convex_kernels.hpp"
 #include "kernels/broadphase_arguments.hpp"
 #include "kernels/contact_arguments.hpp"
 #include "kernels/flight_arguments.hpp"
@@ -52,6 +53,8 @@ struct KernelTable {
     std::array<std::size_t (*)(const EndSubsteps<Real>&, std::size_t first, std::size_t last), 2>
         end_substeps;
     void (*advance_rotation)(const AdvanceRotation<Real>&, std::size_t first, std::size_t last);
+
+    const ConvexKernels<Real>* convex;
 };
 
 struct KernelTables {

@@ -37,7 +37,7 @@ constexpr ContactKernels<Real> make_contact_kernels() {
 
 /// The one list of kernels, instantiated for each instruction set by its file.
 template <class Real, class Isa>
-constexpr KernelTable<Real> make_table(std::string_view isa) {
+constexpr KernelTable<Real> make_table(std::string_view isa, const ConvexKernels<Real>* convex) {
     return {
         .isa = isa,
         .find_bounds = &find_bounds<Real, Isa>,
@@ -62,12 +62,14 @@ constexpr KernelTable<Real> make_table(std::string_view isa) {
         .advance_bodies = {&advance_bodies<false, Real, Isa>, &advance_bodies<true, Real, Isa>},
         .end_substeps = {&end_substeps<false, Real, Isa>, &end_substeps<true, Real, Isa>},
         .advance_rotation = &advance_rotation<Real, Isa>,
+        .convex = convex,
     };
 }
 
 template <class Isa>
-constexpr KernelTables make_tables(std::string_view isa) {
-    return {make_table<float, Isa>(isa), make_table<double, Isa>(isa)};
+constexpr KernelTables make_tables(std::string_view isa, const ConvexKernelTables& convex) {
+    return {make_table<float, Isa>(isa, &convex.single_precision),
+            make_table<double, Isa>(isa, &convex.double_precision)};
 }
 
 }  // namespace

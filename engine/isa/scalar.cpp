@@ -2,7 +2,8 @@
 
 namespace carom {
 
+extern const ConvexKernelTables kScalarConvexKernels;
 extern const KernelTables kScalarKernels;
-constexpr KernelTables kScalarKernels = make_tables<simd::Scalar>("scalar");
+constexpr KernelTables kScalarKernels = make_tables<simd::Scalar>("scalar", kScalarConvexKernels);
 
 }  // namespace carom

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "isa/convex_kernels.hpp"
+#include "kernels/find_manifolds.hpp"
+#include "simd/lanes.hpp"
+
+namespace carom {
+namespace {
+
+template <class Real, class Isa>
+constexpr ConvexKernels<Real> make_convex_kernels() {
+    return {.find_manifolds = &find_manifolds<Real, Isa>};
+}
+
+/// The kernels of convex shapes, instantiated for each instruction set by its file.
+template <class Isa>
+constexpr ConvexKernelTables make_convex_tables() {
+    return {make_convex_kernels<float, Isa>(), make_convex_kernels<double, Isa>()};
+}
+
+}  // namespace
+}  // namespace carom

@@ -1,0 +1,8 @@
+#include "isa/make_convex_tables.hpp"
+
+namespace carom {
+
+extern const ConvexKernelTables kScalarConvexKernels;
+constexpr ConvexKernelTables kScalarConvexKernels = make_convex_tables<simd::Scalar>();
+
+}  // namespace carom

@@ -1,0 +1,120 @@
+#pragma once
+
+#include "kernels/manifold_arguments.hpp"
+#include "narrowphase/convex.hpp"
+#include "simd/lanes.hpp"
+
+namespace carom {
+namespace {
+
+/// Of the shapes of as many bodies as there are lanes: where their records of four numbers begin.
+template <std::size_t kLanes>
+struct ShapeRows {
+    alignas(64) std::int32_t row[kLanes];
+    int most_vertices;
+};
+
+template <class Real, std::size_t kLanes>
+[[gnu::always_inline]] inline ShapeRows<kLanes> shape_rows(const FindManifolds<Real>& k,
+                                                           const std::int32_t* bodies) {
+    constexpr auto kRecords = static_cast<std::int32_t>(sizeof(ConvexShape<Real>) / (4 * sizeof(Real)));
+    ShapeRows<kLanes> rows{};
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const std::int32_t shape = k.shape[bodies[lane]], count = k.shapes[shape].count;
+        rows.row[lane] = shape * kRecords;
+        rows.most_vertices = rows.most_vertices < count ? count : rows.most_vertices;
+    }
+    return rows;
+}
+
+/// Vertices and normals in the frame of their body.
+/// @param last  3 or 7: the place that has every lane's last vertex
+template <class Real, class Lanes>
+[[gnu::always_inline]] inline Polygons<typename Lanes::Batch> load_polygons(
+    const ConvexShape<Real>* shapes, const ShapeRows<Lanes::size>& rows, int last) {
+    Polygons<typename Lanes::Batch> polygons;
+    polygons.count = rows.most_vertices, polygons.last = last;
+    for (int first = 0; first < last; first += 4) {
+        const auto x = Lanes::load_rows4(shapes->x + first, rows.row);
+        const auto y = Lanes::load_rows4(shapes->y + first, rows.row);
+        const auto nx = Lanes::load_rows4(shapes->normal_x + first, rows.row);
+        const auto ny = Lanes::load_rows4(shapes->normal_y + first, rows.row);
+        for (int i = 0; i < 4; ++i) {
+            const auto at = static_cast<std::size_t>(i);
+            polygons.x[first + i] = x[at], polygons.y[first + i] = y[at];
+            polygons.normal_x[first + i] = nx[at], polygons.normal_y[first + i] = ny[at];
+        }
+    }
+    return polygons;
+}
+
+/// The last four Reals of a shape: its last normal's y, radius, extent and inradius.
+template <class Real, class Lanes>
+[[gnu::always_inline]] inline typename Lanes::Batch4 load_sizes(const ConvexShape<Real>* shapes,
+                                                                const ShapeRows<Lanes::size>& rows) {
+    static_assert(offsetof(ConvexShape<Real>, inradius) ==
+                  offsetof(ConvexShape<Real>, normal_y) + (kMostVertices + 2) * sizeof(Real));
+    return Lanes::load_rows4(shapes->normal_y + kMostVertices - 1, rows.row);
+}
+
+/// The cosine and sine of the angle from a to b, and b's centre in the frame of a.
+template <class F>
+struct RelativePose {
+    F cosine, sine, x, y;
+};
+
+template <class F, class Pose>
+[[gnu::always_inline]] inline RelativePose<F> relative_pose(const Pose& a, const Pose& b) {
+    const F dx = b[0] - a[0], dy = b[1] - a[1];
+    return {a[2] * b[2] + a[3] * b[3], a[2] * b[3] - a[3] * b[2], a[2] * dx + a[3] * dy,
+            a[2] * dy - a[3] * dx};
+}
+
+/// Writes manifolds whose normals are in the frame of a.
+/// @return how many are live.
+template <class Real, class Lanes, class Pose, class F>
+[[gnu::always_inline]] inline std::size_t store_manifolds(const FindManifolds<Real>& k, std::size_t p,
+                                                          const Pose& a, const Manifold<F>& m) {
+    const ManifoldColumns<Real>& out = k.out;
+    const auto is_live = simd::min(m.separation1, m.separation2) <= Lanes::load(k.margin + p);
+    const F none(static_cast<Real>(kNoPoint));
+    Lanes::store(out.normal_x + p, a[2] * m.normal_x - a[3] * m.normal_y);
+    Lanes::store(out.normal_y + p, a[3] * m.normal_x + a[2] * m.normal_y);
+    Lanes::store(out.lever_a1 + p, m.lever_a1), Lanes::store(out.lever_a2 + p, m.lever_a2);
+    Lanes::store(out.lever_b1 + p, m.lever_b1), Lanes::store(out.lever_b2 + p, m.lever_b2);
+    Lanes::store(out.lever_a_t + p, m.lever_a_t), Lanes::store(out.lever_b_t + p, m.lever_b_t);
+    Lanes::store(out.separation1 + p, simd::select(is_live, m.separation1, none));
+    Lanes::store(out.separation2 + p, simd::select(is_live, m.separation2, none));
+    return static_cast<std::size_t>(__builtin_popcount(simd::bitmask(is_live)));
+}
+
+/// Manifolds of pairs of convex shapes.
+/// @return how many pairs are nearer than their margin.
+template <class Real, class Isa>
+std::size_t find_manifolds(const FindManifolds<Real>& k, std::size_t first, std::size_t last) {
+    using Lanes = simd::Lanes<Real, Isa>;
+    using F = typename Lanes::Batch;
+    std::size_t live = 0;
+    for (std::size_t p = first; p < last; p += Lanes::size) {
+        const auto a = Lanes::load_rows4(k.pose, k.a + p), b = Lanes::load_rows4(k.pose, k.b + p);
+        const auto of_a = shape_rows<Real, Lanes::size>(k, k.a + p);
+        const auto of_b = shape_rows<Real, Lanes::size>(k, k.b + p);
+        const int last_vertex = of_a.most_vertices > 4 || of_b.most_vertices > 4 ? 7 : 3;
+
+        ConvexPair<F> pair;
+        pair.a = load_polygons<Real, Lanes>(k.shapes, of_a, last_vertex);
+        pair.b = load_polygons<Real, Lanes>(k.shapes, of_b, last_vertex);
+        const RelativePose<F> pose = relative_pose<F>(a, b);
+        place(pair.b, pose.cosine, pose.sine, pose.x, pose.y);
+        pair.b_x = pose.x, pair.b_y = pose.y;
+        const auto sizes_a = load_sizes<Real, Lanes>(k.shapes, of_a);
+        const auto sizes_b = load_sizes<Real, Lanes>(k.shapes, of_b);
+        pair.radius_a = sizes_a[1], pair.radius_b = sizes_b[1];
+        pair.size = simd::min(sizes_a[3], sizes_b[3]);
+        live += store_manifolds<Real, Lanes>(k, p, a, find_manifold<Real>(pair));
+    }
+    return live;
+}
+
+}  // namespace
+}  // namespace carom

@@ -1,0 +1,261 @@
+#pragma once
+
+#include "kernels/manifold_arguments.hpp"
+#include "simd/scalar_lanes.hpp"
+
+// Where two convex shapes touch: polygons of 1 to 8 vertices, grown by a radius. One text for numbers and for
+// lanes: F is Real or a batch of it, a mask is bool or a batch of bools.
+//
+// The polygons decide the normal: that of the edge of either along which they are farthest apart, or least
+// overlap. Where vertices are the nearest of both, the line between these has it instead. That edge, the
+// reference, is the frame of what follows: `along` is measured along it, from the centre of its body,
+// `above` along its normal, from the edge itself.
+
+namespace carom {
+namespace {
+
+/// Share of the smaller inradius below which lengths of a manifold count as none: vertices so close to each
+/// other have no direction, points so close are one point.
+inline constexpr double kNoLength = 1e-4;
+
+/// Share of the smaller inradius by which the face of b has to be farther from a than that of a from b to be
+/// the reference of two faces that are parallel; so which of two stacked boxes has the reference does not
+/// change with rounding.
+inline constexpr double kBetterFace = 1e-3;
+inline constexpr double kParallel = 0.9994;  // cosine of two degrees: faces within that are parallel
+
+/// The incident edge (of the other shape, that faces the reference) as the reference edge sees it.
+template <class F>
+struct FaceView {
+    F from, to;                    // m, along: ends of the reference edge
+    F low_along, low_above;        // m, end of the incident edge that is lower along the reference
+    F high_along, high_above;      // m, its other end
+    F height;                      // m, of the reference edge over the centre of its body
+    F centre_along, centre_above;  // m, of the other body, both from the centre of the reference's body
+    F radius, other_radius;        // m, of the roundings
+    F size;                        // m, the smaller inradius
+};
+
+/// A manifold of two points, in the terms of ManifoldColumns.
+template <class F>
+struct Manifold {
+    F normal_x, normal_y;
+    F lever_a1, lever_a2, lever_b1, lever_b2;
+    F lever_a_t, lever_b_t;
+    F separation1, separation2;
+};
+
+/// Points of a reference and an incident edge: the part of the incident edge that lies over the reference,
+/// else the nearest points of both. Normals are in the frame of the reference: `normal_above` is the part
+/// along its normal.
+template <class Real, class F, class Mask>
+[[gnu::always_inline]] inline Manifold<F> manifold_at_face(const FaceView<F>& view, Mask b_has_reference) {
+    using simd::abs, simd::max, simd::min, simd::select, simd::sqrt;
+    const F zero(Real(0)), one(Real(1)), half(Real(0.5));
+    const F tolerance = F(static_cast<Real>(kNoLength)) * view.size;
+    const F length = view.high_along - view.low_along, rise = view.high_above - view.low_above;
+
+    const F from = max(view.low_along, view.from), to = min(view.high_along, view.to);
+    const F slope = rise / select(length > tolerance, length, one);
+    const F from_above = view.low_above + slope * (from - view.low_along);
+    const F to_above = view.high_above + slope * (to - view.high_along);
+
+    // The vertex of the incident edge that is nearest to the reference's line, and the reference's corner it
+    // has passed, if it has. It and that corner are the nearest points if the corner lies beyond it too.
+    const auto low_is_nearest = view.low_above <= view.high_above;
+    const F vertex = select(low_is_nearest, view.low_along, view.high_along);
+    const auto passes_end = vertex > view.to;
+    const F corner = select(passes_end, view.to, view.from);
+    const auto passes_corner = passes_end | (vertex < view.from) | (view.to <= view.from);
+    const F from_low = (corner - view.low_along) * length - view.low_above * rise;
+    const F from_high = (view.high_along - corner) * length + view.high_above * rise;
+    const F beyond = select(low_is_nearest, from_low, from_high);
+    const auto is_corner = (passes_corner & (beyond <= -tolerance * (abs(length) + abs(rise)))) | (from > to);
+    const F squared_length = length * length + rise * rise;
+    const F share = min(max(from_low / select(squared_length > zero, squared_length, one), zero), one);
+    const F apart_along = view.low_along + share * length - corner;
+    const F apart_above = view.low_above + share * rise;
+    const F distance = sqrt(apart_along * apart_along + apart_above * apart_above);
+    const auto has_direction = is_corner & (distance > tolerance);
+    const F inverse = one / select(has_direction, distance, one);
+    const F normal_along = select(has_direction, apart_along * inverse, zero);
+    const F normal_above = select(has_direction, apart_above * inverse, one);
+
+    // Both points from the reference edge: where they are and how far apart the polygons are there; ordered
+    // along the tangent of the pair.
+    F along1 = select(b_has_reference, to, from), along2 = select(b_has_reference, from, to);
+    F above1 = select(b_has_reference, to_above, from_above);
+    F above2 = select(b_has_reference, from_above, to_above);
+    const auto is_single = is_corner | (to - from <= tolerance);
+    const auto is_second = is_single & (above2 < above1);
+    along1 = select(is_corner, corner + half * apart_along, select(is_second, along2, along1));
+    above1 = select(is_corner, apart_above, select(is_second, above2, above1));
+    along2 = select(is_single, along1, along2), above2 = select(is_single, above1, above2);
+
+    // Half way between the surfaces, from the centre of the reference's body.
+    const F shift = half * (view.radius - view.other_radius);
+    along1 += shift * normal_along, along2 += shift * normal_along;
+    const F height = view.height + shift * normal_above;
+    const F height1 = height + half * above1, height2 = height + half * above2;
+    const F lowest = height + half * min(above1, above2);
+    const F lowest_along = select(above1 <= above2, along1, along2);
+
+    const auto cross = [&](F above, F along) { return above * normal_along - along * normal_above; };
+    const auto dot = [&](F above, F along) { return above * normal_above + along * normal_along; };
+    const F lever1 = cross(height1, along1), lever2 = cross(height2, along2);
+    const F lever_t = dot(lowest, lowest_along);
+    // of the centre of the other body
+    const F centre = cross(view.centre_above, view.centre_along);
+    const F centre_t = dot(view.centre_above, view.centre_along);
+    const F other1 = lever1 - centre, other2 = lever2 - centre, other_t = lever_t - centre_t;
+
+    const F radii = view.radius + view.other_radius;
+    Manifold<F> found;
+    // Of a reference of b all that depends on the normal has the other sign.
+    found.normal_x = normal_above, found.normal_y = normal_along;
+    found.lever_a1 = select(b_has_reference, -other1, lever1);
+    found.lever_a2 = select(b_has_reference, -other2, lever2);
+    found.lever_b1 = select(b_has_reference, -lever1, other1);
+    found.lever_b2 = select(b_has_reference, -lever2, other2);
+    found.lever_a_t = select(b_has_reference, -other_t, lever_t);
+    found.lever_b_t = select(b_has_reference, -lever_t, other_t);
+    found.separation1 = select(has_direction, distance, above1) - radii;
+    found.separation2 = select(is_single, F(static_cast<Real>(kNoPoint)), above2 - radii);
+    return found;
+}
+
+/// Polygons, one a lane, in one frame; places beyond a polygon's vertices repeat the last.
+template <class F>
+struct Polygons {
+    F x[kMostVertices], y[kMostVertices];
+    F normal_x[kMostVertices], normal_y[kMostVertices];
+    int count;  // of vertices of the largest
+    int last;   // >= count - 1: place where every one has its last vertex
+};
+
+/// Turns and moves polygons.
+template <class F>
+[[gnu::always_inline]] inline void place(Polygons<F>& polygons, F cosine, F sine, F x, F y) {
+    for (int i = 0; i <= polygons.last; ++i) {
+        const F vx = polygons.x[i], vy = polygons.y[i];
+        const F nx = polygons.normal_x[i], ny = polygons.normal_y[i];
+        polygons.x[i] = x + (cosine * vx - sine * vy), polygons.y[i] = y + (sine * vx + cosine * vy);
+        polygons.normal_x[i] = cosine * nx - sine * ny, polygons.normal_y[i] = sine * nx + cosine * ny;
+    }
+}
+
+/// An edge of a polygon and how far from it another polygon is along its normal.
+template <class F>
+struct Face {
+    F separation;
+    F normal_x, normal_y;
+    F from_x, from_y, to_x, to_y;
+};
+
+/// The edge of `of` from whose line `other` is farthest away, or which it overlaps least. Points have no
+/// edge: their normal is zero and their separation -kNoPoint.
+template <class Real, class F>
+[[gnu::always_inline]] inline Face<F> farthest_face(const Polygons<F>& of, const Polygons<F>& other) {
+    using simd::min, simd::select;
+    Face<F> best{};
+    for (int end = 0, from = of.last; end < of.count; from = end++) {
+        const F nx = of.normal_x[from], ny = of.normal_y[from];
+        F nearest = nx * other.x[0] + ny * other.y[0];
+        for (int v = 1; v < other.count; ++v) nearest = min(nearest, nx * other.x[v] + ny * other.y[v]);
+        const F separation = nearest - (nx * of.x[from] + ny * of.y[from]);
+        const Face<F> face{separation, nx, ny, of.x[from], of.y[from], of.x[end], of.y[end]};
+        if (end == 0) {
+            best = face;
+            continue;
+        }
+        const auto is_better = separation > best.separation;
+        best.separation = select(is_better, face.separation, best.separation);
+        best.normal_x = select(is_better, face.normal_x, best.normal_x);
+        best.normal_y = select(is_better, face.normal_y, best.normal_y);
+        best.from_x = select(is_better, face.from_x, best.from_x);
+        best.from_y = select(is_better, face.from_y, best.from_y);
+        best.to_x = select(is_better, face.to_x, best.to_x);
+        best.to_y = select(is_better, face.to_y, best.to_y);
+    }
+    const F zero(Real(0));
+    const auto is_point = best.normal_x * best.normal_x + best.normal_y * best.normal_y == zero;
+    best.separation = select(is_point, F(static_cast<Real>(-kNoPoint)), best.separation);
+    return best;
+}
+
+/// Whether b has the reference, of the faces that are farthest from the other shape.
+/// @param cosine  between their normals
+template <class Real, class F>
+[[gnu::always_inline]] inline auto b_has_reference(F separation_of_a, F separation_of_b, F cosine, F size) {
+    const F ahead = separation_of_b - separation_of_a;
+    const auto is_better = ahead > F(static_cast<Real>(kBetterFace)) * size;
+    return is_better | ((ahead > F(Real(0))) & (cosine > F(static_cast<Real>(-kParallel))));
+}
+
+/// Two convex shapes in the frame of a.
+template <class F>
+struct ConvexPair {
+    Polygons<F> a, b;
+    F b_x, b_y;  // m, the centre of b
+    F radius_a, radius_b;
+    F size;  // m, the smaller inradius
+};
+
+/// Where two convex shapes touch. The normal is in the frame of a. Separations are not yet held against a
+/// margin.
+template <class Real, class F>
+[[gnu::always_inline]] inline Manifold<F> find_manifold(const ConvexPair<F>& pair) {
+    using simd::select;
+    const F zero(Real(0)), one(Real(1));
+    const Face<F> of_a = farthest_face<Real>(pair.a, pair.b), of_b = farthest_face<Real>(pair.b, pair.a);
+    const F cosine = of_a.normal_x * of_b.normal_x + of_a.normal_y * of_b.normal_y;
+    const auto swapped = b_has_reference<Real>(of_a.separation, of_b.separation, cosine, pair.size);
+    const F from_x = select(swapped, of_b.from_x, of_a.from_x);
+    const F from_y = select(swapped, of_b.from_y, of_a.from_y);
+    const F to_x = select(swapped, of_b.to_x, of_a.to_x), to_y = select(swapped, of_b.to_y, of_a.to_y);
+    F nx = select(swapped, of_b.normal_x, of_a.normal_x);
+    const F ny = select(swapped, of_b.normal_y, of_a.normal_y);
+    nx = select(nx * nx + ny * ny == zero, one, nx);  // two discs: any frame will do
+
+    // The incident edge: its normal is most opposite to that of the reference.
+    F most = one + one, low_x = zero, low_y = zero, high_x = zero, high_y = zero;
+    const int count = pair.a.count > pair.b.count ? pair.a.count : pair.b.count;
+    F high_before_x = select(swapped, pair.a.x[pair.a.last], pair.b.x[pair.b.last]);
+    F high_before_y = select(swapped, pair.a.y[pair.a.last], pair.b.y[pair.b.last]);
+    for (int end = 0, from = pair.a.last; end < count; from = end++) {
+        const F edge_nx = select(swapped, pair.a.normal_x[from], pair.b.normal_x[from]);
+        const F edge_ny = select(swapped, pair.a.normal_y[from], pair.b.normal_y[from]);
+        const F end_x = select(swapped, pair.a.x[end], pair.b.x[end]);
+        const F end_y = select(swapped, pair.a.y[end], pair.b.y[end]);
+        const F facing = nx * edge_nx + ny * edge_ny;
+        const auto is_better = facing < most;
+        most = select(is_better, facing, most);
+        high_x = select(is_better, high_before_x, high_x), high_y = select(is_better, high_before_y, high_y);
+        low_x = select(is_better, end_x, low_x), low_y = select(is_better, end_y, low_y);
+        high_before_x = end_x, high_before_y = end_y;
+    }
+
+    const F centre_x = select(swapped, pair.b_x, zero), centre_y = select(swapped, pair.b_y, zero);
+    const F other_x = select(swapped, -pair.b_x, pair.b_x), other_y = select(swapped, -pair.b_y, pair.b_y);
+    const auto along = [&](F x, F y) { return nx * y - ny * x; };
+    const auto above = [&](F x, F y) { return nx * x + ny * y; };
+    const FaceView<F> view{.from = along(from_x - centre_x, from_y - centre_y),
+                           .to = along(to_x - centre_x, to_y - centre_y),
+                           .low_along = along(low_x - centre_x, low_y - centre_y),
+                           .low_above = above(low_x - from_x, low_y - from_y),
+                           .high_along = along(high_x - centre_x, high_y - centre_y),
+                           .high_above = above(high_x - from_x, high_y - from_y),
+                           .height = above(from_x - centre_x, from_y - centre_y),
+                           .centre_along = along(other_x, other_y),
+                           .centre_above = above(other_x, other_y),
+                           .radius = select(swapped, pair.radius_b, pair.radius_a),
+                           .other_radius = select(swapped, pair.radius_a, pair.radius_b),
+                           .size = pair.size};
+    Manifold<F> found = manifold_at_face<Real>(view, swapped);
+    const F x = nx * found.normal_x - ny * found.normal_y, y = ny * found.normal_x + nx * found.normal_y;
+    found.normal_x = select(swapped, -x, x), found.normal_y = select(swapped, -y, y);
+    return found;
+}
+
+}  // namespace
+}  // namespace carom

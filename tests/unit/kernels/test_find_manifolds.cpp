@@ -1,0 +1,133 @@
+// Manifolds of convex shapes against supports of their vertices in double precision.
+#include "support/convex_pairs.hpp"
+#include "support/effort.hpp"
+
+#include <doctest/doctest.h>
+
+#include <limits>
+
+using namespace carom;
+using namespace carom::test;
+
+namespace {
+
+using enum ShapeKind;
+
+struct PairClass {
+    const char* name;
+    ShapeKind a, b;
+    double ratio;
+};
+
+constexpr PairClass kClasses[] = {
+    {"disc and disc", disc, disc, 4},
+    {"disc and capsule", disc, capsule, 3},
+    {"disc and polygon", disc, polygon, 3},
+    {"capsule and capsule", capsule, capsule, 3},
+    {"capsule and box", capsule, box, 3},
+    {"capsule and octagon", capsule, octagon, 2},
+    {"box and box", box, box, 2},
+    {"box and rounded box", box, rounded_box, 2},
+    {"rounded boxes", rounded_box, rounded_box, 3},
+    {"triangles", triangle, triangle, 2},
+    {"polygons", polygon, polygon, 2},
+    {"octagons", octagon, octagon, 2},
+    {"thin boxes", thin, thin, 2},
+    {"thin box and polygon", thin, polygon, 2},
+    {"polygons of very different size", polygon, polygon, 300},
+};
+
+template <class Real>
+void find(ConvexPairs<Real>& pairs, const KernelTables& tables) {
+    const FindManifolds<Real> arguments = pairs.arguments();
+    tables.of<Real>().convex->find_manifolds(arguments, 0, padded(pairs.count()));
+}
+
+/// Where a point of a manifold is, by the levers about one of the bodies.
+Vec2 place_of(const FoundManifold& m, const PlacedShape& body, const double* levers, double lever_t,
+              int point) {
+    const Vec2 tangent{-m.normal.y, m.normal.x};
+    return body.centre + lever_t * m.normal + -levers[point] * tangent;
+}
+
+/// Round-off of lengths in a pair.
+template <class Real>
+double round_off(const PlacedShape& a, const PlacedShape& b) {
+    double extent = a.radius + b.radius;
+    for (const PlacedShape* shape : {&a, &b})
+        for (const Vec2 v : shape->vertices)
+            extent = std::fmax(extent, std::sqrt(length_squared(v - shape->centre)));
+    return 40 * std::numeric_limits<Real>::epsilon() *
+           (extent + std::sqrt(length_squared(a.centre)) + std::sqrt(length_squared(b.centre)));
+}
+
+}  // namespace
+
+TEST_SUITE("kernels/find manifolds") {
+    TEST_CASE_TEMPLATE(
+        "the plane of a manifold has the gap of the shapes, and they are nowhere farther apart", Real, float,
+        double) {
+        for (const PairClass& kind : kClasses) {
+            CAPTURE(kind.name);
+            ConvexPairs<Real> pairs(scaled(sizeof(Real) == 4 ? 100'000 : 20'000, 5'000));
+            draw_pairs(pairs, kind.a, kind.b, kind.ratio, 7);
+            find(pairs, *runnable_kernel_tables().back());
+            std::size_t wrong_life = 0, bad_unit = 0, bad_gap = 0, bad_distance = 0, inexact = 0;
+            std::size_t bad_place = 0, bad_between = 0, live = 0;
+            for (std::size_t i = 0; i < pairs.count(); ++i) {
+                const PlacedShape a = pairs.placed_a(i), b = pairs.placed_b(i);
+                const FoundManifold m = pairs.found(i);
+                const double distance = signed_distance(a, b), size = std::fmin(a.inradius, b.inradius);
+                const double exact = round_off<Real>(a, b), allowed = 2e-3 * size + exact;
+                if (std::fabs(distance - pairs.margin(i)) > allowed)
+                    wrong_life += m.is_live() != (distance < pairs.margin(i));
+                if (!m.is_live()) continue;
+                ++live;
+                const double separation = m.separation[m.lowest()];
+                bad_unit +=
+                    std::fabs(length_squared(m.normal) - 1) > 20 * std::numeric_limits<Real>::epsilon();
+                bad_gap += std::fabs(gap_along(a, b, m.normal) - distance) > allowed;
+                bad_distance += std::fabs(separation - distance) > allowed;
+                inexact += std::fabs(separation - distance) > exact;
+                const Vec2 of_a = place_of(m, a, m.lever_a, m.lever_a_t, m.lowest());
+                const Vec2 of_b = place_of(m, b, m.lever_b, m.lever_b_t, m.lowest());
+                bad_place += std::sqrt(length_squared(of_a - of_b)) > exact;
+                // Half way between the surfaces; inside a polygon other edges may be nearer.
+                for (const PlacedShape* shape : {&a, &b}) {
+                    const double off = signed_distance(of_a, *shape) - separation / 2;
+                    const bool is_inside = separation / 2 + shape->radius <= exact;
+                    bad_between += off < -allowed || (!is_inside && off > allowed);
+                }
+            }
+            CHECK(live > pairs.count() / 3);
+            CHECK(wrong_life == 0);
+            CHECK(bad_unit == 0);
+            CHECK(bad_gap == 0);
+            CHECK(bad_distance == 0);
+            // Of faces that are nearly parallel the one of a has the reference; vertices that meet have none.
+            CHECK(inexact < pairs.count() / 30);
+            CHECK(bad_place == 0);
+            CHECK(bad_between == 0);
+        }
+    }
+
+    TEST_CASE_TEMPLATE("every instruction set finds the same bits, however many pairs there are", Real, float,
+                       double) {
+        for (const PairClass& kind : kClasses)
+            for (const std::size_t count : {1u, 7u, 16u, 17u, 1000u}) {
+                CAPTURE(kind.name);
+                CAPTURE(count);
+                ConvexPairs<Real> exact(count);
+                draw_pairs(exact, kind.a, kind.b, kind.ratio, 11);
+                find(exact, *runnable_kernel_tables().front());
+                for (const KernelTables* tables : runnable_kernel_tables()) {
+                    CAPTURE(tables->of<Real>().isa);
+                    ConvexPairs<Real> pairs(count);
+                    draw_pairs(pairs, kind.a, kind.b, kind.ratio, 11);
+                    find(pairs, *tables);
+                    CHECK(pairs.equals(exact));
+                    CHECK(pairs.is_rest_untouched());
+                }
+            }
+    }
+}
