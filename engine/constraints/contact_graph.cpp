@@ -99,13 +99,14 @@ void ContactGraph<Real>::choose_groups(const Candidates<Real>& candidates, std::
 
 /// Counts the candidates of each body, if they are many.
 template <class Real>
-void ContactGraph<Real>::find_crowds(const Candidates<Real>& candidates, std::size_t rows) {
+void ContactGraph<Real>::find_crowds(const Candidates<Real>& candidates, const Bodies<Real>& bodies) {
     crowd_.clear();
-    if (candidates.pair_count() < kCrowdedMean * rows) return;
-    crowd_.assign(rows, 0);
+    if (candidates.pair_count() < kCrowdedMean * bodies.count) return;
+    crowd_.assign(bodies.count, 0);
     for (std::size_t p = 0; p < candidates.pair_count(); ++p) {
-        ++crowd_[static_cast<std::size_t>(candidates.pair_a()[p])];
-        ++crowd_[static_cast<std::size_t>(candidates.pair_b()[p])];
+        const std::int32_t a = candidates.pair_a()[p], b = candidates.pair_b()[p];
+        if (bodies.are_discs(a, b))
+            ++crowd_[static_cast<std::size_t>(a)], ++crowd_[static_cast<std::size_t>(b)];
     }
     if (*std::max_element(crowd_.begin(), crowd_.end()) <= kCrowded) crowd_.clear();
 }
@@ -139,6 +140,7 @@ void ContactGraph<Real>::for_each_piece(const Candidates<Real>& candidates, cons
         const std::size_t last = std::min(count, (piece + 1) * piece_size);
         for (std::size_t p = piece * piece_size; p < last; ++p) {
             const std::int32_t a = std::min(pair_a[p], pair_b[p]), b = std::max(pair_a[p], pair_b[p]);
+            if (!bodies.are_discs(a, b)) continue;
             if (!crowd_.empty() && is_left_out(a, b, bodies)) continue;
             if (bodies.has_flags && bodies.is_immovable(static_cast<std::size_t>(a)))
                 pair(piece, groups.count(), b, a);
@@ -191,7 +193,7 @@ void ContactGraph<Real>::list_walls(const Candidates<Real>& candidates, const Bo
     for (std::size_t row = 0; row < bodies.count; ++row)
         enclosure.for_each_side_within(bodies.position_x[row], bodies.position_y[row],
                                        candidates.first_reach(row) + drift, [&](std::int32_t side) {
-                                           if (bodies.is_immovable(row)) return;
+                                           if (bodies.is_immovable(row) || !bodies.is_disc(row)) return;
                                            listed_a_.push_back(static_cast<std::int32_t>(row));
                                            listed_b_.push_back(side);
                                        });
@@ -360,13 +362,15 @@ void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const EdgeCan
     memory_.file(pairs, supports, rows, is_moved || pairs.groups() == 0 ? nullptr : &groups, executor);
 
     choose_groups(candidates, rows);
-    find_crowds(candidates, rows);
+    find_crowds(candidates, bodies);
     group_pairs(candidates, bodies, executor);
     if (walls) list_walls(candidates, bodies, *walls);
     for (const EdgePair pair : edges.pairs())
-        listed_a_.push_back(pair.row), listed_b_.push_back(Partner::edge(pair.edge).stored());
+        if (bodies.are_discs(pair.row, pair.row))
+            listed_a_.push_back(pair.row), listed_b_.push_back(Partner::edge(pair.edge).stored());
     for (const SleeperPair pair : sleepers)
-        if (!bodies.is_immovable(static_cast<std::size_t>(pair.row)))
+        if (bodies.are_discs(pair.row, pair.sleeper) &&
+            !bodies.is_immovable(static_cast<std::size_t>(pair.row)))
             listed_a_.push_back(pair.row), listed_b_.push_back(pair.sleeper);
     group_supports();
 
@@ -437,6 +441,7 @@ void ContactGraph<Real>::add(const Candidates<Real>& candidates, const EdgeCandi
     new_pairs_.clear(), new_supports_.clear();
     const Enclosure<Real> enclosure(walls);
     for (const auto& [a, b] : candidates.new_pairs()) {
+        if (!bodies.are_discs(a, b)) continue;
         if (bodies.is_immovable(static_cast<std::size_t>(a)))
             new_supports_.push_back({b, a, 0, 0, 0});
         else if (bodies.is_immovable(static_cast<std::size_t>(b)))
@@ -458,7 +463,7 @@ void ContactGraph<Real>::add(const Candidates<Real>& candidates, const EdgeCandi
     };
     for (const std::int32_t stray : candidates.strays()) {
         const auto row = static_cast<std::size_t>(stray);
-        if (!walls || bodies.is_immovable(row)) continue;
+        if (!walls || bodies.is_immovable(row) || !bodies.is_disc(row)) continue;
         enclosure.for_each_side_within(
             bodies.position_x[row], bodies.position_y[row],
             candidates.reach()[row] + static_cast<Real>(candidates.largest_drift()), [&](std::int32_t side) {
@@ -466,7 +471,8 @@ void ContactGraph<Real>::add(const Candidates<Real>& candidates, const EdgeCandi
             });
     }
     for (const EdgePair pair : edges.new_pairs())
-        new_supports_.push_back({pair.row, Partner::edge(pair.edge).stored(), 0, 0, 0});
+        if (bodies.are_discs(pair.row, pair.row))
+            new_supports_.push_back({pair.row, Partner::edge(pair.edge).stored(), 0, 0, 0});
     const auto add_to = [&](ContactRows<Real>& contacts, const std::vector<Late>& added,
                             RollingMemory<Real>& rolling, std::size_t padding_row) {
         if (added.empty()) return;

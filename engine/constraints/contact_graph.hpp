@@ -28,7 +28,8 @@ struct LostContact {
     friend auto operator<=>(const LostContact&, const LostContact&) = default;
 };
 
-/// Which bodies can touch which, in groups and colours, until the candidate pairs change.
+/// Which discs can touch which, and what supports discs, in groups and colours, until the candidate pairs
+/// change.
 ///
 /// Colouring is greedy in the order of the pairs, group by group, which depends on the input alone. It is
 /// done anew with the candidate pairs, because then the pairs change throughout; between rebuilds nothing is
@@ -58,8 +59,8 @@ class ContactGraph {
     RowRenaming trail;                      ///< to be told of rows that change between renewals
     std::vector<LostContact> lost;          ///< that pushed, until they are dealt with
     TaskGroups groups;                      ///< of the last renewal
-    ContactRows<Real> pairs;                ///< of two bodies that move, a < b
-    /// Of a body that moves and what nothing moves: walls, immovable bodies.
+    ContactRows<Real> pairs;                ///< of two discs that move, a < b
+    /// Of a disc that moves and what nothing moves: walls, edges, immovable discs.
     ContactRows<Real> supports;
 
     /// Rows that padding names: each group has its own beyond the bodies, so that no two threads write to
@@ -105,7 +106,7 @@ class ContactGraph {
     void rename_rows();
     double far_share(const Candidates<Real>& candidates, const TaskGroups& tried) const;
     void choose_groups(const Candidates<Real>& candidates, std::size_t rows);
-    void find_crowds(const Candidates<Real>& candidates, std::size_t rows);
+    void find_crowds(const Candidates<Real>& candidates, const Bodies<Real>& bodies);
     bool is_left_out(std::int32_t a, std::int32_t b, const Bodies<Real>& bodies) const;
     void group_pairs(const Candidates<Real>& candidates, const Bodies<Real>& bodies,
                      const Executor& executor);

@@ -98,14 +98,14 @@ Body with_shape(const Body& pattern, double radius) {
 
 /// A gas that fits: the centres come out of these with `random` where it stands.
 struct GasPlan {
-    Box box;
+    Region box;
     SiteLattice lattice;  // unless in rows
     std::vector<double> radius;
     std::vector<Vec2> centres;  // if in rows
     Random random;
 };
 
-Problem gas_does_not_fit(const Gas& gas, const Box& box) {
+Problem gas_does_not_fit(const Gas& gas, const Region& box) {
     const double mean_square = (gas.radius.min * gas.radius.min + gas.radius.min * gas.radius.max +
                                 gas.radius.max * gas.radius.max) /
                                3;

@@ -9,6 +9,13 @@ namespace carom {
 // Every quantity a scene holds, with its limits (scene.hpp) and what to do about a value outside them.
 inline constexpr std::string_view kUseMetres = "Give lengths in metres, or scale the scene.";
 inline constexpr Quantity kRadius{"radius", "m", kSmallestRadius, kLargestRadius, kUseMetres};
+inline constexpr Quantity kWidth{"width", "m", kSmallestRadius, kLargestRadius, kUseMetres};
+inline constexpr Quantity kHeight{"height", "m", kSmallestRadius, kLargestRadius, kUseMetres};
+inline constexpr Quantity kCapsuleLength{
+    "length", "m", kSmallestRadius, kLargestRadius,
+    "It goes from centre to centre; a capsule without length is a disc. Give lengths in metres."};
+inline constexpr Quantity kRounding{"radius", "m", 0, kLargestRadius,
+                                    "Give the radius of the corners, 0 for sharp ones."};
 inline constexpr Quantity kPositionX{"position x", "m", -kLargestPosition, kLargestPosition, kUseMetres};
 inline constexpr Quantity kPositionY{"position y", "m", -kLargestPosition, kLargestPosition, kUseMetres};
 inline constexpr Quantity kAngle{"angle", "rad", -kLargestAngle, kLargestAngle, "Give angles in radians."};

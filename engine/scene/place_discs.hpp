@@ -10,7 +10,7 @@
 namespace carom {
 
 /// An axis-aligned box to fill.
-struct Box {
+struct Region {
     Vec2 min;
     Vec2 max;
     double width() const { return max.x - min.x; }
@@ -33,16 +33,16 @@ struct SiteLattice {
 
 /// The square or hexagonal lattice with the most room for `count` discs of that radius; clearance < 0 if none
 /// fits. Cost: O(rows).
-SiteLattice roomiest_lattice(const Box& box, std::size_t count, double radius);
+SiteLattice roomiest_lattice(const Region& box, std::size_t count, double radius);
 
 /// Centres of `count` discs on that lattice, row by row from the bottom, each moved at random within its
 /// room; sites left over are free at random.
-std::vector<Vec2> place_on_lattice(const Box& box, const SiteLattice& lattice, std::size_t count,
+std::vector<Vec2> place_on_lattice(const Region& box, const SiteLattice& lattice, std::size_t count,
                                    double radius, Random& random);
 
 /// Centres of discs of mixed radii: discs of like radius side by side in rows, the rows in random order.
 /// Fills up to about 0.75 of the box. Reorders `radius` to the order of the centres. Empty if the discs do
 /// not fit. Cost: O(n log n).
-std::vector<Vec2> place_in_rows(const Box& box, std::vector<double>& radius, Random& random);
+std::vector<Vec2> place_in_rows(const Region& box, std::vector<double>& radius, Random& random);
 
 }  // namespace carom

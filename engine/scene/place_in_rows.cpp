@@ -40,7 +40,7 @@ double clamped(double low, double high, Random& random) {
 
 /// Puts the discs of a row beside each other between `bottom` and `top`, with the free width shared out
 /// equally.
-void place_row(const Box& box, double bottom, double top, std::span<const double> radius, Random& random,
+void place_row(const Region& box, double bottom, double top, std::span<const double> radius, Random& random,
                std::vector<Vec2>& centres) {
     double used = 0;
     for (const double r : radius) used += 2 * r;
@@ -56,7 +56,7 @@ void place_row(const Box& box, double bottom, double top, std::span<const double
 
 }  // namespace
 
-std::vector<Vec2> place_in_rows(const Box& box, std::vector<double>& radius, Random& random) {
+std::vector<Vec2> place_in_rows(const Region& box, std::vector<double>& radius, Random& random) {
     std::sort(radius.begin(), radius.end(), std::greater<>());
     if (2 * radius.front() > box.width()) return {};
     std::vector<Row> rows = fill_rows(radius, box.width());

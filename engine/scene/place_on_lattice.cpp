@@ -18,7 +18,7 @@ std::size_t most_rows(double height, double diameter, double row_height, std::si
     return rows >= count_of(count) ? count : static_cast<std::size_t>(std::max(rows, 0.0));
 }
 
-SiteLattice square_lattice(const Box& box, std::size_t rows, std::size_t count, double diameter) {
+SiteLattice square_lattice(const Region& box, std::size_t rows, std::size_t count, double diameter) {
     SiteLattice lattice;
     lattice.rows = rows;
     lattice.columns = lattice.odd_columns = (count + rows - 1) / rows;
@@ -31,7 +31,7 @@ SiteLattice square_lattice(const Box& box, std::size_t rows, std::size_t count, 
 }
 
 /// Rows at half a spacing from each other; odd ones have as many sites as even ones, or one less.
-SiteLattice hexagonal_lattice(const Box& box, std::size_t rows, std::size_t count, double diameter,
+SiteLattice hexagonal_lattice(const Region& box, std::size_t rows, std::size_t count, double diameter,
                               bool one_less) {
     SiteLattice lattice;
     lattice.hexagonal = true;
@@ -52,7 +52,7 @@ SiteLattice hexagonal_lattice(const Box& box, std::size_t rows, std::size_t coun
 }
 
 /// How far a disc may move from its site, in x and in y, so that none overlaps another.
-Vec2 room(const Box& box, const SiteLattice& lattice, double radius) {
+Vec2 room(const Region& box, const SiteLattice& lattice, double radius) {
     constexpr double kRoundings = 16 * 0x1p-52;  // of coordinates, so that rounding cannot make discs overlap
     const double largest =
         std::max({std::abs(box.min.x), std::abs(box.min.y), std::abs(box.max.x), std::abs(box.max.y)});
@@ -75,7 +75,7 @@ double moved(double site, double side_room, double low, double high, Random& ran
 
 }  // namespace
 
-SiteLattice roomiest_lattice(const Box& box, std::size_t count, double radius) {
+SiteLattice roomiest_lattice(const Region& box, std::size_t count, double radius) {
     const double diameter = 2 * radius;
     SiteLattice best;
     const auto take = [&best](const SiteLattice& lattice) {
@@ -90,7 +90,7 @@ SiteLattice roomiest_lattice(const Box& box, std::size_t count, double radius) {
     return best;
 }
 
-std::vector<Vec2> place_on_lattice(const Box& box, const SiteLattice& lattice, std::size_t count,
+std::vector<Vec2> place_on_lattice(const Region& box, const SiteLattice& lattice, std::size_t count,
                                    double radius, Random& random) {
     const Vec2 free = room(box, lattice, radius);
     const Vec2 low{box.min.x + radius, box.min.y + radius}, high{box.max.x - radius, box.max.y - radius};

@@ -111,7 +111,9 @@ bool Sleepers<Real>::mark_hit(const WorldState<Real>& world, double dt, double s
     for (const SleeperPair pair : pairs_) {
         const auto row = static_cast<std::size_t>(pair.row), sleeper = static_cast<std::size_t>(pair.sleeper);
         const bool falls = !bodies.is_immovable(row);
-        const double radius = bodies.radius[row], smaller = std::fmin(radius, bodies.radius[sleeper]);
+        // Of what is no disc the disc around it: that wakes some that would not be hit, but misses none.
+        const double radius = bodies.radius[row],
+                     smaller = std::fmin(bodies.inradius(row), bodies.inradius(sleeper));
         const Vec2 d = position_of(bodies, sleeper) - position_of(bodies, row), v = velocity_of(bodies, row);
         const double rim = bodies.has_rotation ? std::fabs(bodies.angular_velocity[row]) * radius : 0;
         const double speed = std::sqrt(length_squared(v));
@@ -120,7 +122,8 @@ bool Sleepers<Real>::mark_hit(const WorldState<Real>& world, double dt, double s
         // Speed that an impact would give the sleeper at most; a kinematic body gives its own.
         const double mass = bodies.mass[row], other = bodies.mass[sleeper];
         const double given = falls ? 2 * speed * mass / (mass + other) : speed;
-        if (falls && given <= kWakingShare * still_speed(gravity, substep, bodies.radius[sleeper])) continue;
+        if (falls && given <= kWakingShare * still_speed(gravity, substep, bodies.inradius(sleeper)))
+            continue;
         // Time at which it comes nearest, flying on as it does now; gravity can bring it as far again.
         const double squared = speed * speed;
         const double t = squared > 0 ? std::fmin(std::fmax(dot(d, v) / squared, 0), dt) : 0;

@@ -41,10 +41,11 @@ bool Sleepers<Real>::note_still(WorldState<Real>& world, double dt, double subst
     const double gravity = std::sqrt(length_squared(world.gravity));
     bool any = false;
     for (std::size_t row = 0; row < bodies.count; ++row) {
-        const double vx = bodies.velocity_x[row], vy = bodies.velocity_y[row], radius = bodies.radius[row];
-        const double rim =
-            bodies.has_rotation ? radius * static_cast<double>(bodies.angular_velocity[row]) : 0;
-        const double speed = still_speed(gravity, substep, radius);
+        const double vx = bodies.velocity_x[row], vy = bodies.velocity_y[row];
+        const double rim = bodies.has_rotation ? static_cast<double>(bodies.rim(row)) *
+                                                     static_cast<double>(bodies.angular_velocity[row])
+                                               : 0;
+        const double speed = still_speed(gravity, substep, bodies.inradius(row));
         const bool is_still = vx * vx + vy * vy <= speed * speed && rim * rim <= speed * speed;
         bodies.still[row] = is_still ? bodies.still[row] + static_cast<float>(dt) : 0.0f;
         any = any || bodies.still[row] >= static_cast<float>(kTimeToSleep);
@@ -192,7 +193,7 @@ bool Sleepers<Real>::mark_pressed(const WorldState<Real>& world, const ContactGr
         const auto sleeper = static_cast<std::size_t>(support.row());
         const double speed =
             static_cast<double>(graph.supports.normal_impulse[i]) * bodies.inverse_mass(sleeper);
-        if (speed > kWakingShare * still_speed(gravity, substep, bodies.radius[sleeper]))
+        if (speed > kWakingShare * still_speed(gravity, substep, bodies.inradius(sleeper)))
             mark(bodies.island[sleeper]);
     });
     return !marked_.empty();

@@ -70,16 +70,34 @@ struct Bodies {
     Column<float> still;                   // s, for how long slow enough to sleep; only with sleeping
     Column<std::int32_t> island;           // of rows that sleep; only with sleeping
     Property<Real> mass;                   // kg
-    Property<Real> radius;                 // m
+    Property<Real> radius;                 // m, of a disc; of other shapes that of the disc around them
     Property<Real> restitution;            // no unit
     Property<Real> friction;               // Coulomb coefficient
     Property<Real> rolling_resistance;     // coefficient
+    // Only with shapes; in a world of discs the radius is all three. Bodies of edges have no shape, -1.
+    Column<std::int32_t> shape;  // number in WorldState::shapes
+    Property<Real> rims;         // m, of the disc of the same mass and moment of inertia
+    Property<Real> inradii;      // m, from the centre of mass to the nearest point of the surface
     bool has_rotation = false;
     bool has_sleep = false;
     bool has_flags = false;
+    bool has_shapes = false;  ///< some body is, or was, neither a disc nor edges
 
     std::uint8_t flags_of(std::size_t row) const { return has_flags ? flags[row] : std::uint8_t{0}; }
     bool is_immovable(std::size_t row) const { return (flags_of(row) & (kImmovable | kDisabled)) != 0; }
+
+    /// Whether a row is a disc: not another convex shape, not edges.
+    bool is_disc(std::size_t row) const { return (flags_of(row) & (kEdges | kNotDisc)) == 0; }
+    /// Whether two rows meet as discs.
+    bool are_discs(std::int32_t a, std::int32_t b) const {
+        return !has_shapes || (is_disc(static_cast<std::size_t>(a)) && is_disc(static_cast<std::size_t>(b)));
+    }
+    /// m: u = rim angular velocity is the rim speed of records, mass rim² / 2 the moment of inertia.
+    const Property<Real>& rim() const { return has_shapes ? rims : radius; }
+    Real rim(std::size_t row) const { return rim()[row]; }
+    /// m: half of what a body is thick, where `radius` is how far it reaches.
+    const Property<Real>& inradius() const { return has_shapes ? inradii : radius; }
+    Real inradius(std::size_t row) const { return inradius()[row]; }
 
     /// 1/kg; zero for what nothing moves.
     double inverse_mass(std::size_t row) const {
@@ -116,10 +134,11 @@ struct Bodies {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.count, self.asleep, self.has_rotation, self.has_sleep, self.has_flags);
+        archive(self.count, self.asleep, self.has_rotation, self.has_sleep, self.has_flags, self.has_shapes);
         archive(self.mass, self.radius, self.restitution, self.friction, self.rolling_resistance);
         archive(self.position_x, self.position_y, self.velocity_x, self.velocity_y, self.id);
         archive(self.angle, self.angular_velocity, self.flags, self.still, self.island);
+        archive(self.shape, self.rims, self.inradii);
     }
 
   private:
@@ -135,6 +154,11 @@ struct Bodies {
         if (!b.restitution.is_uniform()) fn("restitution", "1", b.restitution.column());
         if (!b.friction.is_uniform()) fn("friction", "1", b.friction.column());
         if (!b.rolling_resistance.is_uniform()) fn("rolling_resistance", "1", b.rolling_resistance.column());
+        if (b.has_shapes) {
+            fn("shape", "number", b.shape);
+            if (!b.rims.is_uniform()) fn("rim", "m", b.rims.column());
+            if (!b.inradii.is_uniform()) fn("inradius", "m", b.inradii.column());
+        }
         if (b.has_flags) fn("flags", "bits", b.flags);
         if (b.has_sleep) fn("still", "s", b.still), fn("island", "1", b.island);
     }

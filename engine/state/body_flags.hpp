@@ -12,6 +12,7 @@ enum BodyFlag : std::uint8_t {
     kKinematic = 4,   ///< immovable, but moves at its velocity
     kFixedAngle = 8,  ///< impulses do not turn it
     kEdges = 16,      ///< a segment or chain: its edges are in state/edges.hpp, its radius means nothing
+    kNotDisc = 32,    ///< a box, capsule or polygon: convex, but no disc
 };
 
 /// Rows with one of these are no discs to the broadphase.

@@ -39,6 +39,17 @@ void EdgeStore::append(BodyId id, const Shape& shape) {
     bodies.push_back(body);
 }
 
+Shape EdgeStore::shape_of(BodyId id) const {
+    const auto body =
+        std::find_if(bodies.begin(), bodies.end(), [id](const EdgeBody& other) { return other.id == id; });
+    const Edge& first = (*this)[body->first];
+    if (body->count == 1) return Segment{first.a, first.b};
+    Chain chain{{first.a}, first.previous >= 0};
+    for (std::int32_t n = 0; n + (chain.loop ? 1 : 0) < body->count; ++n)
+        chain.points.push_back((*this)[body->first + n].b);
+    return chain;
+}
+
 EdgeStore::Removed EdgeStore::remove(BodyId id) {
     const auto found =
         std::find_if(bodies.begin(), bodies.end(), [id](const EdgeBody& body) { return body.id == id; });

@@ -37,8 +37,10 @@ struct EdgeStore {
         return bodies[static_cast<std::size_t>((*this)[edge].body)];
     }
 
-    /// Nothing if the shape is a disc.
+    /// Nothing if the shape is none of edges.
     void append(BodyId id, const Shape& shape);
+    /// The segment or chain of a body that has edges. Cost: O(bodies with edges + its edges).
+    Shape shape_of(BodyId id) const;
 
     struct Removed {
         std::int32_t first = 0, count = 0;

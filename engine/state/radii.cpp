@@ -23,14 +23,15 @@ template <class Real>
 double find_usual(const Bodies<Real>& bodies) {
     std::array<std::uint32_t, kBins> discs{};
     std::size_t count = 0;
+    const Property<Real>& radii = bodies.inradius();
     for (std::size_t row = 0; row < bodies.count; ++row)
-        if (!bodies.is_immovable(row)) ++discs[bin_of(bodies.radius[row])], ++count;
+        if (!bodies.is_immovable(row)) ++discs[bin_of(radii[row])], ++count;
     if (count == 0) return 0;
     std::size_t bin = 0;
     for (std::size_t left_out = 0; (left_out += discs[bin]) * kUsualShare <= count;) ++bin;
     double usual = 0;
     for (std::size_t row = 0; row < bodies.count; ++row) {
-        const Real radius = bodies.radius[row];
+        const Real radius = radii[row];
         if (bin_of(radius) != bin || bodies.is_immovable(row)) continue;
         usual = usual > 0 ? std::fmin(usual, radius) : static_cast<double>(radius);
     }
@@ -45,13 +46,14 @@ Radii measure_radii(const Bodies<Real>& bodies) {
     bool any = false;
     for (std::size_t row = 0; row < bodies.count; ++row) {
         if (bodies.flags_of(row) & kEdges) continue;
-        const double radius = bodies.radius[row];
-        radii.smallest = any ? std::fmin(radii.smallest, radius) : radius;
+        if (!bodies.is_disc(row) && bodies.is_immovable(row)) continue;
+        const double radius = bodies.radius[row], inradius = bodies.inradius(row);
+        radii.smallest = any ? std::fmin(radii.smallest, inradius) : inradius;
         radii.largest = std::fmax(radii.largest, radius);
         any = true;
-        if (bodies.radius.is_uniform()) break;
+        if (bodies.radius.is_uniform() && bodies.inradius().is_uniform()) break;
     }
-    if (!bodies.radius.is_uniform()) radii.usual = find_usual(bodies);
+    if (!bodies.inradius().is_uniform()) radii.usual = find_usual(bodies);
     if (!(radii.usual > 0)) radii.usual = radii.smallest;
     return radii;
 }

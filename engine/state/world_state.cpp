@@ -6,6 +6,7 @@
 
 #include "math/vec2_math.hpp"
 #include "scene/mass.hpp"
+#include "shapes/convex_geometry.hpp"
 
 namespace carom {
 
@@ -33,10 +34,10 @@ Sums WorldState<Real>::sums_of(std::size_t row) const {
 template <class Real>
 Sums WorldState<Real>::sums_of(std::size_t row, Vec2 x, Vec2 v, double spin) const {
     if (bodies.is_immovable(row)) return {};
-    const double mass = bodies.mass[row], radius = bodies.radius[row];
+    const double mass = bodies.mass[row], rim = bodies.rim(row);
     Sums sums{{0.5 * mass * length_squared(v), 0, -mass * dot(gravity, x)}, mass * v, mass * cross(x, v)};
     if (bodies.has_rotation) {
-        const double inertia = 0.5 * mass * radius * radius;
+        const double inertia = 0.5 * mass * rim * rim;
         sums.energy.rotational = 0.5 * inertia * spin * spin;
         sums.angular_momentum += inertia * spin;
     }
@@ -51,7 +52,48 @@ Sums WorldState<Real>::sums() const {
 }
 
 template <class Real>
+Shape WorldState<Real>::shape_of(std::size_t row) const {
+    if (bodies.flags_of(row) & kEdges) return edges.shape_of(bodies.id[row]);
+    if (bodies.has_shapes) return shapes.shape(bodies.shape[row]);
+    return Disc{static_cast<double>(bodies.radius[row])};
+}
+
+/// Before the first body that is neither a disc nor edges: gives the others what shapes need.
+template <class Real>
+void WorldState<Real>::turn_shapes_on() {
+    bodies.has_shapes = true;
+    bodies.rims = bodies.inradii = bodies.radius;
+    bodies.shape.resize(bodies.rows());
+    for (std::size_t row = 0; row < bodies.rows(); ++row)
+        bodies.shape[row] =
+            bodies.flags_of(row) & kEdges ? -1 : shapes.add(Disc{static_cast<double>(bodies.radius[row])});
+}
+
+template <class Real>
+void WorldState<Real>::set_shape(std::size_t row, const Body& body, BodyId id) {
+    const std::size_t rows = bodies.rows();
+    if (!is_convex(body.shape)) {
+        edges.append(id, body.shape);
+        bodies.radius.set_any(row, rows, Real(1));
+        if (!bodies.has_shapes) return;
+        bodies.shape[row] = -1;
+        bodies.rims.set_any(row, rows, Real(1)), bodies.inradii.set_any(row, rows, Real(1));
+        return;
+    }
+    if (!bodies.has_shapes) {
+        bodies.radius.set(row, rows, static_cast<Real>(radius_of(body.shape)));
+        return;
+    }
+    const std::int32_t number = shapes.add(body.shape);
+    bodies.shape[row] = number;
+    bodies.radius.set(row, rows, shapes[number].extent);
+    bodies.rims.set(row, rows, static_cast<Real>(rim_of(body.shape)));
+    bodies.inradii.set(row, rows, shapes[number].inradius);
+}
+
+template <class Real>
 BodyId WorldState<Real>::append(const Body& body) {
+    if (is_convex(body.shape) && !is_disc(body.shape) && !bodies.has_shapes) turn_shapes_on();
     const std::size_t row = bodies.count, rows = bodies.rows() + 1;
     bodies.resize(rows);
     if (bodies.asleep > 0) {  // the first that sleeps makes room
@@ -64,30 +106,24 @@ BodyId WorldState<Real>::append(const Body& body) {
     const BodyId id = handles.add(static_cast<std::uint32_t>(row));
     const auto real = [](double value) { return static_cast<Real>(value); };
     const double mass = mass_of(body);
-    const bool has_edges = !is_disc(body.shape);
+    const int kind = is_disc(body.shape) ? 0 : is_convex(body.shape) ? kNotDisc : kEdges;
     bodies.position_x[row] = real(body.position.x), bodies.position_y[row] = real(body.position.y);
     bodies.velocity_x[row] = real(body.velocity.x), bodies.velocity_y[row] = real(body.velocity.y);
     bodies.id[row] = id;
     if (bodies.has_rotation)
         bodies.angle[row] = real(body.angle), bodies.angular_velocity[row] = real(body.angular_velocity);
-    if (has_edges) {
-        edges.append(id, body.shape);
-        bodies.radius.set_any(row, rows, Real(1));
-    } else {
-        bodies.radius.set(row, rows, real(radius_of(body.shape)));
-    }
+    set_shape(row, body, id);
     bodies.restitution.set(row, rows, real(body.material.restitution));
     bodies.friction.set(row, rows, real(body.material.friction));
     bodies.rolling_resistance.set(row, rows, real(body.material.rolling_resistance));
     if (body.type == BodyType::dynamic_body) {
         bodies.mass.set(row, rows, real(mass));
-        bodies.set_flags(row, body.fixed_rotation ? kFixedAngle : 0);
+        bodies.set_flags(row, static_cast<std::uint8_t>(kind | (body.fixed_rotation ? kFixedAngle : 0)));
         dynamic_mass += static_cast<double>(bodies.mass[row]);
     } else {
         bodies.mass.set_any(row, rows, Real(1));  // it counts as infinite
         const bool moves = body.type == BodyType::kinematic_body;
-        bodies.set_flags(
-            row, static_cast<std::uint8_t>(kImmovable | (moves ? kKinematic : 0) | (has_edges ? kEdges : 0)));
+        bodies.set_flags(row, static_cast<std::uint8_t>(kind | kImmovable | (moves ? kKinematic : 0)));
         immovable_rows.push_back(static_cast<std::int32_t>(row));
     }
     return id;
@@ -96,6 +132,7 @@ BodyId WorldState<Real>::append(const Body& body) {
 template <class Real>
 EdgeStore::Removed WorldState<Real>::remove(std::size_t row) {
     const EdgeStore::Removed gone = edges.remove(bodies.id[row]);
+    if (bodies.has_shapes && bodies.shape[row] >= 0) shapes.remove(bodies.shape[row]);
     outside = outside - sums_of(row);
     if (!bodies.is_immovable(row)) dynamic_mass -= static_cast<double>(bodies.mass[row]);
     handles.remove(bodies.id[row]);
@@ -158,8 +195,8 @@ void WorldState<Real>::reorder(const std::int32_t* order) {
 
 template <class Real>
 std::size_t WorldState<Real>::bytes() const {
-    std::size_t bytes =
-        handles.bytes() + edges.bytes() + spare_.bytes() + immovable_rows.capacity() * sizeof(std::int32_t);
+    std::size_t bytes = handles.bytes() + edges.bytes() + shapes.bytes() + spare_.bytes() +
+                        immovable_rows.capacity() * sizeof(std::int32_t);
     bodies.for_each_column([&](auto, auto, const auto& column) { bytes += column.bytes(); });
     return bytes;
 }

@@ -11,6 +11,7 @@
 #include "state/books.hpp"
 #include "state/edges.hpp"
 #include "state/handles.hpp"
+#include "state/shapes.hpp"
 
 namespace carom {
 
@@ -44,8 +45,9 @@ template <class Real>
 struct WorldState {
     Bodies<Real> bodies;
     Handles handles;
-    EdgeStore edges;  ///< of segments and chains
-    Vec2 gravity;     ///< m/s²
+    EdgeStore edges;          ///< of segments and chains
+    ShapeStore<Real> shapes;  ///< of the other bodies; empty where these are all discs
+    Vec2 gravity;             ///< m/s²
     Drag drag;
     std::optional<Walls> walls;
     Effects effects;
@@ -60,7 +62,8 @@ struct WorldState {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.bodies, self.handles, self.edges, self.gravity, self.drag, self.walls, self.effects);
+        archive(self.bodies, self.handles, self.edges, self.shapes, self.gravity, self.drag, self.walls);
+        archive(self.effects);
         archive(self.time, self.falls, self.books, self.initial, self.outside, self.dynamic_mass);
         archive(self.immovable_rows, self.quarantined_count);
     }
@@ -72,6 +75,9 @@ struct WorldState {
     /// The same of a state that is not in its columns. @param spin  rad/s
     Sums sums_of(std::size_t row, Vec2 position, Vec2 velocity, double spin) const;
     Sums sums() const;
+
+    /// The shape of a row; of a polygon, the one around its centroid.
+    Shape shape_of(std::size_t row) const;
 
     /// Appends a row for a body that has been validated.
     BodyId append(const Body& body);
@@ -89,6 +95,9 @@ struct WorldState {
     void reorder(const std::int32_t* order);
 
   private:
+    void turn_shapes_on();
+    void set_shape(std::size_t row, const Body& body, BodyId id);
+
     Column<std::byte> spare_;  // one column's worth, kept so that reordering allocates nothing
 };
 

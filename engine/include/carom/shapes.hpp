@@ -27,10 +27,46 @@ struct Chain {
     bool loop = false;           ///< a last line leads back to the first point
 };
 
-/// The geometry of a body. The other shapes of the scene format follow.
-using Shape = std::variant<Disc, Segment, Chain>;
+/// A rectangle around the body's position, its sides along the body's x and y.
+struct Box {
+    double width = 1;   ///< m, along x, > 0
+    double height = 1;  ///< m, along y, > 0
+};
+
+/// All points within `radius` of a line of `length` along the body's x, whose middle is the body's position.
+struct Capsule {
+    double length = 1;    ///< m, between the two centres, > 0
+    double radius = 0.5;  ///< m, > 0
+};
+
+/// All points within `radius` of a convex polygon: with a radius its corners are round.
+///
+/// Vertices may be given in either direction and anywhere: the shape is recentred, so that its centroid, the
+/// rounding included, is the body's position. A body's position is its centre of mass, whatever its shape;
+/// where the vertices lie beside it follows from `carom::recentred`.
+struct Polygon {
+    std::vector<Vec2> vertices{};  ///< m; kFewestPolygonVertices ... kLargestPolygonVertices, convex
+    double radius = 0;             ///< m, >= 0
+};
+
+/// The geometry of a body. Boxes, capsules and polygons are the convex shapes beside the disc.
+using Shape = std::variant<Disc, Segment, Chain, Box, Capsule, Polygon>;
+
+/// The polygon as a body has it: counter-clockwise, its centroid at (0, 0).
+/// @param polygon  within its limits (`Scene::validate`)
+Polygon recentred(const Polygon& polygon);
 
 /// Points are looked at one by one whenever bodies have moved far.
 inline constexpr std::size_t kLargestChainPoints = 65536;
+
+inline constexpr std::size_t kFewestPolygonVertices = 3;
+inline constexpr std::size_t kLargestPolygonVertices = 8;
+/// Farthest point of a box, capsule or polygon from its centroid over the nearest of its surface. Beyond it
+/// single precision does not tell the sides of a plank apart.
+inline constexpr double kLargestAspect = 1000;
+/// Sine of the angle by which a polygon turns at a vertex, at least.
+inline constexpr double kSmallestCornerSine = 1e-3;
+/// Of a polygon's extent: its shortest edge, at least.
+inline constexpr double kSmallestEdgeShare = 1e-3;
 
 }  // namespace carom

@@ -1,16 +1,28 @@
+#include "math/rotation.hpp"
+#include "shapes/convex_geometry.hpp"
 #include "shapes/walls.hpp"
 #include "solvers/soft/stages.hpp"
 
 namespace carom {
 namespace {
 
-/// Puts one coordinate back to where the body touches the wall, and stops what drives it out.
-/// @return the velocity that was taken [m/s]
+/// How far a body reaches in a direction [m].
 template <class Real>
-Real put_back(Real& position, Real& velocity, Real min, Real max, Real radius) {
+Real reach_along(const WorldState<Real>& world, std::size_t row, Vec2 direction) {
+    const Bodies<Real>& bodies = world.bodies;
+    if (bodies.is_disc(row)) return bodies.radius[row];
+    const Rotation turn = bodies.has_rotation ? rotation_by(bodies.angle[row]) : Rotation{};
+    return static_cast<Real>(carom::reach_along(world.shapes[bodies.shape[row]], turn, direction));
+}
+
+/// Puts one coordinate back to where the body touches the wall, and stops what drives it out.
+/// @param reach  reach(side), how far the body reaches to the side of -1 or 1 along this coordinate [m]
+/// @return the velocity that was taken [m/s]
+template <class Real, class Reach>
+Real put_back(Real& position, Real& velocity, Real min, Real max, const Reach& reach) {
     const bool is_below = position < min;
     if (!is_below && !(position > max)) return 0;
-    position = is_below ? min + radius : max - radius;
+    position = is_below ? min + reach(-1) : max - reach(1);
     if (is_below ? velocity >= 0 : velocity <= 0) return 0;
     const Real taken = velocity;
     velocity = 0;
@@ -38,10 +50,11 @@ void clamp_to_walls(SoftSimulation<Real>& sim) {
             if (!box.is_outside(x[row], y[row]) || bodies.is_immovable(row)) continue;
             const Real* start = &sim.motion[4 * row];
             if (box.is_outside(start[0], start[1])) continue;  // it was put there
-            const Real radius = bodies.radius[row];
+            const auto along_x = [&](double side) { return reach_along(world, row, {side, 0}); };
+            const auto along_y = [&](double side) { return reach_along(world, row, {0, side}); };
             const Vec2 taken{
-                put_back(bodies.position_x[row], bodies.velocity_x[row], box.min_x, box.max_x, radius),
-                put_back(bodies.position_y[row], bodies.velocity_y[row], box.min_y, box.max_y, radius)};
+                put_back(bodies.position_x[row], bodies.velocity_x[row], box.min_x, box.max_x, along_x),
+                put_back(bodies.position_y[row], bodies.velocity_y[row], box.min_y, box.max_y, along_y)};
             const double mass = bodies.mass[row];
             world.books.add_wall_impulse({-mass * taken.x, 0});
             world.books.add_wall_impulse({0, -mass * taken.y});

@@ -56,7 +56,7 @@ bool EndProjection<Real>::mark_deflected(const Inputs& in, double largest) {
     const Vec2 fall = 0.5 * dt * dt * in.world.gravity;
     for (std::size_t row = 0; row < in.step.records.count(); ++row) {
         const double radius = in.world.bodies.radius[row];
-        if (radius >= largest || in.world.bodies.is_immovable(row)) continue;
+        if (radius >= largest || in.world.bodies.is_immovable(row) || !in.world.bodies.is_disc(row)) continue;
         const Vec2 off{
             static_cast<double>(displacement[2 * row]) - dt * static_cast<double>(motion[4 * row + 2]),
             static_cast<double>(displacement[2 * row + 1]) - dt * static_cast<double>(motion[4 * row + 3])};
@@ -173,6 +173,9 @@ void EndProjection<Real>::list_pairs_of_thrown(const Inputs& in) {
     const auto radius_of = [&](std::int32_t row) {
         return static_cast<double>(in.world.bodies.radius[static_cast<std::size_t>(row)]);
     };
+    const auto is_disc = [&](std::int32_t row) {
+        return in.world.bodies.is_disc(static_cast<std::size_t>(row));
+    };
     double largest = 0;
     for (const std::int32_t row : thrown_) largest = std::max(largest, radius_of(row));
     for (std::size_t i = 0; i < thrown_.size(); ++i) {
@@ -181,7 +184,8 @@ void EndProjection<Real>::list_pairs_of_thrown(const Inputs& in) {
         const std::size_t found =
             in.flight.candidates.find_around(row, 2 * radius_of(thrown_[i]), place, near_rows_);
         for (std::size_t k = 0; k < found; ++k)
-            if (near_rows_[k] != thrown_[i]) list_pair(in, thrown_[i], near_rows_[k], false);
+            if (near_rows_[k] != thrown_[i] && is_disc(near_rows_[k]))
+                list_pair(in, thrown_[i], near_rows_[k], false);
         const double near = 3 * largest;
         for (std::size_t k = i + 1; k < thrown_.size(); ++k) {
             if (projection_.place[static_cast<std::size_t>(thrown_[k])].x > place.x + near) break;
@@ -269,7 +273,7 @@ double EndProjection<Real>::free_share(const Inputs& in, std::int32_t row, Vec2 
     double free = 1;
     const auto stop_at = [&](std::int32_t other) {
         const auto j = static_cast<std::size_t>(other);
-        if (other == row) return;
+        if (other == row || !in.world.bodies.is_disc(j)) return;
         const double reach = (radius + static_cast<double>(in.world.bodies.radius[j])) * (1 - kLeftOver);
         const Vec2 apart = from - projection_.place[j];
         const DiscApproach<double> discs(apart.x, apart.y, way.x, way.y, reach);

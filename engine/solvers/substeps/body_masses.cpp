@@ -14,7 +14,8 @@ bool BodyMasses<Real>::derive(const Bodies<Real>& bodies, bool has_friction) {
     if (vary_) inverse_.resize(bodies.count);
     double lightest = 0, heaviest = 0;  // inverse
     for (std::size_t row = 0; row < bodies.count && vary_; ++row) {
-        const bool is_fixed = has_friction && (bodies.flags_of(row) & kFixedAngle) != 0;
+        const bool may_turn = has_friction || !bodies.is_disc(row);
+        const bool is_fixed = may_turn && (bodies.flags_of(row) & kFixedAngle) != 0;
         const double inverse = bodies.inverse_mass(row);
         inverse_[row] = static_cast<Real>(is_fixed ? -inverse : inverse);
         some_are_fixed_ = some_are_fixed_ || is_fixed;

@@ -15,7 +15,7 @@ class BodyMasses {
     /// Masses, flags or rows have changed.
     void forget() { are_known_ = false; }
     /// Derives them if they are not known. Cost: O(bodies) then, where masses vary.
-    /// @param has_friction  without it no body turns, so that none has a fixed angle
+    /// @param has_friction  without it no disc turns, so that none has a fixed angle
     /// @return whether they were derived anew
     bool derive(const Bodies<Real>& bodies, bool has_friction);
 

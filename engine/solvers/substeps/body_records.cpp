@@ -34,7 +34,7 @@ void BodyRecords<Real>::begin(const WorldState<Real>& world, const Column<Real>&
     BeginSubsteps<Real> k{};
     k.motion = motion.data();
     k.angular_velocity = has_rotation_ ? bodies.angular_velocity.data() : nullptr;
-    k.radius = bodies.radius.data(), k.uniform_radius = bodies.radius.uniform_value();
+    k.radius = bodies.rim().data(), k.uniform_radius = bodies.rim().uniform_value();
     k.inverse_mass = masses.inverse();
     k.uniform_inverse_mass = count_ > 0 ? real(bodies.inverse_mass(0)) : Real(0);
     k.gain_x = real(terms.gravity_change.x), k.gain_y = real(terms.gravity_change.y);
@@ -78,7 +78,7 @@ void BodyRecords<Real>::end(Bodies<Real>& bodies, ChunkedList& lost_rows, std::v
                             const StepLoops<Real>& loops) {
     EndSubsteps<Real> k{};
     k.velocity = velocity.data(), k.displacement = displacement.data(), k.turn = turn();
-    k.radius = bodies.radius.data(), k.uniform_radius = bodies.radius.uniform_value();
+    k.radius = bodies.rim().data(), k.uniform_radius = bodies.rim().uniform_value();
     k.position_x = bodies.position_x.data(), k.position_y = bodies.position_y.data();
     k.velocity_x = bodies.velocity_x.data(), k.velocity_y = bodies.velocity_y.data();
     k.angle = has_rotation_ ? bodies.angle.data() : nullptr;
@@ -102,7 +102,7 @@ Sums BodyRecords<Real>::sums_of_lost(const WorldState<Real>& world, std::size_t 
     const Bodies<Real>& bodies = world.bodies;
     const Real* record = &velocity[4 * row];
     return world.sums_of(row, {bodies.position_x[row], bodies.position_y[row]}, {record[0], record[1]},
-                         static_cast<double>(record[2]) / static_cast<double>(bodies.radius[row]));
+                         static_cast<double>(record[2]) / static_cast<double>(bodies.rim(row)));
 }
 
 template <class Real>
