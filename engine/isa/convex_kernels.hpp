@@ -1,8 +1,16 @@
 #pragma once
 
 #include "kernels/manifold_arguments.hpp"
+#include "kernels/path_arguments.hpp"
 
 namespace carom {
+
+/// The kernels that solve contacts along paths, of bundles first ... last.
+template <class Real>
+struct PathKernels {
+    using Pass = PathCounts (*)(const SolvePaths<Real>&, std::size_t first, std::size_t last);
+    Pass warm_start, solve, sweep;
+};
 
 /// The kernels of convex shapes of one instruction set in one precision. They are compiled in files of their
 /// own (<isa>_convex.cpp), so that what the compiler inlines there changes nothing for discs.
@@ -10,6 +18,7 @@ template <class Real>
 struct ConvexKernels {
     using Find = std::size_t (*)(const FindManifolds<Real>&, std::size_t first, std::size_t last);
     Find find_manifolds;  // of any convex shapes
+    PathKernels<Real> paths;
 };
 
 struct ConvexKernelTables {

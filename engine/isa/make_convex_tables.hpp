@@ -2,6 +2,7 @@
 
 #include "isa/convex_kernels.hpp"
 #include "kernels/find_manifolds.hpp"
+#include "kernels/solve_paths.hpp"
 #include "simd/lanes.hpp"
 
 namespace carom {
@@ -9,7 +10,8 @@ namespace {
 
 template <class Real, class Isa>
 constexpr ConvexKernels<Real> make_convex_kernels() {
-    return {.find_manifolds = &find_manifolds<Real, Isa>};
+    return {.find_manifolds = &find_manifolds<Real, Isa>,
+            .paths = {&warm_start_paths<Real, Isa>, &solve_paths<Real, Isa>, &sweep_all_paths<Real, Isa>}};
 }
 
 /// The kernels of convex shapes, instantiated for each instruction set by its file.

@@ -98,6 +98,11 @@ struct BatchLanes {
     static Batch load_unaligned(const Real* from) { return Batch::Raw::load_unaligned(from); }
     static void store(Real* to, Batch value) { value.raw.store_aligned(to); }
     static void store_unaligned(Real* to, Batch value) { value.raw.store_unaligned(to); }
+    static void scatter_at(Real* column, const std::int32_t* rows, Batch value) {
+        alignas(64) Real lane[size];
+        store(lane, value);
+        for (std::size_t i = 0; i < size; ++i) column[rows[i]] = lane[i];
+    }
 };
 
 }  // namespace

@@ -15,6 +15,7 @@
 ///   rows_sum(a, b)                                                of row numbers
 ///   gather(column, rows)                                          column[row] a lane
 ///   gather_at(column, rows*)                                      the same; quicker where rows are in memory
+///   scatter_at(column, rows*, batch)                              the same back; of equal rows the last lane
 ///   compress_store(out, rows, bits)   the lanes whose bit is set, in order, to out; returns how many.
 ///                                     Writes a whole batch: out needs room for `size` more numbers
 ///   compress_store(out, batch, bits)  the same for Reals; returns nothing

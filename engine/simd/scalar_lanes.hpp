@@ -111,6 +111,7 @@ struct ScalarLanes {
     static Batch load_unaligned(const Real* from) { return *from; }
     static void store(Real* to, Batch value) { *to = value; }
     static void store_unaligned(Real* to, Batch value) { *to = value; }
+    static void scatter_at(Real* column, const std::int32_t* rows, Batch value) { column[*rows] = value; }
 
     static Rows broadcast_row(std::int32_t row) { return row; }
     static Rows load_rows(const std::int32_t* from) { return *from; }

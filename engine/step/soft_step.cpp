@@ -40,6 +40,7 @@ class SoftStep final : public SoftSimulation<Real> {
     static constexpr auto has_masses = [](const Sim& sim) {
         return sim.can_meet() && (!sim.world.bodies.mass.is_uniform() || sim.world.bodies.has_flags);
     };
+    static constexpr auto has_shapes = [](const Sim& sim) { return sim.world.bodies.has_shapes; };
     static constexpr auto has_lost_bodies = [](const Sim& sim) { return !sim.lost.empty(); };
 
     static constexpr Stage<Sim> kBegin[] = {
@@ -62,14 +63,23 @@ class SoftStep final : public SoftSimulation<Real> {
         {"find_contacts",
          [](Sim& sim) { sim.soft.find_contacts(sim.world, sim.edge_candidates, sim.motion, sim.flight_dt); },
          can_meet, KernelChoice::contacts, "motion, coloured candidates, impulses", "contacts"},
+        {"find_manifolds", [](Sim& sim) { sim.soft.find_manifolds(sim.world); }, has_shapes,
+         KernelChoice::isa, "position, angle, velocity, candidate pairs, impulses of shapes",
+         "paths of contacts"},
         {"mark_impacts", [](Sim& sim) { sim.soft.mark_impacts(sim.world, sim.candidates); }, bounces,
          KernelChoice::none, "contacts, velocity", "contacts, impacts"},
         {"rebalance_loads", [](Sim& sim) { sim.soft.rebalance_loads(sim.world.bodies); }, has_lost_loads,
          KernelChoice::none, "contacts, contacts of removed bodies", "impulses"},
         {"warm_start", [](Sim& sim) { sim.soft.warm_start(); }, can_meet, KernelChoice::contacts,
          "contacts, impulses", "velocity records"},
+        {"warm_start_paths", [](Sim& sim) { sim.soft.warm_start_paths(); }, has_shapes, KernelChoice::isa,
+         "paths of contacts", "velocity records"},
     };
     static constexpr Stage<Sim> kSubstep[] = {
+        {"solve_paths",
+         [](Sim& sim) { sim.soft.solve_paths(sim.substep, sim.substep + 1 == sim.substep_count); },
+         has_shapes, KernelChoice::isa, "paths of contacts, velocity records",
+         "paths of contacts, velocity records, displacements"},
         {"solve_contacts",
          [](Sim& sim) { sim.soft.solve_contacts(sim.substep, sim.substep + 1 == sim.substep_count); },
          can_meet, KernelChoice::contacts, "contacts, velocity records",

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "solvers/substeps/body_masses.hpp"
 #include "solvers/soft/step_view.hpp"
+#include "solvers/substeps/body_masses.hpp"
 
 namespace carom {
 

@@ -11,6 +11,8 @@ namespace {
 
 /// Next sweeps of the first substep if there are no impulses to start from, unless none are asked for.
 constexpr int kFirstSweeps = 32;
+/// Likewise along paths of contacts, which take loads farther.
+constexpr int kFirstPasses = 8;
 constexpr std::size_t kRowsPerTask = 1024;  // where there is but one group
 
 static_assert(kContactBlock == kRowPadding);
@@ -55,6 +57,19 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const EdgeCa
     counters.colours = static_cast<std::int64_t>(graph.pairs.count.size());
     counters.overflow = static_cast<std::int64_t>(graph.pairs.overflow());
     sweeps_.begin_step(counters.contacts);
+}
+
+template <class Real>
+void SoftSolver<Real>::find_manifolds(const WorldState<Real>& world) {
+    paths.rescale(warm_start_.kept());
+    paths.find(world, terms_, {kNearFraction, settings_.fall}, records_, loops_);
+    counters.contacts += paths.counters.contacts;
+}
+
+template <class Real>
+void SoftSolver<Real>::solve_paths(int number, bool is_last) {
+    const bool starts_anew = number == 0 && warm_start_.starts_anew();
+    paths.solve(terms_, records_, loops_, starts_anew ? kFirstPasses : 1, is_last || starts_anew);
 }
 
 template <class Real>
@@ -118,6 +133,7 @@ void SoftSolver<Real>::carry_out_impacts(const Column<Real>& motion, Books& book
 
 template <class Real>
 void SoftSolver<Real>::end_contacts() {
+    paths.end();
     loads_.retain(view(), sweeps_);
     supports_.for_each([&](std::size_t i) {
         const auto candidate = static_cast<std::size_t>(supports_.candidate[i]);
@@ -131,9 +147,9 @@ void SoftSolver<Real>::end_contacts() {
 
 template <class Real>
 std::size_t SoftSolver<Real>::bytes() const {
-    return graph.bytes() + impacts.bytes() + masses_.bytes() + records_.bytes() + supports_.bytes() +
-           support_finder_.bytes() + warm_start_.bytes() + sweeps_.bytes() + loads_.bytes() +
-           uneven_.bytes() + projection_.bytes();
+    return graph.bytes() + paths.bytes() + impacts.bytes() + masses_.bytes() + records_.bytes() +
+           supports_.bytes() + support_finder_.bytes() + warm_start_.bytes() + sweeps_.bytes() +
+           loads_.bytes() + uneven_.bytes() + projection_.bytes();
 }
 
 template class SoftSolver<float>;

@@ -6,9 +6,8 @@
 
 #include "constraints/contact_graph.hpp"
 #include "constraints/contact_rows.hpp"
+#include "solvers/paths/path_solver.hpp"
 #include "solvers/shared/local_solve.hpp"
-#include "solvers/substeps/body_masses.hpp"
-#include "solvers/substeps/body_records.hpp"
 #include "solvers/soft/books.hpp"
 #include "solvers/soft/contact_settings.hpp"
 #include "solvers/soft/contact_sweeps.hpp"
@@ -20,6 +19,8 @@
 #include "solvers/soft/step_view.hpp"
 #include "solvers/soft/support_finder.hpp"
 #include "solvers/soft/warm_start.hpp"
+#include "solvers/substeps/body_masses.hpp"
+#include "solvers/substeps/body_records.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {
@@ -54,6 +55,7 @@ class SoftSolver {
   public:
     ContactGraph<Real> graph;
     Impacts<Real> impacts;
+    PathSolver<Real> paths;  ///< contacts of shapes that are no discs
     SoftCounters counters;
     /// Sweeps over the contacts a substep, >= 1: a first one and next ones. With 1 the first is not
     /// over-relaxed and loads are not corrected on the coarse grid; with more than 2 no contact is left out.
@@ -71,6 +73,8 @@ class SoftSolver {
     /// @param motion  [rows][4] at the start of the step; gets rows for the padding of groups
     void find_contacts(const WorldState<Real>& world, const EdgeCandidates<Real>& edges, Column<Real>& motion,
                        double dt);
+    /// Finds the contacts of shapes and lays them out along paths.
+    void find_manifolds(const WorldState<Real>& world);
     /// Tells what bounces from what rests (impacts.hpp).
     void mark_impacts(const WorldState<Real>& world, const Candidates<Real>& neighbours);
     /// Whether bodies are gone on which others rested.
@@ -80,6 +84,10 @@ class SoftSolver {
     /// Gives the bodies last step's impulses.
     void warm_start();
 
+    /// Gives bodies last step's impulses of shapes.
+    void warm_start_paths() { paths.warm_start(terms_, records_, loops_); }
+    /// Solves the contacts of shapes in substep `number`.
+    void solve_paths(int number, bool is_last);
     /// Both sweeps of substep `number`, or the first alone if correct_loads is due. The second leaves out
     /// what is calm, but not in the last substep.
     void solve_contacts(int number, bool is_last);
@@ -91,11 +99,15 @@ class SoftSolver {
     /// What the impulses of this substep did; only the walls' impulses if the ledger is closed.
     void book_substep(const WorldState<Real>& world, Books& books) {
         books_.book_substep(view(), world, books);
+        paths.book_substep(records_, books);
     }
     /// Carries out the impacts of a substep.
     void carry_out_impacts(const Column<Real>& motion, Books& books, Interruption& interruption);
     /// Moves the bodies through the substep that was solved.
-    void advance_bodies(bool is_last) { records_.advance(is_last, terms_, loops_); }
+    void advance_bodies(bool is_last) {
+        paths.advance(terms_, records_);
+        records_.advance(is_last, terms_, loops_);
+    }
 
     /// The impulses back to the candidates.
     void end_contacts();
@@ -131,7 +143,7 @@ class SoftSolver {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.graph, self.counters, self.impacts.counters, self.warm_start_, self.loads_);
+        archive(self.graph, self.paths, self.counters, self.impacts.counters, self.warm_start_, self.loads_);
         if constexpr (!std::is_const_v<Self>)
             self.forget_rows(), self.records_.forget(), self.impacts.forget();
     }

@@ -2,8 +2,8 @@
 
 #include "constraints/contact_graph.hpp"
 #include "constraints/contact_rows.hpp"
-#include "solvers/substeps/body_records.hpp"
 #include "solvers/soft/contact_settings.hpp"
+#include "solvers/substeps/body_records.hpp"
 #include "solvers/substeps/step_terms.hpp"
 
 namespace carom {

@@ -16,8 +16,9 @@ template <class Real>
 void WarmStart<Real>::begin_step(ContactGraph<Real>& graph, double substep_dt) {
     is_rebalanced_ = false;
     are_known_ = substep_dt < kOtherLength * substep_dt_ && substep_dt_ < kOtherLength * substep_dt;
+    kept_ = are_known_ ? substep_dt / substep_dt_ : 0;
     if (substep_dt == substep_dt_) return;
-    const auto kept = static_cast<Real>(are_known_ ? substep_dt / substep_dt_ : 0);
+    const auto kept = static_cast<Real>(kept_);
     for (ContactRows<Real>* rows : {&graph.pairs, &graph.supports})
         for (Column<Real>* impulses :
              {&rows->normal_impulse, &rows->friction_impulse, &rows->rolling_impulse})

@@ -14,6 +14,8 @@ class WarmStart {
     /// Spreads what removed bodies carried over other contacts.
     void rebalance(const StepView<Real>& step, const Bodies<Real>& bodies);
 
+    /// Factor by which `begin_step` has rescaled impulses.
+    double kept() const { return kept_; }
     /// Whether this step's contacts begin without impulses.
     bool starts_anew() const { return !are_known_; }
     /// Whether impulses were spread over other contacts in this step.
@@ -30,6 +32,7 @@ class WarmStart {
 
   private:
     double substep_dt_ = 0;  // s, 0: there are no impulses
+    double kept_ = 1;
     bool are_known_ = false, is_rebalanced_ = false;
     Rebalance<Real> rebalance_;
 };

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+// Plain arguments of the kernels that solve the contacts of convex shapes along paths: from body to body,
+// over one contact after the other. docs/decisions/0027-paths-of-contacts.md says why.
+
+namespace carom {
+
+/// Paths of a bundle: they share no body that moves, so each has a lane. A batch of any width is in one.
+inline constexpr std::size_t kPathLanes = 16;
+
+/// One contact of each path of a bundle: between the body where the path stands (the near one) and `body`
+/// (the far one), where it goes on. The normal leads from the near body to the far one, the tangent is the
+/// normal turned by a quarter counter-clockwise; impulses act on the far body, minus on the near one.
+///
+/// Levers are in rims of their body, as in constraints/contact_law.hpp: r x n / rim of the contact's points,
+/// r . n / rim of both. Lanes of paths that are shorter have levers and friction zero, no points, and a row
+/// at rest.
+template <class Real>
+struct alignas(64) PathLink {
+    std::int32_t body[kPathLanes];                          // row in the records
+    Real normal_x[kPathLanes], normal_y[kPathLanes];        // no unit
+    Real near1[kPathLanes], near2[kPathLanes];              // levers of the near body
+    Real near_t[kPathLanes];                                //
+    Real far1[kPathLanes], far2[kPathLanes];                // levers of the far body
+    Real far_t[kPathLanes];                                 //
+    Real separation1[kPathLanes], separation2[kPathLanes];  // m, at the start of the step; negative =
+                                                            // overlapping, kNoPoint = there is no such point
+    Real normal1[kPathLanes], normal2[kPathLanes];          // N s, of a substep, >= 0
+    Real tangent[kPathLanes];                               // N s, on the far body along the tangent
+    Real friction[kPathLanes];                              // Coulomb coefficient
+    Real thickness[kPathLanes];                             // m, smaller inradius of the two
+    Real floor1[kPathLanes], floor2[kPathLanes];            // m/s, least relative normal velocities
+};
+
+/// Paths of contacts, a bundle after the other.
+template <class Real>
+struct SolvePaths {
+    PathLink<Real>* links;          // of bundle i: first_link[i] ... first_link[i + 1]
+    const std::size_t* first_link;  //
+    const std::int32_t* heads;      // [bundles][kPathLanes]: rows where the paths begin
+    Real* velocity;                 // [rows][4], kernels/contact_arguments.hpp
+    Real* displacement;             // [rows][2], m, since the start of the step
+    Real* turn;                     // [rows], m, rim displacement since the start of the step
+    Real h;                         // s, of the substep
+    Real inverse_h;                 // 1/s
+    Real recovery;                  // share of an overlap that a substep takes away, by displacement
+    Real push;                      // 1/s: largest displacement of that kind in thicknesses a second
+    Real velocity_tolerance;        // m/s, by which a contact may miss its law
+    int most_iterations;            // of the active set
+    int sweeps_of_unsettled;        // over paths whose active set does not settle by then
+    void* scratch;                  // of path_scratch_bytes(longest bundle) bytes, aligned to 64
+};
+
+/// Bytes that a link needs while its path is solved; those of the widest batch.
+inline constexpr std::size_t kPathScratchBytes = 64 * 36;
+inline constexpr std::size_t path_scratch_bytes(std::size_t longest) {
+    return (longest + 1) * kPathScratchBytes;
+}
+
+/// What the kernel met.
+struct PathCounts {
+    std::size_t iterations = 0;  // batch and link
+    std::size_t unsettled = 0;   // lanes
+};
+
+}  // namespace carom

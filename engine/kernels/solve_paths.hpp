@@ -1,0 +1,485 @@
+#pragma once
+
+#include "kernels/path_arguments.hpp"
+#include "simd/lanes.hpp"
+
+// Contacts of convex shapes along paths, 16 paths side by side. A contact has two normal rows and one row of
+// friction; along a path it couples with the contact before it and the one behind it through the body between
+// them, so all rows of a path are a block tridiagonal system. It is solved exactly, with an active set: which
+// points push, which contacts slip. docs/decisions/0027-paths-of-contacts.md has the derivation.
+
+namespace carom {
+namespace {
+
+/// Diagonals grow by this share, so that contacts which hold a body twice have a solution.
+constexpr double kRegularisation = 1e-5;
+/// Speeds that no solution reaches [m/s]: an iteration that does is void.
+constexpr double kUnsound = 1e15;
+
+/// Solves a two-by-two problem of complementarity: x >= 0, K x + b >= 0, one of both zero. K = [k11 k12; k12
+/// k22]. All four cases are told apart by the same numbers: otherwise round-off could refuse all of them and
+/// drop a load.
+template <class F>
+[[gnu::always_inline]] inline void solve_two_normals(F k11, F k12, F k22, F b1, F b2, F& x1, F& x2) {
+    using simd::select;
+    const F zero(0), n1 = k12 * b2 - k22 * b1, n2 = k12 * b1 - k11 * b2;
+    const F determinant = k11 * k22 - k12 * k12, inverse = F(1) / determinant;
+    const auto both = (n1 >= zero) & (n2 >= zero) & (determinant > zero);
+    const auto one = (!both) & (b1 < zero) & (n2 <= zero),
+               two = (!both) & (!one) & (b2 < zero) & (n1 <= zero);
+    x1 = select(both, n1 * inverse, select(one, -b1 / k11, zero));
+    x2 = select(both, n2 * inverse, select(two, -b2 / k22, zero));
+}
+
+/// A body of a path, in the records.
+template <class Lanes>
+struct PathBody {
+    using F = typename Lanes::Batch;
+    typename Lanes::Batch4 record;  // vx, vy, rim speed [m/s], inverse mass with a sign
+
+    F inverse_mass() const { return simd::abs(record[3]); }
+    F inverse_rim_mass() const {
+        const F turning = simd::max(record[3], F(0));
+        return turning + turning;
+    }
+    /// @param spin  sum of lever times impulse
+    void apply(F sign, F jx, F jy, F spin) {
+        const F w = inverse_mass() * sign;
+        record[0] += w * jx, record[1] += w * jy, record[2] += inverse_rim_mass() * sign * spin;
+    }
+};
+
+/// A link's numbers, a lane a path.
+template <class Lanes, class Real>
+struct LinkLanes {
+    using F = typename Lanes::Batch;
+    F nx, ny, near1, near2, near_t, far1, far2, far_t;
+
+    LinkLanes(const PathLink<Real>& link, std::size_t o)
+        : nx(Lanes::load(link.normal_x + o)),
+          ny(Lanes::load(link.normal_y + o)),
+          near1(Lanes::load(link.near1 + o)),
+          near2(Lanes::load(link.near2 + o)),
+          near_t(Lanes::load(link.near_t + o)),
+          far1(Lanes::load(link.far1 + o)),
+          far2(Lanes::load(link.far2 + o)),
+          far_t(Lanes::load(link.far_t + o)) {}
+
+    /// Relative velocity (or displacement) of the first point along the normal, of the second, of both along
+    /// the tangent.
+    void relative(F dx, F dy, F of_near, F of_far, F& v1, F& v2, F& vt) const {
+        const F vn = dx * nx + dy * ny;
+        v1 = vn + of_far * far1 - of_near * near1;
+        v2 = vn + of_far * far2 - of_near * near2;
+        vt = dy * nx - dx * ny + of_far * far_t - of_near * near_t;
+    }
+    /// Impulse of the normal and tangential ones, in x and y.
+    void impulse(F normal, F tangent, F& jx, F& jy) const {
+        jx = normal * nx - tangent * ny, jy = normal * ny + tangent * nx;
+    }
+};
+
+/// What an impulse along each row changes the velocity of each row by [1/kg].
+template <class F>
+struct LinkMass {
+    F k11, k12, k22, k1t, k2t, ktt;
+
+    template <class Lanes, class Real>
+    LinkMass(const LinkLanes<Lanes, Real>& l, F near_w, F near_w2, F far_w, F far_w2) {
+        const F w = near_w + far_w, a1 = near_w2 * l.near1, a2 = near_w2 * l.near2, b1 = far_w2 * l.far1,
+                b2 = far_w2 * l.far2;
+        k11 = w + a1 * l.near1 + b1 * l.far1, k12 = w + a1 * l.near2 + b1 * l.far2;
+        k22 = w + a2 * l.near2 + b2 * l.far2;
+        k1t = a1 * l.near_t + b1 * l.far_t, k2t = a2 * l.near_t + b2 * l.far_t;
+        ktt = w + near_w2 * l.near_t * l.near_t + far_w2 * l.far_t * l.far_t;
+    }
+};
+
+/// A link while its path is solved.
+template <class Lanes>
+struct LinkScratch {
+    using F = typename Lanes::Batch;
+    using Mask = typename Lanes::Mask;
+    F w, w2;  // of the far body
+    F v1, v2, vt, floor1, floor2;
+    F upper[9], right[3];       // the eliminated system: x[i] = right - upper x[i + 1]
+    F change[3];                // of the impulses
+    F dvx, dvy, du;             // of the far body's velocity
+    Mask pushes1, pushes2;      // the active set
+    Mask slips_up, slips_down;  // the tangential impulse is at its limit, with + and with - friction
+};
+
+template <class Lanes>
+void add_to_records(typename Lanes::Number* velocity, const std::int32_t* rows, typename Lanes::Mask where,
+                    const LinkScratch<Lanes>& s) {
+    using F = typename Lanes::Batch;
+    auto record = Lanes::load_rows4(velocity, rows);
+    record[0] += simd::select(where, s.dvx, F(0)), record[1] += simd::select(where, s.dvy, F(0));
+    record[2] += simd::select(where, s.du, F(0));
+    Lanes::store_rows4(velocity, rows, record);
+}
+
+/// Lanes of one batch of a bundle: what all functions below are told.
+template <class Real>
+struct PathBatch {
+    const SolvePaths<Real>& k;
+    PathLink<Real>* link;      // the first
+    std::size_t length, lane;  // links; first lane of the batch
+    const std::int32_t* head;  // rows
+
+    const std::int32_t* near_rows(std::size_t i) const { return i == 0 ? head : link[i - 1].body + lane; }
+    const std::int32_t* far_rows(std::size_t i) const { return link[i].body + lane; }
+};
+
+/// Floors of a substep, and a share of the overlaps taken away by displacing and turning bodies.
+template <class Lanes, class Real>
+void part_paths(const PathBatch<Real>& p) {
+    using F = typename Lanes::Batch;
+    const SolvePaths<Real>& k = p.k;
+    const F zero(0);
+    for (std::size_t i = 0; i < p.length; ++i) {
+        PathLink<Real>& link = p.link[i];
+        const std::int32_t *near = p.near_rows(i), *far = p.far_rows(i);
+        const LinkLanes<Lanes, Real> l(link, p.lane);
+        auto at_near = Lanes::load_rows2(k.displacement, near),
+             at_far = Lanes::load_rows2(k.displacement, far);
+        F turn_near = Lanes::gather_at(k.turn, near), turn_far = Lanes::gather_at(k.turn, far);
+        F s1, s2, along;
+        l.relative(at_far[0] - at_near[0], at_far[1] - at_near[1], turn_near, turn_far, s1, s2, along);
+        s1 += Lanes::load(link.separation1 + p.lane), s2 += Lanes::load(link.separation2 + p.lane);
+        Lanes::store(link.floor1 + p.lane, simd::min(-s1 * F(k.inverse_h), zero));
+        Lanes::store(link.floor2 + p.lane, simd::min(-s2 * F(k.inverse_h), zero));
+        const auto deep = (s1 < zero) | (s2 < zero);
+        if (!simd::any(deep)) continue;
+        const PathBody<Lanes> a{Lanes::load_rows4(k.velocity, near)}, b{Lanes::load_rows4(k.velocity, far)};
+        const LinkMass<F> mass(l, a.inverse_mass(), a.inverse_rim_mass(), b.inverse_mass(),
+                               b.inverse_rim_mass());
+        const auto wanted = [&](F s) { return simd::select(s < zero, F(k.recovery) * s, s); };
+        F push1, push2;
+        solve_two_normals(mass.k11, mass.k12, mass.k22, wanted(s1), wanted(s2), push1, push2);
+        const F cap = F(k.push * k.h) * Lanes::load(link.thickness + p.lane);
+        push1 = simd::select(
+            deep, simd::min(push1, cap / mass.k11 + F(k.h) * Lanes::load(link.normal1 + p.lane)), zero);
+        push2 = simd::select(
+            deep, simd::min(push2, cap / mass.k22 + F(k.h) * Lanes::load(link.normal2 + p.lane)), zero);
+        const F push = push1 + push2;
+        at_near[0] -= a.inverse_mass() * push * l.nx, at_near[1] -= a.inverse_mass() * push * l.ny;
+        at_far[0] += b.inverse_mass() * push * l.nx, at_far[1] += b.inverse_mass() * push * l.ny;
+        turn_near -= a.inverse_rim_mass() * (l.near1 * push1 + l.near2 * push2);
+        turn_far += b.inverse_rim_mass() * (l.far1 * push1 + l.far2 * push2);
+        Lanes::store_rows2(k.displacement, near, at_near), Lanes::store_rows2(k.displacement, far, at_far);
+        Lanes::scatter_at(k.turn, near, turn_near), Lanes::scatter_at(k.turn, far, turn_far);
+    }
+}
+
+/// One Gauss-Seidel sweep along the paths, of the lanes in `where` alone.
+/// @return the largest change of an impulse, in m/s
+template <class Lanes, class Real>
+void sweep_paths(const PathBatch<Real>& p, bool is_forward, typename Lanes::Mask where) {
+    using F = typename Lanes::Batch;
+    const SolvePaths<Real>& k = p.k;
+    const F zero(0);
+    for (std::size_t step = 0; step < p.length; ++step) {
+        const std::size_t i = is_forward ? step : p.length - 1 - step;
+        PathLink<Real>& link = p.link[i];
+        const std::int32_t *near = p.near_rows(i), *far = p.far_rows(i);
+        const LinkLanes<Lanes, Real> l(link, p.lane);
+        PathBody<Lanes> a{Lanes::load_rows4(k.velocity, near)}, b{Lanes::load_rows4(k.velocity, far)};
+        const LinkMass<F> mass(l, a.inverse_mass(), a.inverse_rim_mass(), b.inverse_mass(),
+                               b.inverse_rim_mass());
+        F v1, v2, vt;
+        l.relative(b.record[0] - a.record[0], b.record[1] - a.record[1], a.record[2], b.record[2], v1, v2,
+                   vt);
+        const F old1 = Lanes::load(link.normal1 + p.lane), old2 = Lanes::load(link.normal2 + p.lane),
+                old_t = Lanes::load(link.tangent + p.lane);
+        F new1, new2;
+        solve_two_normals(mass.k11, mass.k12, mass.k22,
+                          v1 - Lanes::load(link.floor1 + p.lane) - mass.k11 * old1 - mass.k12 * old2,
+                          v2 - Lanes::load(link.floor2 + p.lane) - mass.k12 * old1 - mass.k22 * old2, new1,
+                          new2);
+        // Lanes of shorter paths have no mass: what is no number there must not be kept.
+        const auto moves = where & (mass.k11 > zero);
+        new1 = simd::select(moves, new1, old1), new2 = simd::select(moves, new2, old2);
+        const F add1 = new1 - old1, add2 = new2 - old2;
+        const F vt_now = vt + mass.k1t * add1 + mass.k2t * add2;
+        const F limit = Lanes::load(link.friction + p.lane) * (new1 + new2);
+        const F new_t =
+            simd::select(moves, simd::min(simd::max(old_t - vt_now / mass.ktt, -limit), limit), old_t);
+        const F add_t = new_t - old_t;
+        F jx, jy;
+        l.impulse(add1 + add2, add_t, jx, jy);
+        a.apply(F(-1), jx, jy, l.near1 * add1 + l.near2 * add2 + l.near_t * add_t);
+        b.apply(F(1), jx, jy, l.far1 * add1 + l.far2 * add2 + l.far_t * add_t);
+        Lanes::store_rows4(k.velocity, near, a.record), Lanes::store_rows4(k.velocity, far, b.record);
+        Lanes::store(link.normal1 + p.lane, new1), Lanes::store(link.normal2 + p.lane, new2);
+        Lanes::store(link.tangent + p.lane, new_t);
+    }
+}
+
+/// Relative velocities of the links and a first guess of the active set.
+/// @return the largest relative speed of each lane [m/s]
+template <class Lanes, class Real>
+typename Lanes::Batch begin_paths(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch) {
+    using F = typename Lanes::Batch;
+    const SolvePaths<Real>& k = p.k;
+    const F zero(0);
+    F fastest(0);
+    PathBody<Lanes> a{Lanes::load_rows4(k.velocity, p.head)};
+    scratch[p.length].w = a.inverse_mass(), scratch[p.length].w2 = a.inverse_rim_mass();
+    for (std::size_t i = 0; i < p.length; ++i) {
+        const PathLink<Real>& link = p.link[i];
+        LinkScratch<Lanes>& s = scratch[i];
+        const LinkLanes<Lanes, Real> l(link, p.lane);
+        const PathBody<Lanes> b{Lanes::load_rows4(k.velocity, p.far_rows(i))};
+        s.w = b.inverse_mass(), s.w2 = b.inverse_rim_mass();
+        l.relative(b.record[0] - a.record[0], b.record[1] - a.record[1], a.record[2], b.record[2], s.v1, s.v2,
+                   s.vt);
+        s.floor1 = Lanes::load(link.floor1 + p.lane), s.floor2 = Lanes::load(link.floor2 + p.lane);
+        const F old1 = Lanes::load(link.normal1 + p.lane), old2 = Lanes::load(link.normal2 + p.lane),
+                old_t = Lanes::load(link.tangent + p.lane);
+        s.pushes1 = (old1 > zero) | (s.v1 < s.floor1), s.pushes2 = (old2 > zero) | (s.v2 < s.floor2);
+        const F limit = Lanes::load(link.friction + p.lane) * (old1 + old2);
+        const auto is_idle = !(s.pushes1 | s.pushes2);
+        const auto slips = (simd::abs(old_t) >= limit * F(Real(.999999))) & (old_t * s.vt < zero);
+        s.slips_up = is_idle | (slips & (old_t > zero)), s.slips_down = (!is_idle) & slips & (old_t < zero);
+        fastest = simd::max(fastest, simd::max(simd::max(simd::abs(s.v1), simd::abs(s.v2)), simd::abs(s.vt)));
+        a = b;
+    }
+    return fastest;
+}
+
+/// Eliminates the impulses of the links, from the first to the last.
+template <class Lanes, class Real>
+void eliminate(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch) {
+    using F = typename Lanes::Batch;
+    using simd::select;
+    const F zero(0), one(1), grown(static_cast<Real>(1 + kRegularisation));
+    F lower[9], upper[9], right[3];  // lower: rows of this link, columns of the one before
+    for (int e = 0; e < 9; ++e) lower[e] = upper[e] = zero;
+    for (int e = 0; e < 3; ++e) right[e] = zero;
+    F near_w = scratch[p.length].w, near_w2 = scratch[p.length].w2;
+    for (std::size_t i = 0; i < p.length; ++i) {
+        const PathLink<Real>& link = p.link[i];
+        LinkScratch<Lanes>& s = scratch[i];
+        const LinkLanes<Lanes, Real> l(link, p.lane);
+        const LinkMass<F> mass(l, near_w, near_w2, s.w, s.w2);
+        F m[9] = {mass.k11 * grown, mass.k12, mass.k1t, mass.k12,        mass.k22 * grown,
+                  mass.k2t,         mass.k1t, mass.k2t, mass.ktt * grown};
+        F b[3] = {s.floor1 - s.v1, s.floor2 - s.v2, -s.vt};
+        for (int r = 0; r < 3; ++r) {
+            for (int c = 0; c < 3; ++c)
+                m[3 * r + c] -= lower[3 * r] * upper[c] + lower[3 * r + 1] * upper[3 + c] +
+                                lower[3 * r + 2] * upper[6 + c];
+            b[r] -= lower[3 * r] * right[0] + lower[3 * r + 1] * right[1] + lower[3 * r + 2] * right[2];
+        }
+        // The coupling with the next link, through the far body: rows of this one, columns of that one.
+        F next[9];
+        if (i + 1 < p.length) {
+            const LinkLanes<Lanes, Real> q(p.link[i + 1], p.lane);
+            const F nn = -s.w * (l.nx * q.nx + l.ny * q.ny), nt = -s.w * (l.ny * q.nx - l.nx * q.ny),
+                    c1 = -s.w2 * l.far1, c2 = -s.w2 * l.far2, ct = -s.w2 * l.far_t;
+            next[0] = nn + c1 * q.near1, next[1] = nn + c1 * q.near2, next[2] = nt + c1 * q.near_t;
+            next[3] = nn + c2 * q.near1, next[4] = nn + c2 * q.near2, next[5] = nt + c2 * q.near_t;
+            next[6] = -nt + ct * q.near1, next[7] = -nt + ct * q.near2, next[8] = nn + ct * q.near_t;
+        } else {
+            for (F& e : next) e = zero;
+        }
+        F right_side[9];
+        const F old1 = Lanes::load(link.normal1 + p.lane), old2 = Lanes::load(link.normal2 + p.lane),
+                old_t = Lanes::load(link.tangent + p.lane), friction = Lanes::load(link.friction + p.lane);
+        // A point that does not push: its impulse becomes zero.
+        m[0] = select(s.pushes1, m[0], one), m[1] = select(s.pushes1, m[1], zero);
+        m[2] = select(s.pushes1, m[2], zero), b[0] = select(s.pushes1, b[0], -old1);
+        m[4] = select(s.pushes2, m[4], one), m[3] = select(s.pushes2, m[3], zero);
+        m[5] = select(s.pushes2, m[5], zero), b[1] = select(s.pushes2, b[1], -old2);
+        // A contact that slips: its tangential impulse goes with the normal ones.
+        const auto slips = s.slips_up | s.slips_down;
+        const F slope = select(s.slips_up, friction, -friction);
+        m[6] = select(slips, -slope, m[6]), m[7] = select(slips, -slope, m[7]),
+        m[8] = select(slips, one, m[8]);
+        b[2] = select(slips, slope * (old1 + old2) - old_t, b[2]);
+        for (int c = 0; c < 3; ++c) {
+            right_side[c] = select(s.pushes1, next[c], zero);
+            right_side[3 + c] = select(s.pushes2, next[3 + c], zero);
+            right_side[6 + c] = select(slips, zero, next[6 + c]);
+        }
+        const F c0 = m[4] * m[8] - m[5] * m[7], c1 = m[5] * m[6] - m[3] * m[8],
+                c2 = m[3] * m[7] - m[4] * m[6];
+        const F d = one / (m[0] * c0 + m[1] * c1 + m[2] * c2);
+        const F inverse[9] = {c0 * d, (m[2] * m[7] - m[1] * m[8]) * d, (m[1] * m[5] - m[2] * m[4]) * d,
+                              c1 * d, (m[0] * m[8] - m[2] * m[6]) * d, (m[2] * m[3] - m[0] * m[5]) * d,
+                              c2 * d, (m[1] * m[6] - m[0] * m[7]) * d, (m[0] * m[4] - m[1] * m[3]) * d};
+        for (int r = 0; r < 3; ++r) {
+            for (int c = 0; c < 3; ++c)
+                s.upper[3 * r + c] = upper[3 * r + c] = inverse[3 * r] * right_side[c] +
+                                                        inverse[3 * r + 1] * right_side[3 + c] +
+                                                        inverse[3 * r + 2] * right_side[6 + c];
+            s.right[r] = right[r] =
+                inverse[3 * r] * b[0] + inverse[3 * r + 1] * b[1] + inverse[3 * r + 2] * b[2];
+        }
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c) lower[3 * r + c] = next[3 * c + r];
+        near_w = s.w, near_w2 = s.w2;
+    }
+}
+
+/// The impulses from the last link to the first, what they do to the bodies, and the next active set.
+/// @param by_speed, by_impulse  tolerances [m/s], the second of impulse times inverse mass
+/// @return lanes that are not solved yet
+template <class Lanes, class Real>
+typename Lanes::Mask substitute(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch,
+                                typename Lanes::Batch by_speed, typename Lanes::Batch by_impulse) {
+    using F = typename Lanes::Batch;
+    const F zero(0);
+    auto bad = zero < zero;
+    // Change of velocity of the far body of the link that is looked at, and of its near body.
+    F far_x = zero, far_y = zero, far_u = zero;
+    const auto check = [&](std::size_t i, F near_x, F near_y, F near_u) {
+        const PathLink<Real>& link = p.link[i];
+        LinkScratch<Lanes>& s = scratch[i];
+        const LinkLanes<Lanes, Real> l(link, p.lane);
+        F v1, v2, vt;
+        l.relative(far_x - near_x, far_y - near_y, near_u, far_u, v1, v2, vt);
+        v1 += s.v1, v2 += s.v2, vt += s.vt;
+        const F w = s.w + (i == 0 ? scratch[p.length].w : scratch[i - 1].w);
+        const F new1 = Lanes::load(link.normal1 + p.lane) + s.change[0],
+                new2 = Lanes::load(link.normal2 + p.lane) + s.change[1],
+                new_t = Lanes::load(link.tangent + p.lane) + s.change[2],
+                limit = Lanes::load(link.friction + p.lane) * (new1 + new2);
+        const auto off1 = s.pushes1 & (new1 * w < -by_impulse),
+                   on1 = (!s.pushes1) & (v1 - s.floor1 < -by_speed),
+                   off2 = s.pushes2 & (new2 * w < -by_impulse),
+                   on2 = (!s.pushes2) & (v2 - s.floor2 < -by_speed);
+        const auto sticks = !(s.slips_up | s.slips_down);
+        const auto breaks = sticks & ((simd::abs(new_t) - limit) * w > by_impulse);
+        const auto holds = (s.slips_up & (vt > by_speed)) | (s.slips_down & (vt < -by_speed));
+        s.pushes1 = (s.pushes1 & !off1) | on1, s.pushes2 = (s.pushes2 & !off2) | on2;
+        s.slips_up = (s.slips_up & !holds) | (breaks & (new_t > zero));
+        s.slips_down = (s.slips_down & !holds) | (breaks & (new_t <= zero));
+        const auto is_sound = simd::abs(v1) + simd::abs(v2) + simd::abs(vt) < F(static_cast<Real>(kUnsound));
+        bad = bad | off1 | on1 | off2 | on2 | breaks | holds | !is_sound;
+    };
+    F x0 = zero, x1 = zero, x2 = zero, jx_next = zero, jy_next = zero, spin_next = zero;
+    for (std::size_t i = p.length; i-- > 0;) {
+        const PathLink<Real>& link = p.link[i];
+        LinkScratch<Lanes>& s = scratch[i];
+        const LinkLanes<Lanes, Real> l(link, p.lane);
+        const F y0 = s.right[0] - (s.upper[0] * x0 + s.upper[1] * x1 + s.upper[2] * x2),
+                y1 = s.right[1] - (s.upper[3] * x0 + s.upper[4] * x1 + s.upper[5] * x2),
+                y2 = s.right[2] - (s.upper[6] * x0 + s.upper[7] * x1 + s.upper[8] * x2);
+        x0 = s.change[0] = y0, x1 = s.change[1] = y1, x2 = s.change[2] = y2;
+        F jx, jy;
+        l.impulse(x0 + x1, x2, jx, jy);
+        s.dvx = s.w * (jx - jx_next), s.dvy = s.w * (jy - jy_next);
+        s.du = s.w2 * (l.far1 * x0 + l.far2 * x1 + l.far_t * x2 - spin_next);
+        if (i + 1 < p.length) check(i + 1, s.dvx, s.dvy, s.du);
+        far_x = s.dvx, far_y = s.dvy, far_u = s.du;
+        jx_next = jx, jy_next = jy, spin_next = l.near1 * x0 + l.near2 * x1 + l.near_t * x2;
+    }
+    LinkScratch<Lanes>& head = scratch[p.length];
+    head.dvx = -head.w * jx_next, head.dvy = -head.w * jy_next, head.du = -head.w2 * spin_next;
+    check(0, head.dvx, head.dvy, head.du);
+    return bad;
+}
+
+/// Gives the bodies and the links the changes, of the lanes in `where` alone.
+template <class Lanes, class Real>
+void apply_changes(const PathBatch<Real>& p, const LinkScratch<Lanes>* scratch, typename Lanes::Mask where) {
+    using F = typename Lanes::Batch;
+    using simd::select;
+    const F zero(0);
+    add_to_records<Lanes>(p.k.velocity, p.head, where, scratch[p.length]);
+    for (std::size_t i = 0; i < p.length; ++i) {
+        PathLink<Real>& link = p.link[i];
+        const LinkScratch<Lanes>& s = scratch[i];
+        add_to_records<Lanes>(p.k.velocity, p.far_rows(i), where, s);
+        const F old1 = Lanes::load(link.normal1 + p.lane), old2 = Lanes::load(link.normal2 + p.lane),
+                old_t = Lanes::load(link.tangent + p.lane);
+        const F new1 = simd::max(old1 + s.change[0], zero), new2 = simd::max(old2 + s.change[1], zero),
+                limit = Lanes::load(link.friction + p.lane) * (new1 + new2),
+                new_t = simd::min(simd::max(old_t + s.change[2], -limit), limit);
+        Lanes::store(link.normal1 + p.lane, select(where, new1, old1));
+        Lanes::store(link.normal2 + p.lane, select(where, new2, old2));
+        Lanes::store(link.tangent + p.lane, select(where, new_t, old_t));
+    }
+}
+
+/// Calls fn(batch) for each batch of each bundle.
+template <class Lanes, class Real, class Fn>
+[[gnu::always_inline]] inline void for_each_path_batch(const SolvePaths<Real>& k, std::size_t first,
+                                                       std::size_t last, const Fn& fn) {
+    for (std::size_t bundle = first; bundle < last; ++bundle)
+        for (std::size_t lane = 0; lane < kPathLanes; lane += Lanes::size)
+            fn(PathBatch<Real>{k, k.links + k.first_link[bundle],
+                               k.first_link[bundle + 1] - k.first_link[bundle], lane,
+                               k.heads + bundle * kPathLanes + lane});
+}
+
+/// The first pass of a substep over bundles: floors, displacements, and the exact solve of each path.
+template <class Real, class Isa>
+PathCounts solve_paths(const SolvePaths<Real>& arguments, std::size_t first, std::size_t last) {
+    using Lanes = simd::Lanes<Real, Isa>;
+    using F = typename Lanes::Batch;
+    static_assert(sizeof(LinkScratch<Lanes>) <= kPathScratchBytes);
+    const SolvePaths<Real> k = arguments;  // a copy: no store can change it
+    auto* scratch = static_cast<LinkScratch<Lanes>*>(k.scratch);
+    PathCounts counts;
+    for_each_path_batch<Lanes>(k, first, last, [&](const PathBatch<Real>& p) {
+        part_paths<Lanes>(p);
+        const F fastest = begin_paths<Lanes>(p, scratch);
+        // Round-off of velocities, in shares of the largest.
+        const F by_speed = F(k.velocity_tolerance) + fastest * F(static_cast<Real>(4e-6)),
+                by_impulse =
+                    F(k.velocity_tolerance * static_cast<Real>(.1)) + fastest * F(static_cast<Real>(1e-6));
+        auto bad = F(0) <= F(0);
+        for (int i = 0; i < k.most_iterations && simd::any(bad); ++i) {
+            eliminate<Lanes>(p, scratch);
+            bad = substitute<Lanes>(p, scratch, by_speed, by_impulse);
+            counts.iterations += p.length;
+        }
+        apply_changes<Lanes>(p, scratch, !bad);
+        if (!simd::any(bad)) return;
+        counts.unsettled += static_cast<std::size_t>(__builtin_popcount(simd::bitmask(bad)));
+        for (int i = 0; i < k.sweeps_of_unsettled; ++i) sweep_paths<Lanes>(p, i % 2 == 0, bad);
+    });
+    return counts;
+}
+
+/// The last pass of a substep: a sweep over all links.
+template <class Real, class Isa>
+PathCounts sweep_all_paths(const SolvePaths<Real>& arguments, std::size_t first, std::size_t last) {
+    using Lanes = simd::Lanes<Real, Isa>;
+    using F = typename Lanes::Batch;
+    const SolvePaths<Real> k = arguments;  // a copy: no store can change it
+    for_each_path_batch<Lanes>(k, first, last,
+                               [&](const PathBatch<Real>& p) { sweep_paths<Lanes>(p, true, F(0) <= F(0)); });
+    return {};
+}
+
+/// Gives the bodies the impulses that their contacts had at the end of the step before.
+template <class Real, class Isa>
+PathCounts warm_start_paths(const SolvePaths<Real>& arguments, std::size_t first, std::size_t last) {
+    using Lanes = simd::Lanes<Real, Isa>;
+    using F = typename Lanes::Batch;
+    const SolvePaths<Real> k = arguments;  // a copy: no store can change it
+    for_each_path_batch<Lanes>(k, first, last, [&](const PathBatch<Real>& p) {
+        for (std::size_t i = 0; i < p.length; ++i) {
+            const PathLink<Real>& link = p.link[i];
+            const LinkLanes<Lanes, Real> l(link, p.lane);
+            PathBody<Lanes> a{Lanes::load_rows4(k.velocity, p.near_rows(i))},
+                b{Lanes::load_rows4(k.velocity, p.far_rows(i))};
+            const F n1 = Lanes::load(link.normal1 + p.lane), n2 = Lanes::load(link.normal2 + p.lane),
+                    t = Lanes::load(link.tangent + p.lane);
+            F jx, jy;
+            l.impulse(n1 + n2, t, jx, jy);
+            a.apply(F(-1), jx, jy, l.near1 * n1 + l.near2 * n2 + l.near_t * t);
+            b.apply(F(1), jx, jy, l.far1 * n1 + l.far2 * n2 + l.far_t * t);
+            Lanes::store_rows4(k.velocity, p.near_rows(i), a.record);
+            Lanes::store_rows4(k.velocity, p.far_rows(i), b.record);
+        }
+    });
+    return {};
+}
+
+}  // namespace
+}  // namespace carom

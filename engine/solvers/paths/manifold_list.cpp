@@ -1,0 +1,48 @@
+#include "solvers/paths/manifold_list.hpp"
+
+namespace carom {
+
+template <class Real>
+template <class Self, class Fn>
+void ManifoldList<Real>::for_each_found_column(Self& self, const Fn& fn) {
+    for (auto* column :
+         {&self.normal_x, &self.normal_y, &self.lever_a1, &self.lever_a2, &self.lever_b1, &self.lever_b2,
+          &self.lever_a_t, &self.lever_b_t, &self.separation1, &self.separation2})
+        fn(*column);
+}
+
+template <class Real>
+void ManifoldList<Real>::clear() {
+    a.clear(), b.clear();
+    names.clear(), memory.clear();
+}
+
+template <class Real>
+void ManifoldList<Real>::add(std::int32_t row_a, std::int32_t partner, const Name& name) {
+    a.push_back(row_a), b.push_back(partner), names.push_back(name), memory.push_back({});
+}
+
+template <class Real>
+void ManifoldList<Real>::fit() {
+    for (Column<Real>* column : {&margin, &thickness, &friction}) column->resize(count());
+    for_each_found_column(*this, [&](Column<Real>& column) { column.resize(count()); });
+}
+
+template <class Real>
+ManifoldColumns<Real> ManifoldList<Real>::columns() {
+    return {normal_x.data(), normal_y.data(),  lever_a1.data(),  lever_a2.data(),    lever_b1.data(),
+            lever_b2.data(), lever_a_t.data(), lever_b_t.data(), separation1.data(), separation2.data()};
+}
+
+template <class Real>
+std::size_t ManifoldList<Real>::bytes() const {
+    std::size_t bytes = a.bytes() + b.bytes() + margin.bytes() + thickness.bytes() + friction.bytes() +
+                        names.capacity() * sizeof(Name) + memory.capacity() * sizeof(ManifoldMemory<Real>);
+    for_each_found_column(*this, [&](const Column<Real>& column) { bytes += column.bytes(); });
+    return bytes;
+}
+
+template struct ManifoldList<float>;
+template struct ManifoldList<double>;
+
+}  // namespace carom

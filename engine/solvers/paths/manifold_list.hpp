@@ -1,0 +1,72 @@
+#pragma once
+
+#include <carom/scene.hpp>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kernels/manifold_arguments.hpp"
+#include "state/column.hpp"
+
+namespace carom {
+
+/// What lasts of a contact of convex shapes from step to step.
+template <class Real>
+struct ManifoldMemory {
+    Real normal_x = 0, normal_y = 0;             // of the step that the impulses are of
+    Real normal1 = 0, normal2 = 0, tangent = 0;  // N s, of a substep
+
+    bool is_loaded() const { return normal1 + normal2 > 0; }
+    /// The same contact seen from its other body: the normal turns round, and with it the order of the
+    /// points.
+    ManifoldMemory reversed() const { return {-normal_x, -normal_y, normal2, normal1, tangent}; }
+};
+
+/// Contacts of convex shapes that can come about before the candidate pairs change, as columns.
+template <class Real>
+struct ManifoldList {
+    /// Names a contact whatever row its bodies have.
+    struct Name {
+        BodyId a, b;             // b: a body; of a wall an id that no body has, of an edge its body
+        std::int32_t place = 0;  // of a wall its side, of an edge its number in the body; else 0
+        friend bool operator==(const Name&, const Name&) = default;
+    };
+
+    Column<std::int32_t> a, b;  ///< row of a body that moves; Partner
+    Column<Real> margin;        ///< m
+    Column<Real> thickness;     ///< m, the smaller inradius of the two
+    Column<Real> friction;      ///< Coulomb coefficient
+    std::vector<Name> names;    ///< of every contact
+    std::vector<ManifoldMemory<Real>> memory;
+
+    // Found anew in every step: kernels/manifold_arguments.hpp.
+    Column<Real> normal_x, normal_y, lever_a1, lever_a2, lever_b1, lever_b2, lever_a_t, lever_b_t,
+        separation1, separation2;
+
+    std::size_t count() const { return names.size(); }
+    void clear();
+    /// Appends a contact; `fit` is to be called when all are in. Padding names body 0 twice: what kernels
+    /// find there is not looked at.
+    void add(std::int32_t row_a, std::int32_t partner, const Name& name);
+    void fit();
+
+    ManifoldColumns<Real> columns();
+
+    std::size_t bytes() const;
+
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.a, self.b, self.names, self.memory);
+        if constexpr (!std::is_const_v<Self>) self.fit();
+    }
+
+  private:
+    template <class Self, class Fn>
+    static void for_each_found_column(Self& self, const Fn& fn);
+};
+
+extern template struct ManifoldList<float>;
+extern template struct ManifoldList<double>;
+
+}  // namespace carom

@@ -1,0 +1,236 @@
+#include "solvers/paths/path_cut.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "kernels/path_arguments.hpp"
+
+namespace carom {
+namespace {
+
+/// Contacts of a body that are compared with each other; more end their paths at the body.
+constexpr std::size_t kMostCompared = 12;
+/// Two loaded contacts are joined before any other two: how well contacts face each other is -1 ... 1.
+constexpr float kLoadedFirst = 4;
+constexpr std::uint32_t kMostColours = 64;  // bits of a word
+
+/// -cosine of the angle between where two contacts push a body: 1 where they face each other.
+float facing(float ax, float ay, float bx, float by) {
+    constexpr float kTiny = 1e-30f;  // m⁴, so that contacts in the centre of mass have an angle
+    return -(ax * bx + ay * by) / std::sqrt((ax * ax + ay * ay) * (bx * bx + by * by) + kTiny);
+}
+
+}  // namespace
+
+void PathCut::cut(std::span<const ContactLink> contacts, std::size_t rows, std::size_t longest) {
+    list_contacts_of_bodies(contacts, rows);
+    joined_.assign(2 * contacts.size(), -1);
+    for (std::size_t row = 0; row < rows; ++row)
+        if (first_at_[row + 1] - first_at_[row] > 1) join_at(contacts, static_cast<std::int32_t>(row));
+    walk(contacts, rows, longest);
+    colour(contacts, rows);
+    lay_out(contacts.size());
+}
+
+void PathCut::list_contacts_of_bodies(std::span<const ContactLink> contacts, std::size_t rows) {
+    first_at_.assign(rows + 2, 0);
+    const auto for_each_side = [&](const auto& fn) {
+        for (std::size_t i = 0; i < contacts.size(); ++i)
+            for (const std::int32_t row : {contacts[i].a, contacts[i].b})
+                if (row != ContactLink::kNothing) fn(static_cast<std::size_t>(row), i);
+    };
+    for_each_side([&](std::size_t row, std::size_t) { ++first_at_[row + 2]; });
+    for (std::size_t row = 2; row < first_at_.size(); ++row) first_at_[row] += first_at_[row - 1];
+    contact_at_.resize(first_at_.back());
+    for_each_side([&](std::size_t row, std::size_t i) {
+        contact_at_[first_at_[row + 1]++] = static_cast<std::uint32_t>(i);
+    });
+    first_at_.pop_back();
+}
+
+/// Joins the contacts of a body by twos: first the two that face each other best, then the best of the rest.
+void PathCut::join_at(std::span<const ContactLink> contacts, std::int32_t row) {
+    const auto r = static_cast<std::size_t>(row);
+    struct Arm {
+        std::uint32_t contact;
+        float x, y;
+        bool is_loaded;
+    };
+    std::array<Arm, kMostCompared> arms{};
+    std::size_t count = 0;
+    for (const bool loaded : {true, false})
+        for (std::uint32_t at = first_at_[r]; at < first_at_[r + 1] && count < kMostCompared; ++at) {
+            const std::uint32_t i = contact_at_[at];
+            const ContactLink& link = contacts[i];
+            if (link.is_loaded != loaded) continue;
+            const bool is_a = link.a == row;
+            arms[count++] = {i, is_a ? link.arm_a_x : link.arm_b_x, is_a ? link.arm_a_y : link.arm_b_y,
+                             loaded};
+        }
+    struct Two {
+        float score;
+        std::uint8_t i, j;
+    };
+    std::array<Two, kMostCompared*(kMostCompared - 1) / 2> twos{};
+    std::size_t two_count = 0;
+    for (std::uint8_t i = 0; i < count; ++i)
+        for (auto j = static_cast<std::uint8_t>(i + 1); j < count; ++j)
+            twos[two_count++] = {facing(arms[i].x, arms[i].y, arms[j].x, arms[j].y) +
+                                     (arms[i].is_loaded && arms[j].is_loaded ? kLoadedFirst : 0),
+                                 i, j};
+    std::array<bool, kMostCompared> is_taken{};
+    const auto side = [&](std::uint32_t contact) {
+        return 2 * contact + (contacts[contact].a == row ? 0 : 1);
+    };
+    for (std::size_t left = count; left > 1; left -= 2) {
+        const Two* best = nullptr;
+        for (std::size_t t = 0; t < two_count; ++t)
+            if (!is_taken[twos[t].i] && !is_taken[twos[t].j] && (!best || twos[t].score > best->score))
+                best = &twos[t];
+        is_taken[best->i] = is_taken[best->j] = true;
+        const std::uint32_t i = arms[best->i].contact, j = arms[best->j].contact;
+        joined_[side(i)] = static_cast<std::int32_t>(j), joined_[side(j)] = static_cast<std::int32_t>(i);
+    }
+}
+
+void PathCut::walk(std::span<const ContactLink> contacts, std::size_t rows, std::size_t longest) {
+    is_seen_.assign(contacts.size(), 0);
+    piece_of_row_.assign(rows, 0);
+    sequence_.clear(), pieces_.clear();
+    for (const bool is_loop : {false, true})
+        for (std::size_t i = 0; i < contacts.size(); ++i)
+            if (!is_seen_[i] && (is_loop || joined_[2 * i] < 0 || joined_[2 * i + 1] < 0))
+                walk_from(contacts, i, longest);
+}
+
+/// Follows a path from its first contact; a new piece begins where it is too long or comes to a body again.
+void PathCut::walk_from(std::span<const ContactLink> contacts, std::size_t contact, std::size_t longest) {
+    bool is_reversed = joined_[2 * contact] >= 0 && joined_[2 * contact + 1] < 0;
+    const auto begin_piece = [&](std::int32_t head) {
+        pieces_.push_back({static_cast<std::uint32_t>(sequence_.size()), 0, 0});
+        if (head >= 0)
+            piece_of_row_[static_cast<std::size_t>(head)] = static_cast<std::uint32_t>(pieces_.size());
+    };
+    const auto head_of = [&](std::size_t i, bool reversed) {
+        return reversed ? contacts[i].b : contacts[i].a;
+    };
+    const auto end_of = [&](std::size_t i, bool reversed) {
+        return reversed ? contacts[i].a : contacts[i].b;
+    };
+    begin_piece(head_of(contact, is_reversed));
+    while (!is_seen_[contact]) {
+        const std::int32_t end = end_of(contact, is_reversed);
+        const auto piece = static_cast<std::uint32_t>(pieces_.size());
+        if (pieces_.back().length == longest ||
+            (end >= 0 && pieces_.back().length > 0 && piece_of_row_[static_cast<std::size_t>(end)] == piece))
+            begin_piece(head_of(contact, is_reversed));
+        is_seen_[contact] = 1;
+        sequence_.push_back({static_cast<std::int32_t>(contact), is_reversed});
+        ++pieces_.back().length;
+        if (end < 0) return;
+        piece_of_row_[static_cast<std::size_t>(end)] = static_cast<std::uint32_t>(pieces_.size());
+        const std::int32_t next = joined_[2 * contact + (is_reversed ? 0 : 1)];
+        if (next < 0) return;
+        contact = static_cast<std::size_t>(next);
+        is_reversed = contacts[contact].a != end;
+    }
+}
+
+/// Gives paths colours, long ones first. A path that fits into none as a whole is cut where it must be.
+void PathCut::colour(std::span<const ContactLink> contacts, std::size_t rows) {
+    used_.assign(rows, 0), coloured_.clear();
+    std::uint32_t longest = 0;
+    for (const Piece& piece : pieces_) longest = std::max(longest, piece.length);
+    count_.assign(longest + 2, 0);
+    for (const Piece& piece : pieces_) ++count_[longest - piece.length + 1];
+    for (std::size_t k = 1; k < count_.size(); ++k) count_[k] += count_[k - 1];
+    order_.resize(pieces_.size());
+    for (std::uint32_t i = 0; i < pieces_.size(); ++i) order_[count_[longest - pieces_[i].length]++] = i;
+
+    std::uint32_t next_alone = kMostColours;  // colours of what finds none
+    const auto mask_of = [&](std::int32_t row) { return row < 0 ? 0 : used_[static_cast<std::size_t>(row)]; };
+    const auto head = [&](const Step& s) {
+        const ContactLink& link = contacts[static_cast<std::size_t>(s.contact)];
+        return s.is_reversed ? link.b : link.a;
+    };
+    const auto end = [&](const Step& s) {
+        const ContactLink& link = contacts[static_cast<std::size_t>(s.contact)];
+        return s.is_reversed ? link.a : link.b;
+    };
+    for (const std::uint32_t number : order_) {
+        std::uint32_t first = pieces_[number].first;
+        const std::uint32_t last = first + pieces_[number].length;
+        while (first < last) {
+            // free: colours that the path can have as far as `reached`
+            std::uint64_t free = ~mask_of(head(sequence_[first]));
+            constexpr std::uint64_t kPreferred = (std::uint64_t{1} << kColours) - 1;
+            std::uint32_t reached = first;
+            std::uint64_t limit = kPreferred;
+            if ((free & ~mask_of(end(sequence_[first])) & kPreferred) == 0) limit = ~std::uint64_t{0};
+            while (reached < last) {
+                const std::uint64_t still_free = free & ~mask_of(end(sequence_[reached]));
+                if ((still_free & limit) == 0) break;
+                free = still_free, ++reached;
+            }
+            std::uint32_t colour = next_alone;
+            if (reached > first)
+                colour = static_cast<std::uint32_t>(std::countr_zero(free & limit));
+            else
+                ++next_alone, reached = first + 1;
+            coloured_.push_back({first, reached - first, colour});
+            if (colour < kMostColours) {
+                const std::uint64_t bit = std::uint64_t{1} << colour;
+                const auto mark = [&](std::int32_t row) {
+                    if (row >= 0) used_[static_cast<std::size_t>(row)] |= bit;
+                };
+                mark(head(sequence_[first]));
+                for (std::uint32_t s = first; s < reached; ++s) mark(end(sequence_[s]));
+            }
+            first = reached;
+        }
+    }
+}
+
+/// Bundles of each colour, the longest paths first.
+void PathCut::lay_out(std::size_t contacts) {
+    order_.resize(coloured_.size());
+    for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
+    std::stable_sort(order_.begin(), order_.end(), [&](std::uint32_t i, std::uint32_t j) {
+        const Piece &p = coloured_[i], &q = coloured_[j];
+        return p.colour != q.colour ? p.colour < q.colour : p.length > q.length;
+    });
+    places_.resize(contacts);
+    first_link_.assign(1, 0), first_bundle_.assign(1, 0), first_contacts_.clear();
+    longest_ = 0;
+    for (std::size_t i = 0; i < order_.size();) {
+        const std::uint32_t colour = coloured_[order_[i]].colour;
+        const std::size_t length = coloured_[order_[i]].length, bundle = bundles();
+        first_contacts_.resize(first_contacts_.size() + kPathLanes, -1);
+        for (std::uint8_t lane = 0; lane < kPathLanes && i < order_.size(); ++lane, ++i) {
+            const Piece& piece = coloured_[order_[i]];
+            if (piece.colour != colour) break;
+            first_contacts_[bundle * kPathLanes + lane] = sequence_[piece.first].contact;
+            for (std::uint32_t k = 0; k < piece.length; ++k) {
+                const Step& s = sequence_[piece.first + k];
+                places_[static_cast<std::size_t>(s.contact)] = {
+                    static_cast<std::uint32_t>(first_link_[bundle] + k), static_cast<std::uint32_t>(bundle),
+                    lane, s.is_reversed};
+            }
+        }
+        longest_ = std::max(longest_, length);
+        first_link_.push_back(first_link_.back() + length);
+        const bool ends_colour = i == order_.size() || coloured_[order_[i]].colour != colour;
+        if (ends_colour) first_bundle_.push_back(bundles());
+    }
+}
+
+std::size_t PathCut::bytes() const {
+    const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
+    return of(first_at_) + of(contact_at_) + of(joined_) + of(is_seen_) + of(piece_of_row_) + of(sequence_) +
+           of(pieces_) + of(coloured_) + of(used_) + of(order_) + of(count_) + of(places_) + of(first_link_) +
+           of(first_bundle_) + of(first_contacts_);
+}
+
+}  // namespace carom

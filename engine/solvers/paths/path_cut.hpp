@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// A contact as the cut into paths sees it: a link between two bodies.
+struct ContactLink {
+    std::int32_t a, b;       ///< rows; kNothing where nothing moves the body. Not both of them
+    float arm_a_x, arm_a_y;  ///< m, from the centre of mass of a to where the contact pushes
+    float arm_b_x, arm_b_y;  ///< m, from that of b
+    bool is_loaded;          ///< pushes at present
+
+    static constexpr std::int32_t kNothing = -1;
+};
+
+/// Cuts the contacts of a world into paths that lead from body to body, and lays the paths out in bundles.
+///
+/// At each body those contacts are joined that face each other best, loaded ones first: a load goes straight
+/// through. Every contact is in one path; a path names no body twice. Paths get colours, so that paths of one
+/// colour share no body that moves; kPathLanes paths of a colour, about as long as each other, are a bundle.
+/// What finds no colour is alone in a bundle of a colour of its own.
+///
+/// Cost: about 100 ns a contact, on one thread. docs/decisions/0027-paths-of-contacts.md.
+class PathCut {
+  public:
+    /// Colours that whole paths get, by preference; more are for what is left over.
+    static constexpr int kColours = 8;
+
+    /// Where a contact is.
+    struct Place {
+        std::uint32_t link;  ///< in the order of bundles: first_link()[bundle] + place in the path
+        std::uint32_t bundle;
+        std::uint8_t lane;
+        bool is_reversed;  ///< the path goes from b to a
+    };
+
+    /// @param rows  of bodies
+    /// @param longest  contacts in a path, >= 1
+    void cut(std::span<const ContactLink> contacts, std::size_t rows, std::size_t longest);
+
+    /// Of each contact, in the order of `cut`.
+    std::span<const Place> places() const { return places_; }
+    std::size_t bundles() const { return first_link_.size() - 1; }
+    std::size_t links() const { return first_link_.back(); }
+    std::size_t colours() const { return first_bundle_.size() - 1; }
+    /// Links of bundle i: first_link()[i] ... first_link()[i + 1].
+    std::span<const std::size_t> first_link() const { return first_link_; }
+    /// Bundles of colour c: first_bundle()[c] ... first_bundle()[c + 1].
+    std::span<const std::size_t> first_bundle() const { return first_bundle_; }
+    /// The contact where the path of each lane of each bundle begins; -1: there is no path.
+    std::span<const std::int32_t> first_contacts() const { return first_contacts_; }
+    std::size_t longest() const { return longest_; }
+
+    std::size_t bytes() const;
+
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.places_, self.first_link_, self.first_bundle_, self.first_contacts_, self.longest_);
+    }
+
+  private:
+    struct Piece {
+        std::uint32_t first, length;  // in sequence_
+        std::uint32_t colour;
+    };
+    struct Step {
+        std::int32_t contact;
+        bool is_reversed;
+    };
+
+    void list_contacts_of_bodies(std::span<const ContactLink> contacts, std::size_t rows);
+    void join_at(std::span<const ContactLink> contacts, std::int32_t row);
+    void walk(std::span<const ContactLink> contacts, std::size_t rows, std::size_t longest);
+    void walk_from(std::span<const ContactLink> contacts, std::size_t contact, std::size_t longest);
+    void colour(std::span<const ContactLink> contacts, std::size_t rows);
+    void lay_out(std::size_t contacts);
+
+    std::vector<std::uint32_t> first_at_;  // by row: its contacts, in contact_at_
+    std::vector<std::uint32_t> contact_at_;
+    std::vector<std::int32_t> joined_;         // [contacts][2]: the contact that follows at a, at b; -1
+    std::vector<std::uint8_t> is_seen_;        // by contact
+    std::vector<std::uint32_t> piece_of_row_;  // the last piece that came through a row
+    std::vector<Step> sequence_;
+    std::vector<Piece> pieces_, coloured_;
+    std::vector<std::uint64_t> used_;  // by row: colours
+    std::vector<std::uint32_t> order_, count_;
+    std::vector<Place> places_;
+    std::vector<std::size_t> first_link_{0}, first_bundle_{0};
+    std::vector<std::int32_t> first_contacts_;
+    std::size_t longest_ = 0;
+};
+
+}  // namespace carom

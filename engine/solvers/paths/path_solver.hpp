@@ -1,0 +1,118 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "broadphase/candidates.hpp"
+#include "broadphase/edge_candidates.hpp"
+#include "kernels/path_arguments.hpp"
+#include "solvers/paths/manifold_list.hpp"
+#include "solvers/paths/path_cut.hpp"
+#include "solvers/substeps/body_records.hpp"
+#include "solvers/substeps/step_terms.hpp"
+#include "state/books.hpp"
+#include "state/world_state.hpp"
+
+namespace carom {
+
+/// What the solver of paths counts, of the last step.
+struct PathCounters {
+    std::int64_t contacts = 0;   ///< that can touch
+    std::int64_t bundles = 0;    ///< of paths
+    std::int64_t links = 0;      ///< of bundles: kPathLanes times as many places for contacts
+    std::int64_t unsettled = 0;  ///< paths whose active set did not settle, in all substeps
+    std::int64_t cuts = 0;       ///< steps that cut the contacts into paths anew, so far
+};
+
+/// Separation up to which bodies at rest are in contact [m].
+struct ContactDistance {
+    double share, fall;  // of the thickness of the thinner body; m, what gravity adds in a step
+    double operator()(double thickness) const { return share * thickness + fall; }
+};
+
+/// The contacts of convex shapes that are no discs: what can touch, what does, and the impulses, solved
+/// exactly along paths of contacts.
+///
+/// Cost: docs/decisions/0027-paths-of-contacts.md.
+template <class Real>
+class PathSolver {
+  public:
+    PathCounters counters;
+
+    /// Whether no contact can come about.
+    bool is_idle() const { return bodies_.count() + surfaces_.count() == 0; }
+
+    /// Lists what can touch, when candidate pairs have been found anew.
+    void renew(const WorldState<Real>& world, const Candidates<Real>& candidates,
+               const EdgeCandidates<Real>& edges);
+    /// Adds the pairs that have come with new margins.
+    void add(const WorldState<Real>& world, const Candidates<Real>& candidates,
+             const EdgeCandidates<Real>& edges);
+    /// Forgets the impulses, or rescales them to substeps of another length.
+    void rescale(double factor);
+    /// Finds the contacts of the step and lays them out along paths.
+    void find(const WorldState<Real>& world, const SubstepTerms& terms, const ContactDistance& near,
+              BodyRecords<Real>& records, const StepLoops<Real>& loops);
+    /// Gives the bodies the impulses of the step before.
+    void warm_start(const SubstepTerms& terms, BodyRecords<Real>& records, const StepLoops<Real>& loops);
+    /// Solves a substep.
+    /// @param passes  times that the paths are solved; more than one where there are no impulses to start
+    /// from
+    /// @param sweeps  whether to sweep over all contacts at the end
+    void solve(const SubstepTerms& terms, BodyRecords<Real>& records, const StepLoops<Real>& loops,
+               int passes, bool sweeps);
+    /// Moves the surfaces of kinematic bodies on by a substep.
+    void advance(const SubstepTerms& terms, BodyRecords<Real>& records);
+    /// What the impulses of a substep did.
+    void book_substep(const BodyRecords<Real>& records, Books& books);
+    /// Keeps the impulses for the next step.
+    void end();
+
+    std::size_t bytes() const;
+
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.counters, self.bodies_, self.surfaces_, self.live_, self.cut_, self.since_cut_);
+    }
+
+  private:
+    using Pass = typename PathKernels<Real>::Pass;
+
+    SolvePaths<Real> arguments(const SubstepTerms& terms, BodyRecords<Real>& records);
+    void run(Pass pass, SolvePaths<Real> arguments, const StepLoops<Real>& loops);
+    void add_pair(const WorldState<Real>& world, std::int32_t a, std::int32_t b);
+    void recall(ManifoldList<Real>& list, const ManifoldList<Real>& old);
+    void pose_bodies(const WorldState<Real>& world);
+    bool list_live();
+    void cut_paths(const WorldState<Real>& world);
+    void lay_out(const WorldState<Real>& world, BodyRecords<Real>& records, const StepLoops<Real>& loops);
+    void fill_link(const WorldState<Real>& world, const BodyRecords<Real>& records, std::size_t number);
+
+    /// A contact by its number in live_: from 0 on those of bodies_, below 0 those of surfaces_.
+    ManifoldList<Real>& list_of(std::int32_t contact) { return contact >= 0 ? bodies_ : surfaces_; }
+    static std::size_t place_of(std::int32_t contact) {
+        return static_cast<std::size_t>(contact >= 0 ? contact : ~contact);
+    }
+
+    ManifoldList<Real> bodies_;    // contacts of two bodies
+    ManifoldList<Real> surfaces_;  // of a body and a wall or an edge
+    ManifoldList<Real> old_;
+    std::vector<std::int32_t> first_of_slot_, next_of_slot_;  // contacts of old_ by the slot of their a
+    Column<Real> pose_;                                       // [rows][4]: x, y [m], cosine, sine
+    Column<double> pose_angle_;                               // rad, that cosine and sine are of
+    std::vector<std::int32_t> live_, was_live_;               // contacts that can touch in this step
+    std::vector<std::int32_t> row_of_far_;                    // of each of live_: the row of b in the records
+    std::vector<ContactLink> contact_links_;
+    PathCut cut_;
+    int since_cut_ = 0;  // steps
+    Column<PathLink<Real>> links_;
+    Column<std::int32_t> heads_;
+    std::size_t first_still_row_ = 0;  // in the records: of padding and of what nothing moves
+    Column<std::byte> scratch_;
+};
+
+extern template class PathSolver<float>;
+extern template class PathSolver<double>;
+
+}  // namespace carom

@@ -1,0 +1,179 @@
+// Contacts along paths against the laws that they must obey, and one instruction set against the other.
+#include "isa/select_isa.hpp"
+#include "kernels/manifold_arguments.hpp"
+#include "kernels/path_arguments.hpp"
+#include "math/random.hpp"
+#include "state/column.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+using namespace carom;
+
+namespace {
+
+/// 16 paths of one bundle over random bodies, in random motion; some shorter than others, some end on what
+/// nothing moves.
+template <class Real>
+struct RandomPaths {
+    static constexpr double kH = 1.0 / 240;
+    std::size_t length;
+    std::vector<std::size_t> lengths;
+    Column<PathLink<Real>> links;
+    std::array<std::size_t, 2> first_link{};
+    Column<std::int32_t> heads;
+    Column<Real> velocity, displacement, turn;
+    Column<std::byte> scratch;
+
+    RandomPaths(std::uint64_t seed, std::size_t longest, double friction) : length(longest) {
+        Random random(seed);
+        const auto draw = [&](double low, double high) {
+            return static_cast<Real>(low + (high - low) * static_cast<double>(random.next() % 10001) * 1e-4);
+        };
+        const std::size_t rows = kPathLanes * (length + 1) + 1;
+        const auto still = static_cast<std::int32_t>(rows - 1);
+        links.resize(length), heads.resize(kPathLanes);
+        velocity.resize(4 * rows), displacement.resize(2 * rows), turn.resize(rows);
+        scratch.resize(path_scratch_bytes(length));
+        first_link = {0, length};
+        for (std::size_t lane = 0; lane < kPathLanes; ++lane) {
+            lengths.push_back(1 + random.next() % length);
+            if (lane == 0) lengths.back() = length;
+            auto row = static_cast<std::int32_t>(lane * (length + 1));
+            const auto add_body = [&](std::int32_t at, bool moves) {
+                for (std::size_t k = 0; k < 3; ++k)
+                    velocity[4 * static_cast<std::size_t>(at) + k] = moves ? draw(-1, 1) : Real(0);
+                velocity[4 * static_cast<std::size_t>(at) + 3] = moves ? draw(0.5, 2) : Real(0);
+            };
+            add_body(row, true), heads[lane] = row;
+            for (std::size_t i = 0; i < length; ++i) {
+                PathLink<Real>& link = links[i];
+                link.separation1[lane] = link.separation2[lane] = static_cast<Real>(kNoPoint);
+                link.body[lane] = still;
+                if (i >= lengths[lane]) continue;
+                link.body[lane] = ++row;
+                add_body(row, i + 1 < lengths[lane] || lane % 3 != 0);
+                const double angle = static_cast<double>(draw(-0.7, 0.7));
+                link.normal_x[lane] = static_cast<Real>(std::cos(angle));
+                link.normal_y[lane] = static_cast<Real>(std::sin(angle));
+                link.near1[lane] = draw(-1, -0.2), link.near2[lane] = draw(0.2, 1),
+                link.near_t[lane] = draw(0.5, 1);
+                link.far1[lane] = draw(-1, -0.2), link.far2[lane] = draw(0.2, 1),
+                link.far_t[lane] = draw(-1, -0.5);
+                link.separation1[lane] = draw(0, 0.002), link.separation2[lane] = draw(0, 0.002);
+                link.friction[lane] = static_cast<Real>(friction), link.thickness[lane] = 1;
+                link.normal1[lane] = draw(0, 0.2), link.normal2[lane] = draw(0, 0.2);
+            }
+        }
+    }
+
+    SolvePaths<Real> arguments() {
+        SolvePaths<Real> k{};
+        k.links = links.data(), k.first_link = first_link.data(), k.heads = heads.data();
+        k.velocity = velocity.data(), k.displacement = displacement.data(), k.turn = turn.data();
+        k.h = static_cast<Real>(kH), k.inverse_h = static_cast<Real>(1 / kH);
+        k.recovery = Real(0.05), k.push = 6, k.velocity_tolerance = Real(1e-5);
+        k.most_iterations = 30, k.sweeps_of_unsettled = 0, k.scratch = scratch.data();
+        return k;
+    }
+
+    std::size_t near_row(std::size_t i, std::size_t lane) const {
+        return static_cast<std::size_t>(i == 0 ? heads[lane] : links[i - 1].body[lane]);
+    }
+    /// Relative velocities of a link: of both points along the normal, of both along the tangent [m/s].
+    std::array<double, 3> relative(std::size_t i, std::size_t lane) const {
+        const PathLink<Real>& link = links[i];
+        const Real *a = &velocity[4 * near_row(i, lane)],
+                   *b = &velocity[4 * static_cast<std::size_t>(link.body[lane])];
+        const double nx = link.normal_x[lane], ny = link.normal_y[lane], dx = b[0] - a[0], dy = b[1] - a[1];
+        return {dx * nx + dy * ny + b[2] * link.far1[lane] - a[2] * link.near1[lane],
+                dx * nx + dy * ny + b[2] * link.far2[lane] - a[2] * link.near2[lane],
+                dy * nx - dx * ny + b[2] * link.far_t[lane] - a[2] * link.near_t[lane]};
+    }
+};
+
+/// The largest violation of a contact's laws in a settled path [m/s, and impulses in m/s].
+template <class Real>
+double largest_violation(const RandomPaths<Real>& paths, const std::vector<bool>& settled) {
+    double worst = 0;
+    const auto note = [&](double violation) { worst = std::max(worst, violation); };
+    for (std::size_t lane = 0; lane < kPathLanes; ++lane) {
+        if (!settled[lane]) continue;
+        for (std::size_t i = 0; i < paths.lengths[lane]; ++i) {
+            const PathLink<Real>& link = paths.links[i];
+            const auto [v1, v2, vt] = paths.relative(i, lane);
+            const std::array<double, 2> excess{v1 - link.floor1[lane], v2 - link.floor2[lane]},
+                normal{link.normal1[lane], link.normal2[lane]};
+            for (std::size_t k = 0; k < 2; ++k)
+                note(-normal[k]), note(-excess[k]), note(std::min(normal[k], excess[k]));
+            const double limit = link.friction[lane] * (normal[0] + normal[1]), tangent = link.tangent[lane];
+            note(std::fabs(tangent) - limit);
+            // It slips only against its friction, and with all of it.
+            if (std::fabs(tangent) < limit - 1e-4)
+                note(std::fabs(vt));
+            else
+                note(tangent * vt > 0 ? std::min(std::fabs(vt), std::fabs(tangent)) : 0);
+        }
+    }
+    return worst;
+}
+
+template <class Real>
+bool have_equal_bits(const Column<Real>& p, const Column<Real>& q) {
+    return p.size() == q.size() && std::memcmp(p.data(), q.data(), p.size() * sizeof(Real)) == 0;
+}
+
+}  // namespace
+
+TEST_SUITE("kernels/solve_paths") {
+    TEST_CASE_TEMPLATE("contacts along a path obey their laws all at once", Real, float, double) {
+        const auto& kernels = runnable_kernel_tables().front()->of<Real>();
+        std::size_t solved = 0, unsettled = 0;
+        for (std::uint64_t seed = 1; seed <= 60; ++seed)
+            for (const double friction : {0.0, 0.3, 0.8}) {
+                RandomPaths<Real> paths(seed, 1 + seed % 16, friction);
+                std::vector<bool> settled(kPathLanes, true);
+                // A path that does not settle keeps what it had: told by bits that nothing changed.
+                RandomPaths<Real> was(seed, 1 + seed % 16, friction);
+                unsettled += kernels.convex->paths.solve(paths.arguments(), 0, 1).unsettled;
+                for (std::size_t lane = 0; lane < kPathLanes; ++lane) {
+                    const auto head = 4 * static_cast<std::size_t>(paths.heads[lane]);
+                    settled[lane] =
+                        !std::equal(&paths.velocity[head], &paths.velocity[head] + 3, &was.velocity[head]);
+                    solved += settled[lane];
+                }
+                // The kernel makes rows stiffer by 1e-5, and impulses here are a few m/s.
+                const double tolerance = std::is_same_v<Real, float> ? 3e-4 : 2e-4;
+                CHECK(largest_violation(paths, settled) < tolerance);
+            }
+        CHECK(solved > 2500);
+        CHECK(unsettled < 120);
+    }
+    TEST_CASE_TEMPLATE("every instruction set gives the same bits", Real, float, double) {
+        for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+            RandomPaths<Real> first(seed, 1 + seed % 16, 0.5);
+            bool is_first = true;
+            for (const KernelTables* tables : runnable_kernel_tables()) {
+                RandomPaths<Real> paths(seed, 1 + seed % 16, 0.5);
+                SolvePaths<Real> k = paths.arguments();
+                k.most_iterations = 3, k.sweeps_of_unsettled = 4;  // so that some do not settle
+                const auto& kernels = tables->of<Real>().convex->paths;
+                kernels.warm_start(k, 0, 1), kernels.solve(k, 0, 1), kernels.sweep(k, 0, 1);
+                if (is_first) {
+                    first = paths, is_first = false;
+                    continue;
+                }
+                CHECK(have_equal_bits(first.velocity, paths.velocity));
+                CHECK(have_equal_bits(first.displacement, paths.displacement));
+                CHECK(have_equal_bits(first.turn, paths.turn));
+                CHECK(std::memcmp(first.links.data(), paths.links.data(),
+                                  paths.length * sizeof(PathLink<Real>)) == 0);
+            }
+        }
+    }
+}

@@ -1,0 +1,150 @@
+#include "solvers/paths/path_cut.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <set>
+#include <vector>
+
+#include "kernels/path_arguments.hpp"
+#include "math/random.hpp"
+
+using namespace carom;
+
+namespace {
+
+std::int32_t below(Random& random, std::size_t limit) {
+    return static_cast<std::int32_t>(random.next() % limit);
+}
+
+/// Contacts of random bodies; every so many of what nothing moves.
+std::vector<ContactLink> random_contacts(Random& random, std::size_t bodies, std::size_t count) {
+    std::vector<ContactLink> contacts;
+    const auto arm = [&] { return static_cast<float>(below(random, 2001)) / 1000 - 1; };
+    while (contacts.size() < count) {
+        const std::int32_t a = below(random, bodies);
+        const std::int32_t b = below(random, 8) == 0 ? ContactLink::kNothing : below(random, bodies);
+        if (a == b) continue;
+        contacts.push_back({a, b, arm(), arm(), arm(), arm(), below(random, 2) == 0});
+    }
+    return contacts;
+}
+
+std::int32_t head_of(const ContactLink& contact, bool is_reversed) {
+    return is_reversed ? contact.b : contact.a;
+}
+
+/// Bodies of each lane of each bundle, in the order of the path, and whether the contacts hang together.
+struct Walked {
+    std::vector<std::vector<std::int32_t>> bodies;  // by bundle * kPathLanes + lane
+    bool hangs_together = true;
+};
+Walked walk(const PathCut& cut, const std::vector<ContactLink>& contacts) {
+    struct Visit {
+        std::uint32_t link;
+        std::size_t contact;
+    };
+    std::vector<std::vector<Visit>> visits(cut.bundles() * kPathLanes);
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        const PathCut::Place place = cut.places()[i];
+        visits[place.bundle * kPathLanes + place.lane].push_back({place.link, i});
+    }
+    Walked walked;
+    walked.bodies.resize(visits.size());
+    for (std::size_t lane = 0; lane < visits.size(); ++lane) {
+        auto& path = visits[lane];
+        std::sort(path.begin(), path.end(), [](const Visit& p, const Visit& q) { return p.link < q.link; });
+        for (std::size_t k = 0; k < path.size(); ++k) {
+            const bool reversed = cut.places()[path[k].contact].is_reversed;
+            const std::int32_t head = head_of(contacts[path[k].contact], reversed),
+                               end = head_of(contacts[path[k].contact], !reversed);
+            if (k == 0) walked.bodies[lane].push_back(head);
+            const bool follows = path[k].link == cut.first_link()[lane / kPathLanes] + k &&
+                                 (k == 0 || (head == walked.bodies[lane].back() && head >= 0));
+            walked.hangs_together = walked.hangs_together && follows;
+            walked.bodies[lane].push_back(end);
+        }
+    }
+    return walked;
+}
+
+}  // namespace
+
+TEST_SUITE("solvers/paths/path_cut") {
+    TEST_CASE("every contact has one place, paths hang together and colours share no body that moves") {
+        Random random(7);
+        for (int trial = 0; trial < 60; ++trial) {
+            const auto bodies = static_cast<std::size_t>(2 + below(random, 200));
+            const auto contacts =
+                random_contacts(random, bodies, static_cast<std::size_t>(below(random, 500)));
+            const auto longest = static_cast<std::size_t>(1 + below(random, 20));
+            PathCut cut;
+            cut.cut(contacts, bodies, longest);
+            REQUIRE(cut.places().size() == contacts.size());
+            std::set<std::pair<std::uint32_t, std::uint8_t>> places;
+            for (const PathCut::Place& place : cut.places()) places.insert({place.link, place.lane});
+            CHECK(places.size() == contacts.size());
+            CHECK(cut.longest() <= longest);
+            const Walked walked = walk(cut, contacts);
+            CHECK(walked.hangs_together);
+            for (std::size_t colour = 0; colour < cut.colours(); ++colour) {
+                std::set<std::int32_t> seen;
+                bool is_shared = false;
+                for (std::size_t lane = cut.first_bundle()[colour] * kPathLanes;
+                     lane < cut.first_bundle()[colour + 1] * kPathLanes; ++lane)
+                    for (const std::int32_t body : walked.bodies[lane])
+                        is_shared = is_shared || (body >= 0 && !seen.insert(body).second);
+                CHECK_FALSE(is_shared);
+            }
+            for (std::size_t bundle = 0; bundle < cut.bundles(); ++bundle)
+                for (std::size_t lane = 0; lane < kPathLanes; ++lane) {
+                    const auto& path = walked.bodies[bundle * kPathLanes + lane];
+                    const std::int32_t first = cut.first_contacts()[bundle * kPathLanes + lane];
+                    REQUIRE(path.empty() == (first < 0));
+                    if (first >= 0)
+                        CHECK(cut.places()[static_cast<std::size_t>(first)].link == cut.first_link()[bundle]);
+                }
+        }
+    }
+    TEST_CASE("a column of bodies is one path from the ground to the top") {
+        std::vector<ContactLink> contacts{{0, ContactLink::kNothing, 0, -1, 0, 1, true}};
+        for (std::int32_t body = 1; body < 12; ++body)
+            contacts.push_back({body - 1, body, 0, 1, 0, -1, true});
+        PathCut cut;
+        cut.cut(contacts, 12, 16);
+        CHECK(cut.bundles() == 1);
+        CHECK(cut.links() == 12);
+        CHECK(cut.longest() == 12);
+    }
+    TEST_CASE("a load goes straight through: contacts that face each other are joined") {
+        // One body between four: left, right, below and above it.
+        const std::vector<ContactLink> contacts{{0, 1, -1, 0, 1, 0, true},
+                                                {0, 2, 0, -1, 0, 1, true},
+                                                {0, 3, 1, 0, -1, 0, true},
+                                                {0, 4, 0, 1, 0, -1, true}};
+        PathCut cut;
+        cut.cut(contacts, 5, 16);
+        const auto same_path = [&](std::size_t i, std::size_t j) {
+            return cut.places()[i].bundle == cut.places()[j].bundle &&
+                   cut.places()[i].lane == cut.places()[j].lane;
+        };
+        CHECK(same_path(0, 2));
+        CHECK(same_path(1, 3));
+        CHECK_FALSE(same_path(0, 1));
+    }
+    TEST_CASE("a body with a thousand contacts gets its colours, and the rest go one by one") {
+        std::vector<ContactLink> contacts;
+        for (std::int32_t body = 1; body <= 1000; ++body) contacts.push_back({0, body, 0, 1, 0, -1, true});
+        PathCut cut;
+        cut.cut(contacts, 1001, 16);
+        CHECK(cut.places().size() == 1000);
+        CHECK(cut.bundles() == cut.colours());  // all of them share body 0
+    }
+    TEST_CASE("without contacts there is nothing") {
+        PathCut cut;
+        cut.cut({}, 10, 16);
+        CHECK(cut.bundles() == 0);
+        CHECK(cut.links() == 0);
+        CHECK(cut.colours() == 0);
+    }
+}
