@@ -203,7 +203,7 @@ void PathCut::lay_out(std::size_t contacts) {
     });
     places_.resize(contacts);
     first_link_.assign(1, 0), first_bundle_.assign(1, 0), first_contacts_.clear();
-    longest_ = 0;
+    longest_ = 0, paths_ = coloured_.size();
     for (std::size_t i = 0; i < order_.size();) {
         const std::uint32_t colour = coloured_[order_[i]].colour;
         const std::size_t length = coloured_[order_[i]].length, bundle = bundles();

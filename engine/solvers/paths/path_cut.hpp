@@ -52,13 +52,15 @@ class PathCut {
     std::span<const std::size_t> first_bundle() const { return first_bundle_; }
     /// The contact where the path of each lane of each bundle begins; -1: there is no path.
     std::span<const std::int32_t> first_contacts() const { return first_contacts_; }
+    std::size_t paths() const { return paths_; }
     std::size_t longest() const { return longest_; }
 
     std::size_t bytes() const;
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.places_, self.first_link_, self.first_bundle_, self.first_contacts_, self.longest_);
+        archive(self.places_, self.first_link_, self.first_bundle_, self.first_contacts_, self.longest_,
+                self.paths_);
     }
 
   private:
@@ -90,7 +92,7 @@ class PathCut {
     std::vector<Place> places_;
     std::vector<std::size_t> first_link_{0}, first_bundle_{0};
     std::vector<std::int32_t> first_contacts_;
-    std::size_t longest_ = 0;
+    std::size_t longest_ = 0, paths_ = 0;
 };
 
 }  // namespace carom

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 
 #include "constraints/partner.hpp"
 #include "effects/friction.hpp"
@@ -15,13 +16,18 @@ namespace {
 
 /// Share of an overlap that a substep takes away. Pushes do work on the loads that they lift: at 0.4 heaps of
 /// boxes shake for ever.
-constexpr double kRecovery = 0.05;
+const double kRecovery = getenv("REC") ? atof(getenv("REC")) : 0.05;
 /// Largest displacement of that kind, in thicknesses a second.
 constexpr double kPushThicknesses = 6;
-/// Contacts in a path: what is longer is cut.
-constexpr std::size_t kLongestPath = 16;
+/// Contacts in a path: what is longer is cut. While many paths do not settle they are kept short: a long one
+/// that fails has done more in vain.
+constexpr std::size_t kLongestPath = 128, kLongestOfRestless = 16;
+/// Share of paths that do not settle, below which paths become long and above which they become short.
+const double kCalm = getenv("CALM") ? atof(getenv("CALM")) : 0.005,
+             kRestless = getenv("RESTL") ? atof(getenv("RESTL")) : 0.05;
 /// Iterations of the active set; and Gauss-Seidel sweeps over a path where it does not settle by then.
-constexpr int kMostIterations = 8, kSweepsOfUnsettled = 4;
+const int kMostIterations = getenv("IT") ? atoi(getenv("IT")) : 8,
+          kSweepsOfUnsettled = getenv("SU") ? atoi(getenv("SU")) : 4;
 /// By which a contact may miss its law, in shares of what gravity adds to a speed in a substep.
 constexpr double kTolerance = 2e-4;
 /// A contact that may be rotated by so much keeps its impulses: cosine of 25 degrees.
@@ -29,7 +35,7 @@ constexpr double kSameNormal = 0.9;
 /// Two points whose rows are alike by more than this are solved as one: det K / (k11 k22).
 constexpr double kLeastDeterminant = 1e-3;
 /// Paths are cut anew after so many steps, since loads have changed.
-constexpr int kStepsOfCut = 30;
+const int kStepsOfCut = getenv("CUT") ? atoi(getenv("CUT")) : 30;
 
 // ns on one thread, for the executor.
 constexpr double kNanosecondsToFind = 10, kNanosecondsToFill = 10, kNanosecondsToSolve = 10;
@@ -160,7 +166,8 @@ void PathSolver<Real>::find(const WorldState<Real>& world, const SubstepTerms& t
             loops.kernels->convex->find_manifolds(k, first, padded(last));
         });
     const bool is_same = list_live();
-    if (!is_same || ++since_cut_ >= kStepsOfCut) cut_paths(world);
+    note_calm();
+    if (!is_same || ++since_cut_ >= kStepsOfCut || is_cut_calm_ != is_calm_) cut_paths(world);
     lay_out(world, records, loops);
 }
 
@@ -182,6 +189,15 @@ bool PathSolver<Real>::list_live() {
             surfaces_.memory[i] = {};
     counters.contacts = static_cast<std::int64_t>(live_.size());
     return live_ == was_live_;
+}
+
+/// Judges by the last step whether paths settle.
+template <class Real>
+void PathSolver<Real>::note_calm() {
+    if (solved_ == 0) return;
+    const double share = static_cast<double>(counters.unsettled) / static_cast<double>(solved_);
+    is_calm_ = share < (is_calm_ ? kRestless : kCalm);
+    solved_ = 0;
 }
 
 template <class Real>
@@ -207,7 +223,8 @@ void PathSolver<Real>::cut_paths(const WorldState<Real>& world) {
         arm(list.lever_b1[i], list.lever_b2[i], list.lever_b_t[i], link.arm_b_x, link.arm_b_y);
         contact_links_.push_back(link);
     }
-    cut_.cut(contact_links_, bodies.count, kLongestPath);
+    is_cut_calm_ = is_calm_;
+    cut_.cut(contact_links_, bodies.count, is_calm_ ? kLongestPath : kLongestOfRestless);
     since_cut_ = 0, ++counters.cuts;
 }
 
@@ -373,6 +390,7 @@ void PathSolver<Real>::solve(const SubstepTerms& terms, BodyRecords<Real>& recor
     const PathKernels<Real>& kernels = loops.kernels->convex->paths;
     const SolvePaths<Real> k = arguments(terms, records);
     for (int pass = 0; pass < passes; ++pass) run(kernels.solve, k, loops);
+    solved_ += static_cast<std::int64_t>(cut_.paths()) * passes;
     if (sweeps) run(kernels.sweep, k, loops);
 }
 

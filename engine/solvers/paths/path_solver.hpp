@@ -73,7 +73,8 @@ class PathSolver {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.counters, self.bodies_, self.surfaces_, self.live_, self.cut_, self.since_cut_);
+        archive(self.counters, self.bodies_, self.surfaces_, self.live_, self.cut_, self.since_cut_,
+                self.solved_, self.is_calm_, self.is_cut_calm_);
     }
 
   private:
@@ -85,6 +86,7 @@ class PathSolver {
     void recall(ManifoldList<Real>& list, const ManifoldList<Real>& old);
     void pose_bodies(const WorldState<Real>& world);
     bool list_live();
+    void note_calm();
     void cut_paths(const WorldState<Real>& world);
     void lay_out(const WorldState<Real>& world, BodyRecords<Real>& records, const StepLoops<Real>& loops);
     void fill_link(const WorldState<Real>& world, const BodyRecords<Real>& records, std::size_t number);
@@ -105,7 +107,10 @@ class PathSolver {
     std::vector<std::int32_t> row_of_far_;                    // of each of live_: the row of b in the records
     std::vector<ContactLink> contact_links_;
     PathCut cut_;
-    int since_cut_ = 0;  // steps
+    int since_cut_ = 0;        // steps
+    std::int64_t solved_ = 0;  // paths, in the substeps of the last step
+    bool is_calm_ = true;      // paths settle
+    bool is_cut_calm_ = true;  // when they were cut
     Column<PathLink<Real>> links_;
     Column<std::int32_t> heads_;
     std::size_t first_still_row_ = 0;  // in the records: of padding and of what nothing moves
