@@ -8,7 +8,6 @@
 #include "shapes/walls.hpp"
 
 namespace carom {
-
 namespace {
 
 constexpr std::size_t kPieces = 32;               // of the pair list, which threads take up
@@ -105,8 +104,8 @@ void ContactGraph<Real>::find_crowds(const Candidates<Real>& candidates, const B
     crowd_.assign(bodies.count, 0);
     for (std::size_t p = 0; p < candidates.pair_count(); ++p) {
         const std::int32_t a = candidates.pair_a()[p], b = candidates.pair_b()[p];
-        if (bodies.are_discs(a, b))
-            ++crowd_[static_cast<std::size_t>(a)], ++crowd_[static_cast<std::size_t>(b)];
+        if (!bodies.are_discs(a, b)) continue;
+        ++crowd_[static_cast<std::size_t>(a)], ++crowd_[static_cast<std::size_t>(b)];
     }
     if (*std::max_element(crowd_.begin(), crowd_.end()) <= kCrowded) crowd_.clear();
 }

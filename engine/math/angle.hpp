@@ -8,7 +8,7 @@ namespace carom {
 
 inline constexpr double kPi = 3.14159265358979323846;
 
-/// The angle of a turn [rad], in (-π, π]; the inverse of rotation_by there, within 4e-16 of its size.
+/// The angle of a turn [rad], in (-π, π]; the inverse of rotation_by there, within 1e-15.
 /// @param turn  of length 1 to rounding
 ///
 /// Halving the angle three times leaves a tangent of at most tan(π/16): the first term of atan's series that

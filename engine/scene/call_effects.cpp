@@ -3,6 +3,7 @@
 #include <string>
 
 #include "math/vec2_math.hpp"
+#include "scene/mass.hpp"
 
 namespace carom {
 namespace {
@@ -83,6 +84,7 @@ CalledEffects call_effects(const Scene& scene, const EffectOverrides& overrides)
         scene, [](const Body& b) { return b.angular_velocity != 0 || b.angle != 0; },
         " has an angle or a spin");
     if (turns.empty() && on.friction) turns = "friction turns bodies";
+    if (turns.empty()) turns = first_body(scene, is_turned_by_contacts, " is no disc: contacts turn it");
     on.rotation = decide(reports, "rotation", either(overrides.rotation, own.rotation), turns,
                          "no body has an angle or a spin, and nothing can give one");
     on.angular_drag = decide(reports, "angular drag", {},

@@ -2,6 +2,7 @@
 
 #include "scene/event_limits.hpp"
 #include "scene/mass.hpp"
+#include "scene/validation.hpp"
 
 namespace carom {
 namespace {
@@ -10,12 +11,6 @@ namespace {
 /// away.
 bool is_inelastic(const Body& body) {
     return body.type == BodyType::dynamic_body && body.material.restitution < 1;
-}
-
-std::string_view name_of(const Shape& shape) {
-    return std::holds_alternative<Segment>(shape) ? "segment"
-           : std::holds_alternative<Chain>(shape) ? "chain"
-                                                  : "disc";
 }
 
 std::optional<Problem> find_roughness_problem(const Item& item, const Material& material, Vec2 gravity,
@@ -40,14 +35,14 @@ std::optional<Problem> find_roughness_problem(const Item& item, const Material& 
 }  // namespace
 
 bool SolverFacts::would_change(const Body& body) const {
-    return (lines.empty() && !is_disc(body.shape)) || (rough.empty() && body.material.friction > 0) ||
+    return (no_disc.empty() && !is_disc(body.shape)) || (rough.empty() && body.material.friction > 0) ||
            (resists.empty() && body.material.rolling_resistance > 0) ||
            (inelastic.empty() && is_inelastic(body));
 }
 
 void SolverFacts::add(const Body& body, std::string_view label) {
     ++bodies;
-    if (lines.empty() && !is_disc(body.shape)) lines = join(label, " is a ", name_of(body.shape));
+    if (no_disc.empty() && !is_disc(body.shape)) no_disc = join(label, " is a ", name_of(body.shape));
     if (rough.empty() && body.material.friction > 0) rough = join(label, " has friction");
     if (resists.empty() && body.material.rolling_resistance > 0)
         resists = join(label, " has rolling resistance");
@@ -79,7 +74,7 @@ SolverFacts facts_of(const Scene& scene, std::optional<int> iterations) {
 }
 
 SolverChoice choose_solver(const SolverFacts& facts) {
-    for (const std::string* reason : {&facts.lines, &facts.resists, &facts.forced})
+    for (const std::string* reason : {&facts.no_disc, &facts.resists, &facts.forced})
         if (!reason->empty()) return {Solver::soft, *reason};
     if (facts.has_gravity && !facts.rough.empty()) return {Solver::soft, facts.rough};
     if (facts.bodies <= 1 && !facts.has_walls)

@@ -20,7 +20,7 @@ struct SolverChoice {
 struct SolverFacts {
     std::size_t bodies = 0;
     bool has_walls = false, has_gravity = false;
-    std::string lines;      ///< of a segment or chain
+    std::string no_disc;    ///< of a body of another shape
     std::string rough;      ///< of what has friction, or that it is forced on
     std::string resists;    ///< of what has rolling resistance
     std::string forced;     ///< of another effect, or of sweeps, that were asked for
@@ -28,7 +28,7 @@ struct SolverFacts {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.bodies, self.has_walls, self.has_gravity, self.lines, self.rough, self.resists,
+        archive(self.bodies, self.has_walls, self.has_gravity, self.no_disc, self.rough, self.resists,
                 self.forced, self.inelastic);
     }
 

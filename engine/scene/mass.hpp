@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "math/angle.hpp"
-#include "shapes/mass_properties.hpp"
 
 namespace carom {
 
@@ -26,9 +25,14 @@ inline double area_of(const Shape& shape) {  // m²
 /// Radius of the disc that has the mass and the moment of inertia of a shape [m], whatever its density: the
 /// moment of inertia is mass rim² / 2. Zero for segments and chains.
 inline double rim_of(const Shape& shape) {
-    if (const Disc* disc = std::get_if<Disc>(&shape)) return disc->radius;
+    if (is_disc(shape)) return radius_of(shape);
     const MassProperties of = mass_properties_of(shape);
     return of.area > 0 ? std::sqrt(2 * of.second_moment / of.area) : 0;
+}
+
+/// Whether contacts turn a body even without friction: their impulses pass its centre of mass on one side.
+inline bool is_turned_by_contacts(const Body& body) {
+    return body.type == BodyType::dynamic_body && !is_disc(body.shape) && !body.fixed_rotation;
 }
 
 inline double mass_of(const Body& body) {  // kg

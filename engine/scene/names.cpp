@@ -50,6 +50,12 @@ Problem duplicate(const std::vector<Body>& bodies, std::size_t first, std::size_
 
 }  // namespace
 
+std::string_view name_of(const Shape& shape) {
+    static constexpr std::array<std::string_view, std::variant_size_v<Shape>> kNames{
+        "disc", "segment", "chain", "box", "capsule", "polygon"};  // in the order of the variant
+    return kNames[shape.index()];
+}
+
 std::string_view name_of(Solver solver) noexcept {
     for (const auto& [known, name] : kSolverNames)
         if (known == solver) return name;

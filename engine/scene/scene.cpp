@@ -4,6 +4,7 @@
 #include "scene/limits.hpp"
 #include "scene/mass.hpp"
 #include "scene/validation.hpp"
+#include "shapes/convex_geometry.hpp"
 
 #include <utility>
 
@@ -17,22 +18,30 @@ Problem too_many_bodies(std::size_t count) {
                    kLargestBodyCount, ". Split the scene.");
 }
 
-/// The smallest and the largest radius so far, and whose they are.
+/// The smallest and the largest radius so far, and whose they are. What is no disc has two: of the disc in it
+/// and of the one around it.
 struct RadiusSpread {
     double smallest = kLargestRadius, largest = 0;
     std::size_t smallest_body = 0, largest_body = 0;
+    std::string_view largest_shape = "disc/radius";
 
-    void take(double radius, std::size_t body) {
-        if (radius < smallest) smallest = radius, smallest_body = body;
-        if (radius > largest) largest = radius, largest_body = body;
+    void take(double inradius, double extent, std::size_t body, std::string_view shape) {
+        if (inradius < smallest) smallest = inradius, smallest_body = body;
+        if (extent > largest) largest = extent, largest_body = body, largest_shape = shape;
+    }
+    void take(const Shape& shape, std::size_t body) {
+        if (!is_convex(shape)) return;
+        if (is_disc(shape)) return take(radius_of(shape), radius_of(shape), body, "disc/radius");
+        const ConvexShape<double> convex = convex_shape_of<double>(shape);
+        take(convex.inradius, convex.extent, body, name_of(shape));
     }
 };
 
 std::optional<Problem> find_spread_problem(const RadiusSpread& spread) {
     if (spread.largest <= kLargestRadiusRatio * spread.smallest || spread.largest == 0) return std::nullopt;
     const Item item{"body", "/bodies", static_cast<std::ptrdiff_t>(spread.largest_body), ""};
-    return problem(ErrorCode::out_of_range, item, "/shape/disc/radius", "radius ", spread.largest,
-                   " m and body ", spread.smallest_body, " has radius ", spread.smallest,
+    return problem(ErrorCode::out_of_range, item, join("/shape/", spread.largest_shape), "radius ",
+                   spread.largest, " m and body ", spread.smallest_body, " has radius ", spread.smallest,
                    " m; expected the largest radius <= ", kLargestRadiusRatio,
                    " times the smallest. Use walls or static bodies of middle size.");
 }
@@ -54,7 +63,7 @@ std::optional<Problem> Scene::find_problem() const {
         if (auto found = find_body_problem(item, bodies[i])) return found;
         if (walls)
             if (auto found = find_inside_problem(item, bodies[i], *walls)) return found;
-        if (is_disc(bodies[i].shape)) spread.take(radius_of(bodies[i].shape), i);
+        spread.take(bodies[i].shape, i);
     }
     if (auto found = find_spread_problem(spread)) return found;
     if (auto found = find_duplicate_name(bodies)) return found;

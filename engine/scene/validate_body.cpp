@@ -1,6 +1,7 @@
 #include "scene/limits.hpp"
 #include "scene/mass.hpp"
 #include "scene/validation.hpp"
+#include "shapes/convex_geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -47,69 +48,6 @@ std::optional<Problem> find_color_problem(const Item& item, const std::string& c
                    "; expected \"#rrggbb\" with six hexadecimal digits.");
 }
 
-std::optional<Problem> find_point_problem(const Item& item, std::string_view pointer, Vec2 point) {
-    static constexpr Quantity kPointX{"point x", "m", -kLargestPosition, kLargestPosition, kUseMetres};
-    static constexpr Quantity kPointY{"point y", "m", -kLargestPosition, kLargestPosition, kUseMetres};
-    if (auto found = check(item, join(pointer, "/0"), point.x, kPointX)) return found;
-    return check(item, join(pointer, "/1"), point.y, kPointY);
-}
-
-/// Nothing of the edges' own: only what says that this body cannot have any.
-std::optional<Problem> find_edge_body_problem(const Item& item, const Body& body, std::string_view shape) {
-    if (body.type != BodyType::dynamic_body) return std::nullopt;
-    return problem(ErrorCode::inconsistent, item, "/type", "the shape ", quoted(shape),
-                   " but is dynamic; expected static or kinematic, as a line has no area and so no mass. Set "
-                   "its type, or make it a disc.");
-}
-
-std::optional<Problem> find_length_problem(const Item& item, std::string_view pointer, std::string_view ends,
-                                           Vec2 a, Vec2 b) {
-    const double length = std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
-    if (length >= kSmallestEdge) return std::nullopt;
-    return problem(ErrorCode::out_of_range, item, pointer, "an edge of length ", length, " m from ", a,
-                   " to ", b, ", ", ends, "; expected at least ", kSmallestEdge,
-                   " m. Move one of the two points, or leave it out.");
-}
-
-std::optional<Problem> find_segment_problem(const Item& item, const Body& body, const Segment& segment) {
-    if (auto found = find_edge_body_problem(item, body, "segment")) return found;
-    if (auto found = find_point_problem(item, "/shape/segment/a", segment.a)) return found;
-    if (auto found = find_point_problem(item, "/shape/segment/b", segment.b)) return found;
-    return find_length_problem(item, "/shape/segment/b", "a and b", segment.a, segment.b);
-}
-
-std::optional<Problem> find_chain_problem(const Item& item, const Body& body, const Chain& chain) {
-    constexpr std::string_view kPoints = "/shape/chain/points";
-    if (auto found = find_edge_body_problem(item, body, "chain")) return found;
-    const std::size_t count = chain.points.size(), fewest = chain.loop ? 3 : 2;
-    if (count < fewest)
-        return problem(ErrorCode::out_of_range, item, kPoints, "a chain of ", count,
-                       chain.loop ? " points that is a loop" : " points", "; expected at least ", fewest,
-                       chain.loop ? ". Add points, or set loop to false." : ". Add points.");
-    if (count > kLargestChainPoints)
-        return problem(ErrorCode::too_large, item, kPoints, "a chain of ", count,
-                       " points; expected at most ", kLargestChainPoints, ". Cut it into several bodies.");
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::string pointer = join(kPoints, "/", i);
-        if (auto found = find_point_problem(item, pointer, chain.points[i])) return found;
-        if (i == 0) continue;
-        if (auto found = find_length_problem(item, pointer, join("points ", i - 1, " and ", i),
-                                             chain.points[i - 1], chain.points[i]))
-            return found;
-    }
-    if (!chain.loop) return std::nullopt;
-    return find_length_problem(item, join(kPoints, "/", count - 1),
-                               "the last point and the first, which a loop joins by itself",
-                               chain.points.back(), chain.points.front());
-}
-
-std::optional<Problem> find_shape_problem(const Item& item, const Body& body) {
-    if (const auto* segment = std::get_if<Segment>(&body.shape))
-        return find_segment_problem(item, body, *segment);
-    if (const auto* chain = std::get_if<Chain>(&body.shape)) return find_chain_problem(item, body, *chain);
-    return check(item, "/shape/disc/radius", radius_of(body.shape), kRadius);
-}
-
 struct Axis {
     std::string_view name;
     std::string_view tail;
@@ -118,7 +56,9 @@ struct Axis {
     std::string_view low_name, high_name;
 };
 
-std::optional<Problem> find_axis_problem(const Item& item, const Axis& axis, double radius) {
+/// @param radius  m, of the disc in the body: what it needs however it turns
+std::optional<Problem> find_axis_problem(const Item& item, const Axis& axis, const Shape& shape,
+                                         double radius) {
     const bool below = axis.low_side && axis.position < axis.min;
     const bool above = axis.high_side && axis.position > axis.max;
     if (below || above)
@@ -128,8 +68,10 @@ std::optional<Problem> find_axis_problem(const Item& item, const Axis& axis, dou
                        " m. Move the body inside, or leave that side open.");
     if (axis.low_side && axis.high_side && 2 * radius > axis.max - axis.min)
         return problem(
-            ErrorCode::inconsistent, item, "/shape/disc/radius", "diameter ", 2 * radius, " m but the ",
-            axis.low_name, " and ", axis.high_name, " walls are ", axis.max - axis.min,
+            ErrorCode::inconsistent, item,
+            is_disc(shape) ? "/shape/disc/radius" : join("/shape/", name_of(shape)),
+            is_disc(shape) ? "diameter " : "thickness ", 2 * radius, " m but the ", axis.low_name, " and ",
+            axis.high_name, " walls are ", axis.max - axis.min,
             " m apart; expected a body that fits between them. Make it smaller, or the box larger.");
     return std::nullopt;
 }
@@ -196,13 +138,14 @@ std::optional<Problem> find_body_problem(const Item& item, const Body& body) {
 std::optional<Problem> find_inside_problem(const Item& item, const Body& body, const Walls& walls) {
     if (body.type != BodyType::dynamic_body)
         return std::nullopt;  // what walls do not move may stand anywhere
-    const double radius = radius_of(body.shape);
+    const double radius =
+        is_disc(body.shape) ? radius_of(body.shape) : convex_shape_of<double>(body.shape).inradius;
     const Axis x{"x",        "/position/0", body.position.x, walls.min.x, walls.max.x,
                  walls.left, walls.right,   "left",          "right"};
-    if (auto found = find_axis_problem(item, x, radius)) return found;
+    if (auto found = find_axis_problem(item, x, body.shape, radius)) return found;
     const Axis y{"y",          "/position/1", body.position.y, walls.min.y, walls.max.y,
                  walls.bottom, walls.top,     "bottom",        "top"};
-    return find_axis_problem(item, y, radius);
+    return find_axis_problem(item, y, body.shape, radius);
 }
 
 void validate_body(const Body& body, std::string_view where) {

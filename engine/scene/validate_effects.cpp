@@ -1,3 +1,4 @@
+#include "scene/mass.hpp"
 #include "scene/validation.hpp"
 
 #include <algorithm>
@@ -26,9 +27,13 @@ bool turns(const Body& body) {
 
 std::optional<Problem> find_rotation_problem(const std::vector<Body>& bodies) {
     const auto body = std::find_if(bodies.begin(), bodies.end(), turns);
-    if (body == bodies.end()) return std::nullopt;
-    return forced_off("rotation", "body ", body - bodies.begin(), " with angle ", body->angle,
-                      " rad and angular velocity ", body->angular_velocity, " rad/s");
+    if (body != bodies.end())
+        return forced_off("rotation", "body ", body - bodies.begin(), " with angle ", body->angle,
+                          " rad and angular velocity ", body->angular_velocity, " rad/s");
+    const auto turned = std::find_if(bodies.begin(), bodies.end(), is_turned_by_contacts);
+    if (turned == bodies.end()) return std::nullopt;
+    return forced_off("rotation", "body ", turned - bodies.begin(), " with the shape ",
+                      quoted(name_of(turned->shape)), " and without \"fixed_rotation\", which contacts turn");
 }
 
 std::optional<Problem> find_restitution_problem(const Scene& scene) {

@@ -32,6 +32,10 @@ void validate_effects(const Scene& scene, const EffectOverrides& effects, std::s
 // These find the same faults without throwing, for Scene::find_problem and the generators.
 
 std::optional<Problem> find_body_problem(const Item& item, const Body& body);
+/// Looks at the body's shape alone, and at its type where the shape asks for one.
+std::optional<Problem> find_shape_problem(const Item& item, const Body& body);
+/// The shape's name in scene files: "disc".
+std::string_view name_of(const Shape& shape);
 /// What a body may do: a static or quarantined one stands still, one of fixed rotation does not turn.
 enum class Mobility : std::uint8_t { all, no_rotation, none, quarantined };
 /// Checks that the velocity is zero where nothing moves the body. Kinematic bodies move as they are told.

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "math/vec2_math.hpp"
-#include "shapes/mass_properties.hpp"
 
 namespace carom {
 namespace {

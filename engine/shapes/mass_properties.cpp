@@ -1,4 +1,4 @@
-#include "shapes/mass_properties.hpp"
+#include <carom/shapes.hpp>
 
 #include <cmath>
 

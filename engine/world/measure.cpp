@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "broadphase/edge_candidates.hpp"
+#include "math/rotation.hpp"
 #include "math/vec2_math.hpp"
 #include "narrowphase/disc_edge.hpp"
+#include "shapes/convex_geometry.hpp"
 #include "shapes/walls.hpp"
 
 namespace carom {
@@ -31,14 +33,30 @@ struct Overlaps {
 };
 
 template <class Real>
+Rotation turn_of(const Bodies<Real>& bodies, std::size_t row) {
+    if (!bodies.has_rotation || bodies.is_disc(row)) return {};
+    return rotation_by(bodies.angle[row]);
+}
+
+/// How far a body reaches in a direction [m].
+template <class Real>
+double reach_along(const WorldState<Real>& world, std::size_t row, Rotation turn, Vec2 direction) {
+    if (world.bodies.is_disc(row)) return world.bodies.radius[row];
+    return reach_along(world.shapes[world.bodies.shape[row]], turn, direction);
+}
+
+template <class Real>
 void add_walls(const WorldState<Real>& world, Overlaps& overlaps) {
     const Walls& walls = *world.walls;
     for (std::size_t row = 0; row < world.bodies.count; ++row) {
         if (world.bodies.is_immovable(row)) continue;
         const Vec2 x{world.bodies.position_x[row], world.bodies.position_y[row]};
-        const double radius = world.bodies.radius[row];
+        const Rotation turn = turn_of(world.bodies, row);
         for (const std::int32_t side : kWallSides)
-            if (has_wall(walls, side)) overlaps.add_wall(wall_clearance(walls, side, x) - radius, radius);
+            if (has_wall(walls, side))
+                overlaps.add_wall(
+                    wall_clearance(walls, side, x) - reach_along(world, row, turn, wall_normal(side)),
+                    world.bodies.inradius(row));
     }
 }
 
@@ -50,6 +68,7 @@ void add_edges(const WorldState<Real>& world, const Candidates<Real>& discs, Ove
     edges.find(world, discs);
     for (const EdgePair pair : edges.pairs()) {
         const auto row = static_cast<std::size_t>(pair.row);
+        if (!world.bodies.is_disc(row)) continue;  // see add_pairs
         const Edge& edge = world.edges[pair.edge];
         const EdgePose& pose = edges.pose_of(edge);
         const Vec2 x{world.bodies.position_x[row], world.bodies.position_y[row]};
@@ -61,12 +80,15 @@ void add_edges(const WorldState<Real>& world, const Candidates<Real>& discs, Ove
     }
 }
 
+/// Pairs of discs. Of pairs in which another shape takes part the contacts of the solver say where they
+/// touch; they are not counted here yet.
 template <class Real>
 void add_pairs(const Bodies<Real>& bodies, const Candidates<Real>& discs, Overlaps& overlaps) {
     overlaps.report.candidates += static_cast<std::int64_t>(discs.pair_count());
     for (std::size_t p = 0; p < discs.pair_count(); ++p) {
         const auto a = static_cast<std::size_t>(discs.pair_a()[p]);
         const auto b = static_cast<std::size_t>(discs.pair_b()[p]);
+        if (!bodies.are_discs(discs.pair_a()[p], discs.pair_b()[p])) continue;
         const Vec2 d{static_cast<double>(bodies.position_x[b]) - static_cast<double>(bodies.position_x[a]),
                      static_cast<double>(bodies.position_y[b]) - static_cast<double>(bodies.position_y[a])};
         const double radius_a = bodies.radius[a], radius_b = bodies.radius[b];

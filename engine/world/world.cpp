@@ -7,6 +7,7 @@
 #include "scene/mass.hpp"
 #include "scene/validation.hpp"
 #include "scene/wording.hpp"
+#include "shapes/convex_geometry.hpp"
 #include "state/state_hash.hpp"
 #include "step/make_simulation.hpp"
 #include "step/plan.hpp"
@@ -107,7 +108,7 @@ struct BasicWorld<Real>::Implementation : WorldSettings {
         if (state.effects.sleeping) scene.effects.sleep = true;
         for (std::size_t row = 0; row < b.rows(); ++row) {
             Body body;
-            if (b.flags_of(row) & kEdges) body.shape = Segment{};
+            if (!b.is_disc(row)) body.shape = state.shape_of(row);
             if (b.is_immovable(row)) body.type = BodyType::static_body;
             body.material = {.friction = b.friction[row],
                              .restitution = b.restitution[row],
@@ -303,6 +304,11 @@ std::uint32_t BasicWorld<Real>::row(BodyId body) const {
 }
 
 template <class Real>
+Shape BasicWorld<Real>::shape(BodyId body) const {
+    return implementation_->sim().world.shape_of(implementation_->row_of(body, "World::shape"));
+}
+
+template <class Real>
 bool BasicWorld<Real>::is_asleep(BodyId body) const {
     return implementation_->row_of(body, "World::is_asleep") >= implementation_->sim().world.bodies.count;
 }
@@ -333,9 +339,10 @@ BodyId BasicWorld<Real>::add(const Body& body) {
     implementation_->call_effects_of(body, choice.solver);
     implementation_->facts = std::move(facts);
     implementation_->change_solver(choice.solver, choice.reason);
-    if (body.angular_velocity != 0 || body.angle != 0) implementation_->turn_rotation_on();
-    if (is_disc(body.shape))
-        implementation_->sim().wake_at(body.position, radius_of(body.shape));
+    if (body.angular_velocity != 0 || body.angle != 0 || is_turned_by_contacts(body))
+        implementation_->turn_rotation_on();
+    if (is_convex(body.shape))
+        implementation_->sim().wake_at(body.position, convex_shape_of<double>(body.shape).extent);
     else
         implementation_->sim().wake_all();
     WorldState<Real>& world = implementation_->world();

@@ -138,6 +138,10 @@ VALID = [
     generate("stack", STACK, gap=0.1),
     generate("stack", STACK, count=3.0),
     scene(generate=[{"kind": "stack", **STACK}]),
+    body(shape={"box": {"width": 1, "height": 2}}),
+    body(shape={"capsule": {"length": 1, "radius": 0.2}}),
+    body(shape={"polygon": {"vertices": [[0, 0], [1, 0], [0, 1]], "radius": 0.1}}),
+    body(shape={"polygon": {"vertices": [[0, 0], [0, 1], [1, 0]]}}, type="static"),
     scene(joints=[]),
     scene(step={}),
     scene(step={"dt": 0.016, "count": 500}),
@@ -160,9 +164,6 @@ VALID = [
 
 # Valid for the schema; the reader says that the part is not built yet.
 NOT_BUILT_YET = [
-    body(shape={"box": {"width": 1, "height": 2}}),
-    body(shape={"capsule": {"length": 1, "radius": 0.2}}),
-    body(shape={"polygon": {"vertices": [[0, 0], [1, 0], [0, 1]], "radius": 0.1}}),
     generate("pyramid", {"base": 5, "origin": [5, 1], "gap": 0, "shape": {"box": {"width": 1, "height": 1}}}),
     generate("chain", {"count": 5, "direction": [1, 0], "spacing": 1, "joint": "revolute", "shape": DISC}),
     generate("chain", {"count": 5, "spacing": 1, "pinned": False, "shape": DISC}),
@@ -207,6 +208,12 @@ INVALID = [
     body(shape={"disc": {"radius": 9e-10}}), body(shape={"disc": {"raduis": 0.4}}),
     body(shape={"disc": {"radius": 0.5, "height": 1}}), body(shape={"circle": {"radius": 0.5}}),
     body(shape={"disc": {"radius": 0.5}, "box": {"width": 1, "height": 1}}),
+    body(shape={"box": {"width": 1}}), body(shape={"box": {"width": 0, "height": 1}}),
+    body(shape={"box": {"width": 1, "height": 1, "radius": 0}}), body(shape={"capsule": {"length": 1}}),
+    body(shape={"capsule": {"length": 0, "radius": 1}}), body(shape={"capsule": {"length": 1, "radius": 0}}),
+    body(shape={"polygon": {"vertices": [[0, 0], [1, 0]]}}), body(shape={"polygon": {"vertices": [0, 1, 2]}}),
+    body(shape={"polygon": {"vertices": [[0, 0], [1, 0], [0, 1.1e7]]}}), body(shape={"polygon": {}}),
+    body(shape={"polygon": {"vertices": [[0, 0], [1, 0], [0, 1]], "radius": -0.1}}),
     body(name=7), body(type="moving"), body(type=None), body(position=[1]), body(position=[1, 2, 3]),
     body(position=[1, 1.1e8]), body(position="5 5"), body(angle="90"), body(angle=1.1e8),
     body(velocity=[1.1e7, 0]), body(velocity=3), body(angular_velocity=[1]), body(angular_velocity=-1.1e7),

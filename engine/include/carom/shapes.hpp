@@ -43,7 +43,7 @@ struct Capsule {
 ///
 /// Vertices may be given in either direction and anywhere: the shape is recentred, so that its centroid, the
 /// rounding included, is the body's position. A body's position is its centre of mass, whatever its shape;
-/// where the vertices lie beside it follows from `carom::recentred`.
+/// `recentred` says where the vertices are then.
 struct Polygon {
     std::vector<Vec2> vertices{};  ///< m; kFewestPolygonVertices ... kLargestPolygonVertices, convex
     double radius = 0;             ///< m, >= 0
@@ -51,6 +51,20 @@ struct Polygon {
 
 /// The geometry of a body. Boxes, capsules and polygons are the convex shapes beside the disc.
 using Shape = std::variant<Disc, Segment, Chain, Box, Capsule, Polygon>;
+
+/// What mass and motion need of a shape of uniform density.
+struct MassProperties {
+    double area = 0;           ///< m²
+    Vec2 centroid{};           ///< m, in the frame in which the shape is given
+    double second_moment = 0;  ///< m⁴, integral of the squared distance from the centroid over the area: a
+                               ///< body's moment of inertia is its mass times it over the area
+};
+
+/// Exact, rounding included: nothing is sampled. All are zero for segments and chains, which have no area.
+/// @param shape  within its limits (`Scene::validate`)
+/// Source: Steiner's decomposition of a parallel body: the polygon, a rectangle on each of its edges and a
+/// sector of a disc at each of its vertices.
+MassProperties mass_properties_of(const Shape& shape);
 
 /// The polygon as a body has it: counter-clockwise, its centroid at (0, 0).
 /// @param polygon  within its limits (`Scene::validate`)

@@ -107,6 +107,11 @@ class BasicWorld {
     /// @throws Error (stale_handle)
     BodyState state(BodyId body) const;
 
+    /// The geometry of a body in its own frame: the centre of mass at the origin, the angle zero. A polygon
+    /// comes recentred, a chain of two points as a segment. Cost: O(1), of a segment or chain O(bodies with
+    /// edges); a copy. @throws Error (stale_handle)
+    Shape shape(BodyId body) const;
+
     /// Whether a body sleeps: it stands still, and steps do not look at it. @throws Error (stale_handle)
     bool is_asleep(BodyId body) const;
 

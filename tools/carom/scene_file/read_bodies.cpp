@@ -50,6 +50,29 @@ Chain read_chain(const Node& shape) {
     return chain;
 }
 
+Box read_box(const Node& shape) {
+    static constexpr std::array<std::string_view, 2> kKeys{"width", "height"};
+    shape.expect_keys(kKeys);
+    return {shape.at("width").number(), shape.at("height").number()};
+}
+
+Capsule read_capsule(const Node& shape) {
+    static constexpr std::array<std::string_view, 2> kKeys{"length", "radius"};
+    shape.expect_keys(kKeys);
+    return {shape.at("length").number(), shape.at("radius").number()};
+}
+
+Polygon read_polygon(const Node& shape) {
+    static constexpr std::array<std::string_view, 2> kKeys{"vertices", "radius"};
+    shape.expect_keys(kKeys);
+    Polygon polygon;
+    const Node vertices = shape.at("vertices");
+    vertices.expect_array("vertices");
+    for (std::size_t i = 0; i < vertices.size(); ++i) polygon.vertices.push_back(vertices[i].vec2());
+    shape.read("radius", polygon.radius);
+    return polygon;
+}
+
 }  // namespace
 
 BodyType read_body_type(const Node& node) {
@@ -63,12 +86,12 @@ Shape read_shape(const Node& node) {
     static constexpr std::array<std::string_view, 6> kShapes{"disc",    "box",     "capsule",
                                                              "polygon", "segment", "chain"};
     const Node shape = node.only_member(kShapes, "shape");
-    if (shape.key() == "disc") return read_disc(shape);
+    if (shape.key() == "box") return read_box(shape);
+    if (shape.key() == "capsule") return read_capsule(shape);
+    if (shape.key() == "polygon") return read_polygon(shape);
     if (shape.key() == "segment") return read_segment(shape);
     if (shape.key() == "chain") return read_chain(shape);
-    shape.fail(ErrorCode::not_built_yet,
-               "the shape \"" + std::string(shape.key()) +
-                   "\" is not built yet; this version has discs, segments and chains. Use \"disc\".");
+    return read_disc(shape);
 }
 
 void read_bodies(const Node& root, const Materials& materials, Scene& scene) {

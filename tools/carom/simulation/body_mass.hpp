@@ -3,8 +3,6 @@
 #include <carom/scene.hpp>
 #include <carom/world.hpp>
 
-#include <numbers>
-
 namespace carom::tool {
 
 /// Zero for what is no disc.
@@ -15,16 +13,16 @@ inline double radius_of(const Body& body) {
 
 /// kg: given, or density times area.
 inline double mass_of(const Body& body) {
-    const double radius = radius_of(body);
-    return body.mass.value_or(body.material.density * std::numbers::pi * radius * radius);
+    return body.mass.value_or(body.material.density * mass_properties_of(body.shape).area);
 }
 
-/// kg m², of a solid disc about its centre.
+/// kg m², of a solid body about its centre of mass.
 inline double inertia_of(const Body& body) {
-    return 0.5 * mass_of(body) * radius_of(body) * radius_of(body);
+    const MassProperties of = mass_properties_of(body.shape);
+    return of.area > 0 ? mass_of(body) * of.second_moment / of.area : 0;
 }
 
-/// Translation and rotation of one solid disc [J].
+/// Translation and rotation of one solid body [J].
 inline double kinetic_energy_of(const Body& body, const BodyState& state) {
     if (body.type == BodyType::static_body) return 0;
     return 0.5 * mass_of(body) * (state.velocity.x * state.velocity.x + state.velocity.y * state.velocity.y) +
