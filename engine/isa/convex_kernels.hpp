@@ -17,7 +17,8 @@ struct PathKernels {
 template <class Real>
 struct ConvexKernels {
     using Find = std::size_t (*)(const FindManifolds<Real>&, std::size_t first, std::size_t last);
-    Find find_manifolds;  // of any convex shapes
+    Find find_manifolds;      // of any convex shapes
+    Find find_box_manifolds;  // of boxes, see is_box() in narrowphase/box_box.hpp
     PathKernels<Real> paths;
 };
 

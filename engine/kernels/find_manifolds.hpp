@@ -1,23 +1,24 @@
 #pragma once
 
 #include "kernels/manifold_arguments.hpp"
+#include "narrowphase/box_box.hpp"
 #include "narrowphase/convex.hpp"
 #include "simd/lanes.hpp"
 
 namespace carom {
 namespace {
 
-/// Of the shapes of as many bodies as there are lanes: where their records of four numbers begin.
+/// Of the shapes of as many bodies as there are lanes: where they begin, in records of some Reals.
 template <std::size_t kLanes>
 struct ShapeRows {
     alignas(64) std::int32_t row[kLanes];
     int most_vertices;
 };
 
-template <class Real, std::size_t kLanes>
+template <std::size_t kRecord, class Real, std::size_t kLanes>
 [[gnu::always_inline]] inline ShapeRows<kLanes> shape_rows(const FindManifolds<Real>& k,
                                                            const std::int32_t* bodies) {
-    constexpr auto kRecords = static_cast<std::int32_t>(sizeof(ConvexShape<Real>) / (4 * sizeof(Real)));
+    constexpr auto kRecords = static_cast<std::int32_t>(sizeof(ConvexShape<Real>) / (kRecord * sizeof(Real)));
     ShapeRows<kLanes> rows{};
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
         const std::int32_t shape = k.shape[bodies[lane]], count = k.shapes[shape].count;
@@ -97,8 +98,8 @@ std::size_t find_manifolds(const FindManifolds<Real>& k, std::size_t first, std:
     std::size_t live = 0;
     for (std::size_t p = first; p < last; p += Lanes::size) {
         const auto a = Lanes::load_rows4(k.pose, k.a + p), b = Lanes::load_rows4(k.pose, k.b + p);
-        const auto of_a = shape_rows<Real, Lanes::size>(k, k.a + p);
-        const auto of_b = shape_rows<Real, Lanes::size>(k, k.b + p);
+        const auto of_a = shape_rows<4, Real, Lanes::size>(k, k.a + p);
+        const auto of_b = shape_rows<4, Real, Lanes::size>(k, k.b + p);
         const int last_vertex = of_a.most_vertices > 4 || of_b.most_vertices > 4 ? 7 : 3;
 
         ConvexPair<F> pair;
@@ -112,6 +113,34 @@ std::size_t find_manifolds(const FindManifolds<Real>& k, std::size_t first, std:
         pair.radius_a = sizes_a[1], pair.radius_b = sizes_b[1];
         pair.size = simd::min(sizes_a[3], sizes_b[3]);
         live += store_manifolds<Real, Lanes>(k, p, a, find_manifold<Real>(pair));
+    }
+    return live;
+}
+
+/// Half the sides of boxes: a record of two has the last x and the first y of a corner.
+template <class Real, class Lanes>
+[[gnu::always_inline]] inline typename Lanes::Batch2 load_half_sides(const FindManifolds<Real>& k,
+                                                                     const std::int32_t* bodies) {
+    static_assert(offsetof(ConvexShape<Real>, y) == kMostVertices * sizeof(Real));
+    const auto rows = shape_rows<2, Real, Lanes::size>(k, bodies);
+    const auto corner = Lanes::load_rows2(k.shapes->x + kMostVertices - 1, rows.row);
+    return {{simd::abs(corner[0]), simd::abs(corner[1])}};
+}
+
+/// The same as find_manifolds() for pairs of which both are boxes: is_box(shape).
+template <class Real, class Isa>
+std::size_t find_box_manifolds(const FindManifolds<Real>& k, std::size_t first, std::size_t last) {
+    using Lanes = simd::Lanes<Real, Isa>;
+    using F = typename Lanes::Batch;
+    std::size_t live = 0;
+    for (std::size_t p = first; p < last; p += Lanes::size) {
+        const auto a = Lanes::load_rows4(k.pose, k.a + p), b = Lanes::load_rows4(k.pose, k.b + p);
+        const auto half_a = load_half_sides<Real, Lanes>(k, k.a + p);
+        const auto half_b = load_half_sides<Real, Lanes>(k, k.b + p);
+        const RelativePose<F> pose = relative_pose<F>(a, b);
+        const BoxPair<F> pair{pose.cosine, pose.sine, pose.x,    pose.y,
+                              half_a[0],   half_a[1], half_b[0], half_b[1]};
+        live += store_manifolds<Real, Lanes>(k, p, a, find_box_manifold<Real>(pair));
     }
     return live;
 }

@@ -124,6 +124,16 @@ template <class Real, class F, class Mask>
     return found;
 }
 
+/// The same with the normal out of the frame of the reference, whose own normal is (nx, ny), and from a to b.
+template <class F, class Mask>
+[[gnu::always_inline]] inline Manifold<F> with_normal_from(Manifold<F> found, F nx, F ny,
+                                                           Mask b_has_reference) {
+    using simd::select;
+    const F x = nx * found.normal_x - ny * found.normal_y, y = ny * found.normal_x + nx * found.normal_y;
+    found.normal_x = select(b_has_reference, -x, x), found.normal_y = select(b_has_reference, -y, y);
+    return found;
+}
+
 /// Polygons, one a lane, in one frame; places beyond a polygon's vertices repeat the last.
 template <class F>
 struct Polygons {
@@ -251,10 +261,7 @@ template <class Real, class F>
                            .radius = select(swapped, pair.radius_b, pair.radius_a),
                            .other_radius = select(swapped, pair.radius_a, pair.radius_b),
                            .size = pair.size};
-    Manifold<F> found = manifold_at_face<Real>(view, swapped);
-    const F x = nx * found.normal_x - ny * found.normal_y, y = ny * found.normal_x + nx * found.normal_y;
-    found.normal_x = select(swapped, -x, x), found.normal_y = select(swapped, -y, y);
-    return found;
+    return with_normal_from(manifold_at_face<Real>(view, swapped), nx, ny, swapped);
 }
 
 }  // namespace

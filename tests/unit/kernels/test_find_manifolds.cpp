@@ -16,7 +16,8 @@ using enum ShapeKind;
 struct PairClass {
     const char* name;
     ShapeKind a, b;
-    double ratio;
+    double ratio;  // greatest, of sizes
+    bool by_box_kernel = false;
 };
 
 constexpr PairClass kClasses[] = {
@@ -34,13 +35,17 @@ constexpr PairClass kClasses[] = {
     {"octagons", octagon, octagon, 2},
     {"thin boxes", thin, thin, 2},
     {"thin box and polygon", thin, polygon, 2},
+    {"boxes, by their own kernel", box, box, 2, true},
+    {"thin boxes, by their own kernel", thin, thin, 2, true},
+    {"boxes of very different size, by their own kernel", box, box, 300, true},
     {"polygons of very different size", polygon, polygon, 300},
 };
 
 template <class Real>
-void find(ConvexPairs<Real>& pairs, const KernelTables& tables) {
-    const FindManifolds<Real> arguments = pairs.arguments();
-    tables.of<Real>().convex->find_manifolds(arguments, 0, padded(pairs.count()));
+std::size_t find(ConvexPairs<Real>& pairs, const KernelTables& tables, bool by_box_kernel) {
+    const ConvexKernels<Real>& kernels = *tables.of<Real>().convex;
+    const auto kernel = by_box_kernel ? kernels.find_box_manifolds : kernels.find_manifolds;
+    return kernel(pairs.arguments(), 0, padded(pairs.count()));
 }
 
 /// Where a point of a manifold is, by the levers about one of the bodies.
@@ -71,7 +76,7 @@ TEST_SUITE("kernels/find manifolds") {
             CAPTURE(kind.name);
             ConvexPairs<Real> pairs(scaled(sizeof(Real) == 4 ? 100'000 : 20'000, 5'000));
             draw_pairs(pairs, kind.a, kind.b, kind.ratio, 7);
-            find(pairs, *runnable_kernel_tables().back());
+            find(pairs, *runnable_kernel_tables().back(), kind.by_box_kernel);
             std::size_t wrong_life = 0, bad_unit = 0, bad_gap = 0, bad_distance = 0, inexact = 0;
             std::size_t bad_place = 0, bad_between = 0, live = 0;
             for (std::size_t i = 0; i < pairs.count(); ++i) {
@@ -119,15 +124,50 @@ TEST_SUITE("kernels/find manifolds") {
                 CAPTURE(count);
                 ConvexPairs<Real> exact(count);
                 draw_pairs(exact, kind.a, kind.b, kind.ratio, 11);
-                find(exact, *runnable_kernel_tables().front());
+                find(exact, *runnable_kernel_tables().front(), kind.by_box_kernel);
                 for (const KernelTables* tables : runnable_kernel_tables()) {
                     CAPTURE(tables->of<Real>().isa);
                     ConvexPairs<Real> pairs(count);
                     draw_pairs(pairs, kind.a, kind.b, kind.ratio, 11);
-                    find(pairs, *tables);
+                    find(pairs, *tables, kind.by_box_kernel);
                     CHECK(pairs.equals(exact));
                     CHECK(pairs.is_rest_untouched());
                 }
             }
+    }
+
+    TEST_CASE_TEMPLATE("the kernel of boxes finds what that of convex shapes finds", Real, float, double) {
+        for (const ShapeKind kind : {box, thin}) {
+            ConvexPairs<Real> general(20'000), boxes(20'000);
+            draw_pairs(general, kind, kind, 3, 5), draw_pairs(boxes, kind, kind, 3, 5);
+            find(general, *runnable_kernel_tables().back(), false);
+            find(boxes, *runnable_kernel_tables().back(), true);
+            std::size_t others = 0, live = 0, bad = 0;
+            for (std::size_t i = 0; i < boxes.count(); ++i) {
+                const FoundManifold m = boxes.found(i), n = general.found(i);
+                const PlacedShape a = boxes.placed_a(i), b = boxes.placed_b(i);
+                const double exact = round_off<Real>(a, b), size = std::fmin(a.inradius, b.inradius);
+                if (!m.is_live() || !n.is_live()) continue;
+                ++live;
+                // Of faces that are as far away either may be taken.
+                if (std::sqrt(length_squared(m.normal - n.normal)) > 1e-3 || m.has_two() != n.has_two()) {
+                    ++others;
+                    bad +=
+                        std::fabs(m.separation[m.lowest()] - n.separation[n.lowest()]) > 1e-3 * size + exact;
+                    continue;
+                }
+                double worst = std::fabs(m.separation[0] - n.separation[0]);
+                if (m.has_two()) worst = std::fmax(worst, std::fabs(m.separation[1] - n.separation[1]));
+                for (int point = 0; point < 2; ++point)
+                    worst = std::fmax(worst, std::fmax(std::fabs(m.lever_a[point] - n.lever_a[point]),
+                                                       std::fabs(m.lever_b[point] - n.lever_b[point])));
+                worst = std::fmax(worst, std::fabs(m.lever_a_t - n.lever_a_t));
+                worst = std::fmax(worst, std::fabs(m.lever_b_t - n.lever_b_t));
+                bad += worst > 100 * exact;
+            }
+            CHECK(live > boxes.count() / 3);
+            CHECK(others < live / 10);  // of every 16th the centres coincide
+            CHECK(bad == 0);
+        }
     }
 }
