@@ -86,8 +86,8 @@ template <class Real, class F>
                            .radius = zero,
                            .other_radius = zero,
                            .size = size};
-    const Manifold<F> found = manifold_at_face<Real>(view, swapped);
-    return with_normal_from(found, select(swapped, turned_x, nx), select(swapped, turned_y, ny), swapped);
+    const Manifold<F> found = manifold_at_face<false, Real>(view, swapped);
+    return with_normal_from(found, select(swapped, turned_x, nx), select(swapped, turned_y, ny));
 }
 
 }  // namespace

@@ -46,9 +46,10 @@ struct Manifold {
 };
 
 /// Points of a reference and an incident edge: the part of the incident edge that lies over the reference,
-/// else the nearest points of both. Normals are in the frame of the reference: `normal_above` is the part
-/// along its normal.
-template <class Real, class F, class Mask>
+/// else the nearest points of both. The normal is that of the pair, from a to b, in the frame of the
+/// reference: x along the reference's own normal, y along its edge.
+/// @tparam kRounded  whether shapes may have a radius, and so be a disc
+template <bool kRounded, class Real, class F, class Mask>
 [[gnu::always_inline]] inline Manifold<F> manifold_at_face(const FaceView<F>& view, Mask b_has_reference) {
     using simd::abs, simd::max, simd::min, simd::select, simd::sqrt;
     const F zero(Real(0)), one(Real(1)), half(Real(0.5));
@@ -66,12 +67,12 @@ template <class Real, class F, class Mask>
     const F vertex = select(low_is_nearest, view.low_along, view.high_along);
     const auto passes_end = vertex > view.to;
     const F corner = select(passes_end, view.to, view.from);
-    const auto passes_corner = passes_end | (vertex < view.from) | (view.to <= view.from);
-    const F from_low = (corner - view.low_along) * length - view.low_above * rise;
-    const F from_high = (view.high_along - corner) * length + view.high_above * rise;
-    const F beyond = select(low_is_nearest, from_low, from_high);
-    const auto is_corner = (passes_corner & (beyond <= -tolerance * (abs(length) + abs(rise)))) | (from > to);
+    auto passes_corner = passes_end | (vertex < view.from);
+    if constexpr (kRounded) passes_corner = passes_corner | (view.to <= view.from);
     const F squared_length = length * length + rise * rise;
+    const F from_low = (corner - view.low_along) * length - view.low_above * rise;
+    const F within = select(low_is_nearest, from_low, squared_length - from_low);
+    const auto is_corner = (passes_corner & (within <= -tolerance * (length + abs(rise)))) | (from > to);
     const F share = min(max(from_low / select(squared_length > zero, squared_length, one), zero), one);
     const F apart_along = view.low_along + share * length - corner;
     const F apart_above = view.low_above + share * rise;
@@ -91,46 +92,51 @@ template <class Real, class F, class Mask>
     along1 = select(is_corner, corner + half * apart_along, select(is_second, along2, along1));
     above1 = select(is_corner, apart_above, select(is_second, above2, above1));
     along2 = select(is_single, along1, along2), above2 = select(is_single, above1, above2);
+    const F separation1 = select(has_direction, distance, above1), separation2 = above2;
+    F lowest = half * min(above1, above2), lowest_along = select(above1 <= above2, along1, along2);
 
     // Half way between the surfaces, from the centre of the reference's body.
-    const F shift = half * (view.radius - view.other_radius);
-    along1 += shift * normal_along, along2 += shift * normal_along;
-    const F height = view.height + shift * normal_above;
+    F height = view.height;
+    if constexpr (kRounded) {
+        const F shift = half * (view.radius - view.other_radius);
+        along1 += shift * normal_along, along2 += shift * normal_along;
+        lowest_along += shift * normal_along, height += shift * normal_above;
+    }
     const F height1 = height + half * above1, height2 = height + half * above2;
-    const F lowest = height + half * min(above1, above2);
-    const F lowest_along = select(above1 <= above2, along1, along2);
+    lowest += height;
 
-    const auto cross = [&](F above, F along) { return above * normal_along - along * normal_above; };
-    const auto dot = [&](F above, F along) { return above * normal_above + along * normal_along; };
-    const F lever1 = cross(height1, along1), lever2 = cross(height2, along2);
-    const F lever_t = dot(lowest, lowest_along);
-    // of the centre of the other body
-    const F centre = cross(view.centre_above, view.centre_along);
-    const F centre_t = dot(view.centre_above, view.centre_along);
-    const F other1 = lever1 - centre, other2 = lever2 - centre, other_t = lever_t - centre_t;
-
-    const F radii = view.radius + view.other_radius;
     Manifold<F> found;
-    // Of a reference of b all that depends on the normal has the other sign.
-    found.normal_x = normal_above, found.normal_y = normal_along;
-    found.lever_a1 = select(b_has_reference, -other1, lever1);
-    found.lever_a2 = select(b_has_reference, -other2, lever2);
-    found.lever_b1 = select(b_has_reference, -lever1, other1);
-    found.lever_b2 = select(b_has_reference, -lever2, other2);
-    found.lever_a_t = select(b_has_reference, -other_t, lever_t);
-    found.lever_b_t = select(b_has_reference, -lever_t, other_t);
-    found.separation1 = select(has_direction, distance, above1) - radii;
-    found.separation2 = select(is_single, F(static_cast<Real>(kNoPoint)), above2 - radii);
+    const F side = select(b_has_reference, -one, one);
+    const F nx = side * normal_above, ny = side * normal_along;
+    const auto lever = [&](F above, F along) { return above * ny - along * nx; };
+    const auto lever_t = [&](F above, F along) { return above * nx + along * ny; };
+    const F lever1 = lever(height1, along1), lever2 = lever(height2, along2);
+    const F both_t = lever_t(lowest, lowest_along);
+    const F centre = lever(view.centre_above, view.centre_along);
+    const F centre_t = lever_t(view.centre_above, view.centre_along);
+    const F of_a = select(b_has_reference, centre, zero), of_b = centre - of_a;
+    const F of_a_t = select(b_has_reference, centre_t, zero), of_b_t = centre_t - of_a_t;
+    found.normal_x = nx, found.normal_y = ny;
+    found.lever_a1 = lever1 - of_a, found.lever_a2 = lever2 - of_a;
+    found.lever_b1 = lever1 - of_b, found.lever_b2 = lever2 - of_b;
+    found.lever_a_t = both_t - of_a_t, found.lever_b_t = both_t - of_b_t;
+    const F none(static_cast<Real>(kNoPoint));
+    if constexpr (kRounded) {
+        const F radii = view.radius + view.other_radius;
+        found.separation1 = separation1 - radii;
+        found.separation2 = select(is_single, none, separation2 - radii);
+    } else {
+        found.separation1 = separation1;
+        found.separation2 = select(is_single, none, separation2);
+    }
     return found;
 }
 
-/// The same with the normal out of the frame of the reference, whose own normal is (nx, ny), and from a to b.
-template <class F, class Mask>
-[[gnu::always_inline]] inline Manifold<F> with_normal_from(Manifold<F> found, F nx, F ny,
-                                                           Mask b_has_reference) {
-    using simd::select;
+/// The same with the normal out of the frame of the reference, whose own normal is (nx, ny).
+template <class F>
+[[gnu::always_inline]] inline Manifold<F> with_normal_from(Manifold<F> found, F nx, F ny) {
     const F x = nx * found.normal_x - ny * found.normal_y, y = ny * found.normal_x + nx * found.normal_y;
-    found.normal_x = select(b_has_reference, -x, x), found.normal_y = select(b_has_reference, -y, y);
+    found.normal_x = x, found.normal_y = y;
     return found;
 }
 
@@ -261,7 +267,7 @@ template <class Real, class F>
                            .radius = select(swapped, pair.radius_b, pair.radius_a),
                            .other_radius = select(swapped, pair.radius_a, pair.radius_b),
                            .size = pair.size};
-    return with_normal_from(manifold_at_face<Real>(view, swapped), nx, ny, swapped);
+    return with_normal_from(manifold_at_face<true, Real>(view, swapped), nx, ny);
 }
 
 }  // namespace
