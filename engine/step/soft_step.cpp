@@ -41,6 +41,9 @@ class SoftStep final : public SoftSimulation<Real> {
         return sim.can_meet() && (!sim.world.bodies.mass.is_uniform() || sim.world.bodies.has_flags);
     };
     static constexpr auto has_shapes = [](const Sim& sim) { return sim.world.bodies.has_shapes; };
+    static constexpr auto shapes_bounce = [](const Sim& sim) {
+        return sim.world.bodies.has_shapes && sim.world.effects.restitution;
+    };
     static constexpr auto has_lost_bodies = [](const Sim& sim) { return !sim.lost.empty(); };
 
     static constexpr Stage<Sim> kBegin[] = {
@@ -76,6 +79,9 @@ class SoftStep final : public SoftSimulation<Real> {
          "paths of contacts", "velocity records"},
     };
     static constexpr Stage<Sim> kSubstep[] = {
+        {"bounce_shapes", [](Sim& sim) { sim.soft.carry_out_shape_impacts(sim.world.books); }, shapes_bounce,
+         KernelChoice::scalar_f64, "paths of contacts, velocity records, displacements",
+         "velocity records, books"},
         {"solve_paths",
          [](Sim& sim) { sim.soft.solve_paths(sim.substep, sim.substep + 1 == sim.substep_count); },
          has_shapes, KernelChoice::isa, "paths of contacts, velocity records",

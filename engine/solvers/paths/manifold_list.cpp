@@ -24,7 +24,7 @@ void ManifoldList<Real>::add(std::int32_t row_a, std::int32_t partner, const Nam
 
 template <class Real>
 void ManifoldList<Real>::fit() {
-    for (Column<Real>* column : {&margin, &thickness, &friction}) column->resize(count());
+    for (Column<Real>* column : {&margin, &thickness, &friction, &restitution}) column->resize(count());
     for_each_found_column(*this, [&](Column<Real>& column) { column.resize(count()); });
 }
 
@@ -37,7 +37,8 @@ ManifoldColumns<Real> ManifoldList<Real>::columns() {
 template <class Real>
 std::size_t ManifoldList<Real>::bytes() const {
     std::size_t bytes = a.bytes() + b.bytes() + margin.bytes() + thickness.bytes() + friction.bytes() +
-                        names.capacity() * sizeof(Name) + memory.capacity() * sizeof(ManifoldMemory<Real>);
+                        restitution.bytes() + names.capacity() * sizeof(Name) +
+                        memory.capacity() * sizeof(ManifoldMemory<Real>);
     for_each_found_column(*this, [&](const Column<Real>& column) { bytes += column.bytes(); });
     return bytes;
 }

@@ -37,6 +37,7 @@ struct ManifoldList {
     Column<Real> margin;        ///< m
     Column<Real> thickness;     ///< m, the smaller inradius of the two
     Column<Real> friction;      ///< Coulomb coefficient
+    Column<Real> restitution;   ///< no unit
     std::vector<Name> names;    ///< of every contact
     std::vector<ManifoldMemory<Real>> memory;
 

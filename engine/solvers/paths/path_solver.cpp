@@ -7,6 +7,7 @@
 
 #include "constraints/partner.hpp"
 #include "effects/friction.hpp"
+#include "effects/restitution.hpp"
 #include "math/rotation.hpp"
 
 namespace carom {
@@ -156,6 +157,8 @@ void PathSolver<Real>::find(const WorldState<Real>& world, const SubstepTerms& t
                 bodies_.thickness[i] = b_moves ? std::min(inradius[a], inradius[b]) : inradius[a];
                 bodies_.margin[i] = static_cast<Real>(near(static_cast<double>(bodies_.thickness[i]))) +
                                     real_dt * (reach_in_step(a) + reach_in_step(b));
+                bodies_.restitution[i] =
+                    static_cast<Real>(pair_restitution(bodies.restitution[a], bodies.restitution[b]));
                 bodies_.friction[i] =
                     friction_varies ? static_cast<Real>(pair_friction(bodies.friction[a], bodies.friction[b]))
                                     : bodies.friction[a];

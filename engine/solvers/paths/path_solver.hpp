@@ -6,12 +6,12 @@
 
 #include "broadphase/candidates.hpp"
 #include "broadphase/edge_candidates.hpp"
+#include "constraints/partner.hpp"
 #include "kernels/path_arguments.hpp"
 #include "solvers/paths/manifold_list.hpp"
 #include "solvers/paths/path_cut.hpp"
 #include "solvers/substeps/body_records.hpp"
 #include "solvers/substeps/step_terms.hpp"
-#include "state/books.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {
@@ -22,6 +22,7 @@ struct PathCounters {
     std::int64_t bundles = 0;    ///< of paths
     std::int64_t links = 0;      ///< of bundles: kPathLanes times as many places for contacts
     std::int64_t unsettled = 0;  ///< paths whose active set did not settle, in all substeps
+    std::int64_t impacts = 0;    ///< so far
     std::int64_t cuts = 0;       ///< steps that cut the contacts into paths anew, so far
 };
 
@@ -29,6 +30,17 @@ struct PathCounters {
 struct ContactDistance {
     double share, fall;  // of the thickness of the thinner body; m, what gravity adds in a step
     double operator()(double thickness) const { return share * thickness + fall; }
+};
+
+/// A contact in its place along a path.
+template <class Real>
+struct PathContact {
+    const PathLink<Real>& link;
+    std::size_t lane;
+    std::int32_t near, far;  ///< rows in the records; those of what nothing moves are beyond the bodies
+    Partner partner;         ///< b of the contact
+    bool is_reversed;        ///< the near body is b, not a
+    double restitution;
 };
 
 /// The contacts of convex shapes that are no discs: what can touch, what does, and the impulses, solved
@@ -64,8 +76,18 @@ class PathSolver {
                int passes, bool sweeps);
     /// Moves the surfaces of kinematic bodies on by a substep.
     void advance(const SubstepTerms& terms, BodyRecords<Real>& records);
-    /// What the impulses of a substep did.
-    void book_substep(const BodyRecords<Real>& records, Books& books);
+    /// Calls fn(contact) for each PathContact of the step.
+    template <class Fn>
+    void for_each(const Fn& fn) const {
+        for (std::size_t n = 0; n < live_.size(); ++n) {
+            const ManifoldList<Real>& list = live_[n] >= 0 ? bodies_ : surfaces_;
+            const std::size_t i = place_of(live_[n]);
+            const typename PathCut::Place place = cut_.places()[n];
+            fn(PathContact<Real>{links_[place.link], place.lane, near_row(place),
+                                 links_[place.link].body[place.lane], Partner(list.b[i]), place.is_reversed,
+                                 static_cast<double>(list.restitution[i])});
+        }
+    }
     /// Keeps the impulses for the next step.
     void end();
 
@@ -87,6 +109,12 @@ class PathSolver {
     void pose_bodies(const WorldState<Real>& world);
     bool list_live();
     void note_calm();
+    /// Row of the body where a link begins.
+    std::int32_t near_row(PathCut::Place place) const {
+        const bool is_first = place.link == cut_.first_link()[place.bundle];
+        return is_first ? heads_[kPathLanes * place.bundle + place.lane]
+                        : links_[place.link - 1].body[place.lane];
+    }
     void cut_paths(const WorldState<Real>& world);
     void lay_out(const WorldState<Real>& world, BodyRecords<Real>& records, const StepLoops<Real>& loops);
     void fill_link(const WorldState<Real>& world, const BodyRecords<Real>& records, std::size_t number);

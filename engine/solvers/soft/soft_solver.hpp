@@ -6,6 +6,8 @@
 
 #include "constraints/contact_graph.hpp"
 #include "constraints/contact_rows.hpp"
+#include "solvers/paths/path_books.hpp"
+#include "solvers/paths/path_impacts.hpp"
 #include "solvers/paths/path_solver.hpp"
 #include "solvers/shared/local_solve.hpp"
 #include "solvers/soft/books.hpp"
@@ -86,6 +88,10 @@ class SoftSolver {
 
     /// Gives bodies last step's impulses of shapes.
     void warm_start_paths() { paths.warm_start(terms_, records_, loops_); }
+    /// Carries out the impacts of shapes in a substep.
+    void carry_out_shape_impacts(Books& books) {
+        paths.counters.impacts += carom::carry_out_impacts(paths, terms_, records_, books);
+    }
     /// Solves the contacts of shapes in substep `number`.
     void solve_paths(int number, bool is_last);
     /// Both sweeps of substep `number`, or the first alone if correct_loads is due. The second leaves out
@@ -99,7 +105,7 @@ class SoftSolver {
     /// What the impulses of this substep did; only the walls' impulses if the ledger is closed.
     void book_substep(const WorldState<Real>& world, Books& books) {
         books_.book_substep(view(), world, books);
-        paths.book_substep(records_, books);
+        book_paths(paths, records_, books);
     }
     /// Carries out the impacts of a substep.
     void carry_out_impacts(const Column<Real>& motion, Books& books, Interruption& interruption);

@@ -59,6 +59,14 @@ void BodyRecords<Real>::add_still_rows(std::size_t added) {
 }
 
 template <class Real>
+void BodyRecords<Real>::add_velocity(std::int32_t row, Vec2 dv, double du) {
+    const auto i = static_cast<std::size_t>(row);
+    const auto x = static_cast<Real>(dv.x), y = static_cast<Real>(dv.y), rim = static_cast<Real>(du);
+    velocity[4 * i] += x, velocity[4 * i + 1] += y, start_x_[i] += x, start_y_[i] += y;
+    if (has_rotation_) velocity[4 * i + 2] += rim, start_rim_[i] += rim;
+}
+
+template <class Real>
 void BodyRecords<Real>::advance(bool is_last, const SubstepTerms& terms, const StepLoops<Real>& loops) {
     const auto real = [](double value) { return static_cast<Real>(value); };
     AdvanceBodies<Real> k{};
