@@ -21,7 +21,7 @@ constexpr std::size_t kMostLarge = 32;      // discs that are kept out of the ce
 /// Discs are sorted anew after this many impacts a disc on average: it has moved by some cells by then.
 constexpr std::int64_t kImpactsBetweenSorts = 40;
 
-struct Box {
+struct Bounds {
     Vec2 min{kNever, kNever}, max{-kNever, -kNever};
 
     void include(Vec2 x) {
@@ -102,7 +102,7 @@ double EventDynamics::find_cell_radius(Vec2 box) const {
 /// Sorts the discs, registers them in their cells, and foresees each one's next event.
 void EventDynamics::arrange() {
     const std::size_t count = store_.count();
-    Box box;
+    Bounds box;
     std::vector<Vec2> positions(count);
     for (std::size_t i = 0; i < count; ++i) {
         positions[i] = store_.position_at(i, time_);
