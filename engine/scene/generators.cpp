@@ -5,6 +5,7 @@
 #include "scene/place_discs.hpp"
 #include "scene/random_velocities.hpp"
 #include "scene/validation.hpp"
+#include "shapes/convex_geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,10 +18,13 @@ namespace {
 
 constexpr Item kLatticeItem{"the lattice has", "", -1, ""};
 constexpr Item kStackItem{"the stack has", "", -1, ""};
+constexpr Item kPyramidItem{"the pyramid has", "", -1, ""};
 constexpr Item kGasItem{"the gas has", "", -1, ""};
 
 constexpr Quantity kCount{"count", "", 1, static_cast<double>(kLargestBodyCount),
                           "Each generator makes at least one body."};
+constexpr Quantity kBase{"base", "", 1, static_cast<double>(kLargestBodyCount),
+                         "Give the number of boxes in the bottom row."};
 constexpr Quantity kSpacing{
     "spacing", "m", 0, kLargestPosition,
     "It goes from centre to centre; a gap of 0 between discs is a spacing of 2 radii."};
@@ -43,16 +47,17 @@ std::optional<Problem> check_range(const Item& item, const RadiusRange& range) {
                    Vec2{range.min, range.max}, " m; expected min <= max. Swap the two.");
 }
 
-/// The body that all others are copies of, with the radius that will be used.
+/// The body that all others are copies of, with the radius that will be used; then it has to be a disc.
 std::optional<Problem> check_pattern(const Item& item, Body body, std::optional<double> radius) {
     if (!body.name.empty())
         return problem(ErrorCode::inconsistent, item, "/name", "a body with the name ", quoted(body.name),
                        "; expected none, as names are unique. Name the bodies after they are made.");
-    if (!is_disc(body.shape))
-        return problem(
-            ErrorCode::inconsistent, item, "/shape",
-            "a shape that is no disc; expected a disc, as generators place discs. Add other shapes "
-            "one by one.");
+    if (!is_convex(body.shape))
+        return problem(ErrorCode::inconsistent, item, "/shape", "the shape ", quoted(name_of(body.shape)),
+                       "; expected a disc, box, capsule or polygon. Add other shapes one by one.");
+    if (radius && !is_disc(body.shape))
+        return problem(ErrorCode::inconsistent, item, "/shape", "the shape ", quoted(name_of(body.shape)),
+                       " and radii, which are of discs; expected a disc. Leave one of the two out.");
     if (radius) body.shape = Disc{*radius};
     body.position = {};
     return find_body_problem(item, body);
@@ -94,6 +99,11 @@ Body with_shape(const Body& pattern, double radius) {
     Body body = pattern;
     body.shape = Disc{radius};
     return body;
+}
+
+/// How far a body of a pattern reaches from its centre, as it is turned.
+double reach_of(const Body& body, Vec2 direction) {
+    return reach_along(convex_shape_of<double>(body.shape), rotation_by(body.angle), direction);
 }
 
 /// A gas that fits: the centres come out of these with `random` where it stands.
@@ -168,6 +178,25 @@ std::optional<Problem> find_problem(const Stack& stack) {
     return check_pattern(kStackItem, stack.body, std::nullopt);
 }
 
+std::optional<Problem> find_problem(const Pyramid& pyramid) {
+    const auto base = static_cast<double>(pyramid.base);
+    if (auto found = check(kPyramidItem, "/base", base, kBase)) return found;
+    if (base * (base + 1) / 2 > static_cast<double>(kLargestBodyCount))
+        return problem(ErrorCode::too_large, kPyramidItem, "/base", "base ", base, ", which makes ",
+                       base * (base + 1) / 2, " boxes; expected at most ", kLargestBodyCount,
+                       " bodies. Give it a shorter row.");
+    if (auto found = check_origin(kPyramidItem, pyramid.origin)) return found;
+    if (auto found = check(kPyramidItem, "/gap", pyramid.gap, kGap)) return found;
+    if (!std::holds_alternative<Box>(pyramid.body.shape))
+        return problem(ErrorCode::inconsistent, kPyramidItem, "/shape", "the shape ",
+                       quoted(name_of(pyramid.body.shape)),
+                       "; expected a box, on which others stand. Use a lattice for other shapes.");
+    if (pyramid.body.angle != 0)
+        return problem(ErrorCode::inconsistent, kPyramidItem, "/angle", "angle ", pyramid.body.angle,
+                       " rad; expected 0, as boxes stand on their sides. Leave it out.");
+    return check_pattern(kPyramidItem, pyramid.body, std::nullopt);
+}
+
 std::optional<Problem> find_problem(const Gas& gas, const Scene& scene) {
     if (auto found = find_gas_settings_problem(gas, scene)) return found;
     auto plan = plan_gas(gas, scene);
@@ -204,12 +233,30 @@ BodyId add_stack(Scene& scene, const Stack& stack) {
     raise_if("add_stack", find_problem(stack));
     make_room(scene, stack.count, "add_stack");
     const std::size_t first = scene.bodies.size();
-    const double spacing = 2 * radius_of(stack.body.shape) + stack.gap;
+    const double spacing = reach_of(stack.body, {0, 1}) + reach_of(stack.body, {0, -1}) + stack.gap;
     for (std::int64_t i = 0; i < stack.count; ++i) {
         Body body = stack.body;
         body.position = {stack.origin.x, stack.origin.y + static_cast<double>(i) * spacing};
         scene.bodies.push_back(std::move(body));
     }
+    return first_of(first);
+}
+
+BodyId add_pyramid(Scene& scene, const Pyramid& pyramid) {
+    raise_if("add_pyramid", find_problem(pyramid));
+    make_room(scene, pyramid.base * (pyramid.base + 1) / 2, "add_pyramid");
+    const std::size_t first = scene.bodies.size();
+    const Box& box = std::get<Box>(pyramid.body.shape);
+    const Vec2 spacing{box.width + pyramid.gap, box.height + pyramid.gap};
+    for (std::int64_t row = 0; row < pyramid.base; ++row)
+        for (std::int64_t column = 0; column < pyramid.base - row; ++column) {
+            Body body = pyramid.body;
+            // Halves are exact, so that both flanks mirror each other as far as the origin lets them.
+            body.position.x =
+                pyramid.origin.x + (static_cast<double>(column) + 0.5 * static_cast<double>(row)) * spacing.x;
+            body.position.y = pyramid.origin.y + static_cast<double>(row) * spacing.y;
+            scene.bodies.push_back(std::move(body));
+        }
     return first_of(first);
 }
 

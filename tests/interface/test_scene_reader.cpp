@@ -273,15 +273,15 @@ const std::vector<Case> kBodies{
 };
 
 const std::vector<Case> kGenerators{
-    {with_generator(R"({"pyramid": {"base": 3}})"),
-     ErrorCode::not_built_yet,
-     "/generate/0/pyramid",
-     {"\"pyramid\" is not built yet", "boxes"}},
+    {with_generator(R"({"pyramid": {"base": 3, "shape": {"disc": {"radius": 1}}}})"),
+     ErrorCode::inconsistent,
+     "/generate/0/pyramid/shape",
+     {"the shape \"disc\"; expected a box"}},
     {with_generator(R"({"stack": {"count": 2, "type": "static",
         "shape": {"segment": {"a": [0, 0], "b": [1, 0]}}}})"),
      ErrorCode::inconsistent,
      "/generate/0/stack/shape",
-     {"no disc", "generators place discs"}},
+     {"\"segment\"", "expected a disc, box, capsule or polygon"}},
     {with_generator(R"({"chain": {}})"), ErrorCode::not_built_yet, "/generate/0/chain", {"not built yet"}},
     {with_generator(R"({"net": {}})"), ErrorCode::not_built_yet, "/generate/0/net", {"not built yet"}},
     {with_generator(R"({"latice": {}})"), ErrorCode::unknown_name, "/generate/0/latice", {"\"lattice\""}},

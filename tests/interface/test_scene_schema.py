@@ -142,6 +142,9 @@ VALID = [
     body(shape={"capsule": {"length": 1, "radius": 0.2}}),
     body(shape={"polygon": {"vertices": [[0, 0], [1, 0], [0, 1]], "radius": 0.1}}),
     body(shape={"polygon": {"vertices": [[0, 0], [0, 1], [1, 0]]}}, type="static"),
+    generate("pyramid", {"base": 5, "origin": [5, 1], "gap": 0, "shape": {"box": {"width": 1, "height": 1}}}),
+    generate("stack", {"count": 3, "shape": {"capsule": {"length": 1, "radius": 0.2}}}),
+    generate("lattice", {"count": [2, 2], "spacing": [9, 9], "shape": {"box": {"width": 1, "height": 1}}}),
     scene(joints=[]),
     scene(step={}),
     scene(step={"dt": 0.016, "count": 500}),
@@ -164,7 +167,6 @@ VALID = [
 
 # Valid for the schema; the reader says that the part is not built yet.
 NOT_BUILT_YET = [
-    generate("pyramid", {"base": 5, "origin": [5, 1], "gap": 0, "shape": {"box": {"width": 1, "height": 1}}}),
     generate("chain", {"count": 5, "direction": [1, 0], "spacing": 1, "joint": "revolute", "shape": DISC}),
     generate("chain", {"count": 5, "spacing": 1, "pinned": False, "shape": DISC}),
     generate("net", {"count": [5, 5], "origin": [1, 1], "spacing": 1, "pinned": "top", "shape": DISC}),

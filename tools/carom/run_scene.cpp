@@ -22,6 +22,7 @@
 #include "results/page_file.hpp"
 #include "results/summary_json.hpp"
 #include "results/trajectory_h5.hpp"
+#include "simulation/outlines.hpp"
 
 namespace carom::tool {
 namespace {
@@ -61,8 +62,19 @@ nlohmann::ordered_json edges_json(const std::vector<Body>& bodies) {
     return edges;
 }
 
+/// The outlines of boxes, capsules and polygons: vertices [m] and rounding radius [m].
+nlohmann::ordered_json shapes_json(const std::vector<ShapeOutline>& outlines) {
+    nlohmann::ordered_json shapes = nlohmann::ordered_json::array();
+    for (const ShapeOutline& outline : outlines) {
+        nlohmann::ordered_json vertices = nlohmann::ordered_json::array();
+        for (const Vec2 vertex : outline.vertices) vertices.push_back({vertex.x, vertex.y});
+        shapes.push_back({{"vertices", std::move(vertices)}, {"radius", outline.radius}});
+    }
+    return shapes;
+}
+
 /// What the run does with the scene, for whoever opens the trajectory alone.
-std::string settings_text(const Scene& scene, const Plan& plan) {
+std::string settings_text(const Scene& scene, const Plan& plan, const Outlines& outlines) {
     nlohmann::ordered_json json{{"version", kVersion},
                                 {"dt", scene.step.dt},
                                 {"steps", scene.step.count},
@@ -72,6 +84,7 @@ std::string settings_text(const Scene& scene, const Plan& plan) {
                                 {"drag", {{"linear", scene.drag.linear}, {"angular", scene.drag.angular}}},
                                 {"walls", walls_json(scene.walls)},
                                 {"edges", edges_json(scene.bodies)},
+                                {"shapes", shapes_json(outlines.shapes)},
                                 {"solver", plan.solver},
                                 {"substeps", plan.substeps},
                                 {"iterations", plan.iterations},
@@ -93,11 +106,13 @@ class Recorder {
         if (simulation.keeps_ledger()) ledger_ = std::make_unique<LedgerCsv>(folder.temporary("ledger.csv"));
         if (choices.no_trajectory) return;
         const std::int64_t frames = 1 + scene.step.count / every_ + (scene.step.count % every_ != 0 ? 1 : 0);
+        Outlines outlines = outlines_of(scene.bodies);
         trajectory_ = std::make_unique<TrajectoryH5>(
             folder.temporary("trajectory.h5"), scene, simulation,
             TrajectoryNotes{.scene_text = choices.scene_text,
-                            .settings = settings_text(scene, simulation.plan()),
-                            .frame_count = frames});
+                            .settings = settings_text(scene, simulation.plan(), outlines),
+                            .frame_count = frames,
+                            .shape = std::move(outlines.of_body)});
         trajectory_->append(simulation);
     }
 

@@ -19,6 +19,7 @@ constexpr double kFlattest = 1.0 / 3, kTallest = 2;  // height of a picture / wi
 constexpr std::size_t kMostSegments = 60'000;        // of all trails in a picture
 constexpr std::size_t kFewBodies = 50;               // up to which bodies without a colour get one each
 constexpr double kSmallestMark = 4;                  // pixels of radius
+constexpr double kOutline = 1;                       // pixels
 constexpr double kFullCircle = 2 * std::numbers::pi;
 // The page's light palette (web/theme.js).
 constexpr std::array<std::uint32_t, 8> kPalette{0x0072b2, 0xc2410c, 0x00815f, 0xb5568f,
@@ -51,6 +52,8 @@ Picture::Picture(const std::filesystem::path& trajectory_h5, int width)
       radius_(trajectory_.body_column("radius")),
       settings_(Json::parse(trajectory_.text("settings"), nullptr, false)),
       edges_(edge_bodies(settings_)),
+      shapes_(drawn_shapes(settings_)),
+      shape_(shape_of_bodies(trajectory_)),
       trail_(settings_.is_object() ? settings_.value("trail", std::size_t{0}) : 0),
       width_(width) {
     if (time_.empty()) throw ResultError(trajectory_h5.string() + ": has no frames to draw");
@@ -84,8 +87,7 @@ Picture::Box Picture::world() const {
         box.min_y = std::min(box.min_y, up.base);
         box.max_y = std::max(box.max_y, up.base + kSteps * up.step);
     }
-    const double around = radius_.empty() ? 1 : *std::max_element(radius_.begin(), radius_.end());
-    box = {box.min_x - around, box.min_y - around, box.max_x + around, box.max_y + around};
+    add_shapes(box);
     if (!edges_.empty()) trajectory_.read_frame("position", 0, position);
     for (const EdgeBody& edges : edges_) {
         const double at_x = position[2 * edges.body], at_y = position[2 * edges.body + 1];
@@ -93,6 +95,35 @@ Picture::Box Picture::world() const {
                std::max(box.max_x, at_x + edges.reach), std::max(box.max_y, at_y + edges.reach)};
     }
     return box;
+}
+
+/// Room for what bodies reach beyond their places: the largest radius all around, but for shapes that stay
+/// where they are, as a floor, the room they need there.
+void Picture::add_shapes(Box& box) const {
+    std::vector<float> first(2 * trajectory_.body_count()), last(first);
+    trajectory_.read_frame("position", 0, first);
+    trajectory_.read_frame("position", time_.size() - 1, last);
+    const std::vector<float> angle = shape_.empty() ? std::vector<float>{} : angles(0);
+    double around = radius_.empty() ? 1 : 0;
+    Box floors = box;
+    for (std::size_t body = 0; body < radius_.size(); ++body) {
+        const double px = first[2 * body], py = first[2 * body + 1];
+        if (!has_shape(body) || first[2 * body] != last[2 * body] ||
+            first[2 * body + 1] != last[2 * body + 1]) {
+            around = std::max(around, radius_[body]);
+            continue;
+        }
+        const double turn = angle.empty() ? 0 : static_cast<double>(angle[body]);
+        const DrawnShape& shape = shape_of(body);
+        for (std::size_t i = 0; i < shape.x.size(); ++i) {
+            const double at_x = px + std::cos(turn) * shape.x[i] - std::sin(turn) * shape.y[i],
+                         at_y = py + std::sin(turn) * shape.x[i] + std::cos(turn) * shape.y[i];
+            floors = {std::min(floors.min_x, at_x), std::min(floors.min_y, at_y),
+                      std::max(floors.max_x, at_x), std::max(floors.max_y, at_y)};
+        }
+    }
+    box = {std::min(box.min_x - around, floors.min_x), std::min(box.min_y - around, floors.min_y),
+           std::max(box.max_x + around, floors.max_x), std::max(box.max_y + around, floors.max_y)};
 }
 
 void Picture::choose_colours() {
@@ -158,15 +189,37 @@ void Picture::draw_trails(std::size_t frame) {
 void Picture::draw_bodies(std::size_t frame) {
     cairo_t* const pen = surface_->pen;
     const std::vector<float>& position = positions(frame);
+    const std::vector<float> angle = shape_.empty() ? std::vector<float>{} : angles(frame);
+    cairo_set_line_width(pen, kOutline);
+    cairo_set_line_join(pen, CAIRO_LINE_JOIN_ROUND);
     for (std::size_t body = 0; body < colour_.size(); ++body) {
         if (radius_[body] == 0) continue;  // lines
         const double px = x(position[2 * body]), py = y(position[2 * body + 1]);
         const double r = std::max(radius_[body] * scale_, 0.5);
         if (!(px > -r && px < width_ + r && py > -r && py < height_ + r)) continue;
         cairo_set_source_rgb(pen, colour_[body].red, colour_[body].green, colour_[body].blue);
-        cairo_arc(pen, px, py, r, 0, kFullCircle);
-        cairo_fill(pen);
+        if (!has_shape(body)) {
+            cairo_arc(pen, px, py, r, 0, kFullCircle);
+            cairo_fill(pen);
+            continue;
+        }
+        trace_shape(body, px, py, angle.empty() ? 0 : static_cast<double>(angle[body]));
+        cairo_fill_preserve(pen);
+        if (r >= kSmallestMark) {  // an outline in the ground's colour tells those apart that touch
+            cairo_set_source_rgb(pen, 1, 1, 1);
+            cairo_stroke(pen);
+        }
+        cairo_new_path(pen);
     }
+}
+
+void Picture::trace_shape(std::size_t body, double px, double py, double angle) {
+    const DrawnShape& shape = shape_of(body);
+    const double cos = std::cos(angle) * scale_, sin = std::sin(angle) * scale_;
+    for (std::size_t i = 0; i < shape.x.size(); ++i)
+        cairo_line_to(surface_->pen, px + cos * shape.x[i] - sin * shape.y[i],
+                      py - sin * shape.x[i] - cos * shape.y[i]);
+    cairo_close_path(surface_->pen);
 }
 
 void Picture::draw_rotation_marks(std::size_t frame) {
@@ -176,7 +229,8 @@ void Picture::draw_rotation_marks(std::size_t frame) {
     cairo_set_source_rgb(pen, 1, 1, 1);
     cairo_set_line_width(pen, 1.5);
     for (std::size_t body = 0; body < angle.size(); ++body) {
-        const double r = radius_[body] * scale_, px = x(position[2 * body]), py = y(position[2 * body + 1]);
+        const double reach = has_shape(body) ? shape_of(body).mark : radius_[body];
+        const double r = reach * scale_, px = x(position[2 * body]), py = y(position[2 * body + 1]);
         if (r < kSmallestMark) continue;
         cairo_move_to(pen, px, py);
         cairo_line_to(pen, px + r * std::cos(angle[body]), py - r * std::sin(angle[body]));

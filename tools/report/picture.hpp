@@ -9,6 +9,7 @@
 #include "report/edges.hpp"
 #include "report/h5_reader.hpp"
 #include "report/markup.hpp"
+#include "report/shapes.hpp"
 
 namespace carom::report {
 
@@ -47,12 +48,18 @@ class Picture {
     };
 
     Box world() const;
+    void add_shapes(Box& box) const;
     void choose_colours();
     const std::vector<float>& positions(std::size_t frame);
     double x(double world_x) const { return (world_x - box_.min_x) * scale_ + left_; }
     double y(double world_y) const { return (box_.max_y - world_y) * scale_ + top_; }
     void draw_trails(std::size_t frame);
     void draw_bodies(std::size_t frame);
+    bool has_shape(std::size_t body) const { return !shape_.empty() && shape_[body] >= 0; }
+    const DrawnShape& shape_of(std::size_t body) const {
+        return shapes_[static_cast<std::size_t>(shape_[body])];
+    }
+    void trace_shape(std::size_t body, double px, double py, double angle);
     void draw_rotation_marks(std::size_t frame);
     void draw_walls();
     void draw_edges(std::size_t frame);
@@ -64,6 +71,8 @@ class Picture {
     std::vector<Colour> colour_;
     Json settings_;
     std::vector<EdgeBody> edges_;
+    std::vector<DrawnShape> shapes_;
+    std::vector<double> shape_;  // of each body: number in shapes_, or -1; empty if there are none
     std::size_t trail_;
     Box box_;
     int width_, height_;

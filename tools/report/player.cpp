@@ -14,6 +14,7 @@
 #include "report/frame_choice.hpp"
 #include "report/h5_reader.hpp"
 #include "report/quantised_frame.hpp"
+#include "report/shapes.hpp"
 
 namespace carom::report {
 namespace {
@@ -153,6 +154,20 @@ Json edges(const Json& settings, const FrameChoice& choice) {
     return list;
 }
 
+/// Outlines of boxes, capsules and polygons, and which of them each chosen body has: its number plus one, 0
+/// for none. Null if there are none.
+Json shapes(const H5Reader& trajectory, const Json& settings, const FrameChoice& choice) {
+    const std::vector<double> of_bodies = shape_of_bodies(trajectory);
+    if (of_bodies.empty()) return nullptr;
+    Json outlines = Json::array();
+    for (const DrawnShape& shape : drawn_shapes(settings))
+        outlines.push_back({{"x", shape.x}, {"y", shape.y}, {"mark", shape.mark}});
+    std::vector<std::uint32_t> index;
+    for (const double number : chosen(of_bodies, choice.bodies))
+        index.push_back(static_cast<std::uint32_t>(number + 1));
+    return {{"outlines", outlines}, {"index", base64_of<std::uint32_t>(index)}};
+}
+
 Json description(const H5Reader& trajectory, const RunFiles& files, const FrameChoice& choice) {
     Json json{{"bodies", choice.bodies.size()},
               {"all_bodies", trajectory.body_count()},
@@ -167,6 +182,7 @@ Json description(const H5Reader& trajectory, const RunFiles& files, const FrameC
     for (const char* key : {"walls", "gravity", "drag", "trail"})
         json[key] = settings.is_object() && settings.contains(key) ? settings[key] : Json();
     json["edges"] = edges(settings, choice);
+    json["shapes"] = shapes(trajectory, settings, choice);
     return json;
 }
 

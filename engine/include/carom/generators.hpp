@@ -21,18 +21,29 @@ struct Lattice {
     Vec2 spacing{1, 1};        ///< m, from centre to centre, each >= 0
     double jitter = 0;         ///< m, >= 0: every centre moves by up to this much in x and in y
     bool stagger = false;      ///< odd rows move right by half of spacing.x: hexagonal rows
-    std::optional<RadiusRange> radius_range{};  ///< in place of the radius of `body`
+    std::optional<RadiusRange> radius_range{};  ///< in place of the radius of `body`, a disc
     double velocity_rms = 0;  ///< m/s, root mean square speed, >= 0; needs two dynamic bodies
     std::uint64_t seed = 0;
     Body body{};  ///< what every body is like; it has no name, its position is not used
 };
 
-/// Bodies on top of each other, from the lowest up.
+/// Bodies on top of each other, from the lowest up: each above the next by its height, as it is turned, and
+/// the gap.
 struct Stack {
     std::int64_t count = 1;  ///< >= 1
     Vec2 origin{};           ///< m, centre of the lowest body
     double gap = 0;          ///< m, clear distance between neighbours, >= 0
     Body body{};             ///< what every body is like; it has no name, its position is not used
+};
+
+/// Rows of boxes, each shorter by one than the row below and on the gaps of it: base (base + 1) / 2 boxes,
+/// row by row from the bottom, each row from the left.
+struct Pyramid {
+    std::int64_t base = 1;  ///< boxes of the bottom row, >= 1
+    Vec2 origin{};          ///< m, centre of the first box
+    double gap = 0;         ///< m, clear distance between neighbours in a row and between rows, >= 0
+    Body body{.shape =
+                  Box{}};  ///< what every box is like: not turned; it has no name, its position is not used
 };
 
 /// Discs spread over the box of the scene's walls, without overlap, in rows from the bottom. Packing
@@ -58,12 +69,14 @@ struct Gas {
 /// half a second.
 BodyId add_lattice(Scene& scene, const Lattice& lattice);
 BodyId add_stack(Scene& scene, const Stack& stack);
+BodyId add_pyramid(Scene& scene, const Pyramid& pyramid);
 BodyId add_gas(Scene& scene, const Gas& gas);
 
 /// What is wrong with a generator, with pointers as in the scene file ("/spacing/0"); nothing if all is well.
 /// A gas that does not fit its box is found by `add_gas`.
 std::optional<Problem> find_problem(const Lattice& lattice);
 std::optional<Problem> find_problem(const Stack& stack);
+std::optional<Problem> find_problem(const Pyramid& pyramid);
 std::optional<Problem> find_problem(const Gas& gas, const Scene& scene);
 
 }  // namespace carom

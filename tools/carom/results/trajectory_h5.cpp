@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "simulation/body_mass.hpp"
+#include "simulation/outlines.hpp"
 
 namespace carom::tool {
 namespace {
@@ -48,7 +49,7 @@ TrajectoryH5::TrajectoryH5(const std::filesystem::path& path, const Scene& scene
     file_.set_attribute(file_.root(), "scene", notes.scene_text);
     file_.set_attribute(file_.root(), "settings", notes.settings);
     file_.set_attribute(file_.root(), "name", scene.name);
-    make_datasets(scene);
+    make_datasets(scene, notes.shape);
     for (int i = 0; i < kBlockCount; ++i) {
         auto block = std::make_unique<Block>();
         const std::size_t numbers = frames_a_block_ * bodies_ * element_size_;
@@ -73,16 +74,17 @@ TrajectoryH5::~TrajectoryH5() {
     thread_.join();
 }
 
-void TrajectoryH5::make_datasets(const Scene& scene) {
+void TrajectoryH5::make_datasets(const Scene& scene, const std::vector<double>& shape) {
     time_ = file_.make_growing("time", H5T_IEEE_F64LE, {0}, {kTimesAChunk});
     file_.set_attribute(time_, "units", "s");
     make_dataset("position", "m", 2, &Block::position);
     make_dataset("velocity", "m/s", 2, &Block::velocity);
     make_dataset("angle", "rad", 1, &Block::angle);
 
-    make_column("radius", "m", scene, [](const Body& body) { return radius_of(body); });
+    make_column("radius", "m", scene, [](const Body& body) { return extent_of(body.shape); });
     make_column("mass", "kg", scene, [](const Body& body) { return mass_of(body); });
     make_column("inertia", "kg m2", scene, [](const Body& body) { return inertia_of(body); });
+    if (!shape.empty()) make_column("shape", "number in the settings' shapes, or -1", shape);
     if (std::any_of(scene.bodies.begin(), scene.bodies.end(),
                     [](const Body& body) { return !body.color.empty(); }))
         make_column("color", "0xRRGGBB, or 0xFFFFFFFF for none", scene,
@@ -94,6 +96,10 @@ void TrajectoryH5::make_column(const char* name, const char* unit, const Scene& 
     std::vector<double> values;
     values.reserve(scene.bodies.size());
     for (const Body& body : scene.bodies) values.push_back(value(body));
+    make_column(name, unit, values);
+}
+
+void TrajectoryH5::make_column(const char* name, const char* unit, const std::vector<double>& values) {
     const hid_t dataset = file_.make_column(name, values);
     file_.set_attribute(dataset, "units", unit);
     file_.close_dataset(dataset);

@@ -22,6 +22,8 @@ struct TrajectoryNotes {
     std::string scene_text;    ///< as it stands in the scene file
     std::string settings;      ///< JSON: what the run did with it, options included
     std::int64_t frame_count;  ///< expected; fewer or more may follow
+    std::vector<double>
+        shape{};  ///< of each body: number in the settings' "shapes", or -1; empty if there are none
 };
 
 /// Streams frames into trajectory.h5. `append` copies the state and returns; a thread of its own compresses
@@ -50,8 +52,9 @@ class TrajectoryH5 {
         std::vector<std::byte> Block::*column = nullptr;
     };
 
-    void make_datasets(const Scene& scene);
+    void make_datasets(const Scene& scene, const std::vector<double>& shape);
     void make_column(const char* name, const char* unit, const Scene& scene, double (*value)(const Body&));
+    void make_column(const char* name, const char* unit, const std::vector<double>& values);
     void make_dataset(const char* name, const char* unit, hsize_t components,
                       std::vector<std::byte> Block::*column);
     void hand_over();

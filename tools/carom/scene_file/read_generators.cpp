@@ -32,10 +32,6 @@ Pattern read_pattern(const Node& node, const Materials& materials) {
     if (const auto shape = node.find("shape")) {
         pattern.body.shape = read_shape(*shape);
         pattern.has_shape = true;
-        if (!std::holds_alternative<Disc>(pattern.body.shape))
-            shape->fail(ErrorCode::inconsistent,
-                        "the shape is no disc; expected a disc, as generators place discs. Add other shapes "
-                        "to \"bodies\", one by one.");
     }
     if (const auto type = node.find("type")) pattern.body.type = read_body_type(*type);
     const auto material = node.find("material");
@@ -56,13 +52,14 @@ void read_seed(const Node& node, std::uint64_t& into) {
     if (const auto seed = node.find("seed")) into = seed->seed();
 }
 
+/// @param key  whose value says how many bodies there are
 /// @throws SceneFileError if the bodies would take more memory than the limit.
-void check_memory(const Request& request, double count, const Scene& scene) {
+void check_memory(const Request& request, double count, const Scene& scene, const char* key = "count") {
     const SceneFileLimits& limits = request.limits;
     const double bytes = (static_cast<double>(scene.bodies.size()) + count) * sizeof(Body);
     if (bytes <= static_cast<double>(limits.body_bytes)) return;
-    const Node asked = request.node.at("count");
-    asked.fail(ErrorCode::too_large, "count " + short_text(asked.json()) +
+    const Node asked = request.node.at(key);
+    asked.fail(ErrorCode::too_large, key + (" " + short_text(asked.json())) +
                                          " asks for more memory than the limit of " +
                                          std::to_string(limits.body_bytes >> 20) + " MiB; expected at most " +
                                          std::to_string(limits.body_bytes / sizeof(Body)) +
@@ -120,6 +117,23 @@ void make_stack(const Request& request, Scene& scene) {
     add_stack(scene, stack);
 }
 
+void make_pyramid(const Request& request, Scene& scene) {
+    const Node& node = request.node;
+    static constexpr std::array<std::string_view, 9> kKeys{
+        "base", "origin", "gap", "shape", "material", "type", "fixed_rotation", "color", "kind"};
+    expect_keys(request, kKeys);
+    Pyramid pyramid;
+    pyramid.base = node.at("base").integer();
+    node.read("origin", pyramid.origin);
+    node.read("gap", pyramid.gap);
+    node.at("shape");
+    pyramid.body = read_pattern(node, request.materials).body;
+    fail_if(node, find_problem(pyramid));
+    const auto base = static_cast<double>(pyramid.base);
+    check_memory(request, base * (base + 1) / 2, scene, "base");
+    add_pyramid(scene, pyramid);
+}
+
 void make_gas(const Request& request, Scene& scene) {
     const Node& node = request.node;
     static constexpr std::array<std::string_view, 11> kKeys{
@@ -138,7 +152,11 @@ void make_gas(const Request& request, Scene& scene) {
                      std::string("the radius is there twice; expected one of \"radius\", ") +
                          "\"radius_range\" and \"shape\". Take one away.");
     if (!radius && !range && !pattern.has_shape) node.at("radius");
-    const double one = radius ? radius->number() : std::get<Disc>(pattern.body.shape).radius;
+    const Disc* disc = std::get_if<Disc>(&pattern.body.shape);
+    if (!disc)
+        node.at("shape").fail(ErrorCode::inconsistent,
+                              "the shape is no disc; expected a disc, as a gas is of discs. Use a lattice.");
+    const double one = radius ? radius->number() : disc->radius;
     gas.radius = range ? *range : RadiusRange{one, one};
     gas.body = std::move(pattern.body);
     check_memory(request, static_cast<double>(gas.count), scene);
@@ -158,11 +176,11 @@ void read_generator(const Node& node, const Materials& materials, const SceneFil
     if (name == "lattice") return make_lattice(request, scene);
     if (name == "gas") return make_gas(request, scene);
     if (name == "stack") return make_stack(request, scene);
-    const std::string_view needs =
-        name == "pyramid" ? "it makes boxes, and boxes are" : "it makes joints, and joints are";
-    inner.fail(ErrorCode::not_built_yet, "the generator \"" + std::string(name) +
-                                             "\" is not built yet: " + std::string(needs) +
-                                             " not built yet. Use \"lattice\", \"stack\" or \"gas\".");
+    if (name == "pyramid") return make_pyramid(request, scene);
+    inner.fail(ErrorCode::not_built_yet,
+               "the generator \"" + std::string(name) +
+                   "\" is not built yet: it makes joints, and joints are not built yet. Use \"lattice\", "
+                   "\"stack\", \"pyramid\" or \"gas\".");
 }
 
 }  // namespace carom::tool

@@ -5,12 +5,6 @@
 
 namespace carom::tool {
 
-/// Zero for what is no disc.
-inline double radius_of(const Body& body) {
-    const Disc* disc = std::get_if<Disc>(&body.shape);
-    return disc ? disc->radius : 0;
-}
-
 /// kg: given, or density times area.
 inline double mass_of(const Body& body) {
     return body.mass.value_or(body.material.density * mass_properties_of(body.shape).area);

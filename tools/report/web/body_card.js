@@ -43,7 +43,7 @@ carom.bodyCard = carom.frames && (() => {
     }
     if (frames.data.angle) entry(list, "angle", angle, "rad");
     entry(list, "mass", frames.mass[body], "kg");
-    entry(list, "radius", frames.radius[body], "m");
+    entry(list, frames.shapeOf(body) ? "reach" : "radius", frames.radius[body], "m");
     card.replaceChildren(title, list);
   };
 

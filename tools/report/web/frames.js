@@ -49,6 +49,9 @@ carom.frames = (() => {
   const radius = new Float32Array(bytesOf(data.radius).buffer);
   const mass = new Float32Array(bytesOf(data.mass).buffer);
   const colourNumber = data.colour ? new Uint16Array(bytesOf(data.colour.index).buffer) : null;
+  const shapeNumber = data.shapes ? new Uint32Array(bytesOf(data.shapes.index).buffer) : null;
+  /** The outline of a box, capsule or polygon; null for discs. */
+  const shapeOf = (body) => (shapeNumber && shapeNumber[body] > 0 ? data.shapes.outlines[shapeNumber[body] - 1] : null);
   const nowhere = 65535, turn = 2 * Math.PI / 65536;
 
   /** The frame shown at a time: the last one that is not later. */
@@ -72,7 +75,7 @@ carom.frames = (() => {
   };
 
   return {
-    data, bodies, count: data.time.length, frame, at, state, radius, mass, colourNumber, nowhere, turn,
+    data, bodies, count: data.time.length, frame, at, state, radius, mass, colourNumber, shapeOf, nowhere, turn,
     name: (body) => data.names[body] || "",
     number: (body) => (data.body ? data.body[body] : body),
   };

@@ -58,13 +58,15 @@ carom.marks = (() => {
     }
   };
 
+  /** A line from the centre along the body's x: of a disc to its rim. */
   const rotation = (pen, frame) => {
     if (!frame.angle) return;
     pen.strokeStyle = carom.theme.named("--ground");
     pen.lineWidth = 1.5 * carom.view.sharpness();
     pen.lineCap = "butt";
     pen.beginPath();
-    each(frame, (body, px, py, r) => {
+    each(frame, (body, px, py, reach) => {
+      const shape = carom.frames.shapeOf(body), r = shape ? shape.mark * carom.view.scale() : reach;
       if (r < smallestMark) return;
       const angle = frame.angle[body] * carom.frames.turn;
       pen.moveTo(px, py);
@@ -130,5 +132,5 @@ carom.marks = (() => {
     pen.globalAlpha = 1;
   };
 
-  return { walls, edges, rotation, arrows, impacts };
+  return { walls, edges, rotation, arrows, impacts, smallest: smallestMark };
 })();

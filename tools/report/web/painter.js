@@ -29,13 +29,42 @@ carom.painter = carom.frames && (() => {
     pen.fillStyle = colour;
     pen.beginPath();
     for (const body of bodies) {
-      if (x[body] === frames.nowhere || frames.radius[body] === 0) continue;
+      if (x[body] === frames.nowhere || frames.radius[body] === 0 || frames.shapeOf(body)) continue;
       const px = place.x0 + place.dx * x[body], py = place.y0 + place.dy * y[body], r = Math.max(frames.radius[body] * scale, 0.5);
       if (px < -r || py < -r || px > width + r || py > height + r) continue;
       pen.moveTo(px + r, py);
       pen.arc(px, py, r, 0, 2 * Math.PI);
     }
     pen.fill();
+  };
+
+  /** Boxes, capsules and polygons, turned; an outline in the ground's colour tells those apart that touch. */
+  const shapes = (frame, ground) => {
+    if (!frames.data.shapes) return;
+    const place = view.ofFrame(frame), scale = view.scale(), { width, height } = view.canvas;
+    pen.lineWidth = view.sharpness();
+    pen.lineJoin = "round";
+    pen.strokeStyle = ground;
+    bodiesByColour.forEach((bodies, colour) => {
+      const fine = new Path2D(), outlined = new Path2D();
+      for (const body of bodies) {
+        const shape = frames.shapeOf(body);
+        if (!shape || frame.x[body] === frames.nowhere) continue;
+        const px = place.x0 + place.dx * frame.x[body], py = place.y0 + place.dy * frame.y[body], r = frames.radius[body] * scale;
+        if (px < -r || py < -r || px > width + r || py > height + r) continue;
+        const path = r < carom.marks.smallest ? fine : outlined;
+        const angle = frame.angle ? frame.angle[body] * frames.turn : 0, cos = Math.cos(angle) * scale, sin = Math.sin(angle) * scale;
+        for (let i = 0; i < shape.x.length; ++i) {
+          const toX = px + cos * shape.x[i] - sin * shape.y[i], toY = py - sin * shape.x[i] - cos * shape.y[i];
+          if (i === 0) path.moveTo(toX, toY); else path.lineTo(toX, toY);
+        }
+        path.closePath();
+      }
+      pen.fillStyle = colours[colour];
+      pen.fill(fine);
+      pen.fill(outlined);
+      pen.stroke(outlined);
+    });
   };
 
   const byColour = (bodies) => {
@@ -70,6 +99,7 @@ carom.painter = carom.frames && (() => {
       if (wishes.trails) carom.trails.draw(pen, index, wishes.trailLength, colours, bodiesByColour);
       bodiesByColour.forEach((bodies, colour) => discs(frame, bodies, colours[colour]));
     }
+    shapes(frame, ground);
     carom.marks.walls(pen);
     carom.marks.edges(pen, frame);
     if (wishes.marks) carom.marks.rotation(pen, frame);

@@ -72,7 +72,7 @@ carom.raster = (() => {
     const shades = shadesOf(colours, ground), large = [];
     pixels.fill(pack(channels(ground)));
     for (let i = 0; i < x.length; ++i) {
-      if (x[i] === nowhere) continue;
+      if (x[i] === nowhere || carom.frames.shapeOf(i)) continue; // shapes are paths, always
       const px = place.x0 + place.dx * x[i], py = place.y0 + place.dy * y[i], r = radii[i] * scale;
       if (px < -r || py < -r || px > width + r || py > height + r) continue;
       if (r > largest) { large.push(i); continue; }

@@ -7,14 +7,32 @@ carom.view = carom.frames && (() => {
   const lowest = 220, sharpest = 2; // CSS pixels; device pixels a CSS pixel
   let centre = { x: 0, y: 0 }, scale = 1, fitted = true;
 
-  /** The walls, or all that bodies reach, with the largest body's radius around. */
+  /** Points of a shape's outline in the world, if the body stays where it is from the first frame to the last. */
+  const placeOfFloor = (body) => {
+    const { frames } = carom, shape = frames.shapeOf(body);
+    if (!shape) return null;
+    const { x, y, angle } = frames.state(0, body), end = frames.state(frames.count - 1, body);
+    if (!(Math.hypot(end.x - x, end.y - y) < 1e-3 * frames.radius[body])) return null;
+    const cos = Math.cos(angle), sin = Math.sin(angle);
+    return shape.x.map((_, i) => [x + cos * shape.x[i] - sin * shape.y[i], y + sin * shape.x[i] + cos * shape.y[i]]);
+  };
+
+  /** The walls, or all that bodies reach: the largest radius around, but of shapes that stay the room they need. */
   const world = (() => {
     const { walls, view } = carom.frames.data;
     if (walls) return { min: walls.min, max: walls.max };
     let largest = 0;
-    for (const radius of carom.frames.radius) largest = Math.max(largest, radius);
+    const floors = [];
+    carom.frames.radius.forEach((radius, body) => {
+      const floor = placeOfFloor(body);
+      if (floor) floors.push(...floor); else largest = Math.max(largest, radius);
+    });
     const [x0, y0, x1, y1] = view.every(Number.isFinite) ? view : [0, 0, 1, 1];
     const box = { min: [x0 - largest, y0 - largest], max: [x1 + largest, y1 + largest] };
+    for (const [x, y] of floors) {
+      box.min = [Math.min(box.min[0], x), Math.min(box.min[1], y)];
+      box.max = [Math.max(box.max[0], x), Math.max(box.max[1], y)];
+    }
     for (const { body, reach } of carom.frames.data.edges) {
       const { x, y } = carom.frames.state(0, body);
       if (!Number.isFinite(x)) continue;

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <carom/scene.hpp>
+
+#include <cstddef>
+#include <vector>
+
+namespace carom::tool {
+
+/// A box, capsule or polygon for pictures: a polygon around the body's centre of mass, counter-clockwise,
+/// grown by a radius; a capsule has two vertices.
+struct ShapeOutline {
+    std::vector<Vec2> vertices;  // m
+    double radius = 0;           // m
+};
+
+/// Without vertices for discs, segments and chains.
+ShapeOutline outline_of(const Shape& shape);
+
+/// m, from the centre to the farthest point; zero for segments and chains.
+double extent_of(const Shape& shape);
+
+/// The distinct outlines of a scene.
+struct Outlines {
+    std::vector<ShapeOutline> shapes;
+    std::vector<double> of_body;  ///< number in `shapes`, or -1; empty if no body has one
+};
+Outlines outlines_of(const std::vector<Body>& bodies);
+
+}  // namespace carom::tool

@@ -1,0 +1,71 @@
+#include "report/shapes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace carom::report {
+namespace {
+
+constexpr double kArc = std::numbers::pi / 12;  // of a round corner that a line stands for
+constexpr double kMark = 0.8;                   // length of the mark in inradii
+
+double direction_of(double x, double y) {
+    return std::atan2(y, x);
+}
+
+/// Appends the corner at (x, y) between the sides with the outward directions `from` and `to` [rad].
+void add_corner(DrawnShape& shape, double x, double y, double radius, double from, double to) {
+    if (radius == 0) {
+        shape.x.push_back(x), shape.y.push_back(y);
+        return;
+    }
+    const double turn = to > from ? to - from : to - from + 2 * std::numbers::pi;
+    const double lines = std::ceil(turn / kArc);
+    for (double n = 0; n <= lines; ++n) {
+        const double angle = from + turn * n / lines;
+        shape.x.push_back(x + radius * std::cos(angle)), shape.y.push_back(y + radius * std::sin(angle));
+    }
+}
+
+/// From the centre to the nearest side.
+double inradius_of(const DrawnShape& shape) {
+    double least = INFINITY;
+    for (std::size_t i = 0; i < shape.x.size(); ++i) {
+        const std::size_t next = (i + 1) % shape.x.size();
+        const double along_x = shape.x[next] - shape.x[i], along_y = shape.y[next] - shape.y[i];
+        const double length = std::hypot(along_x, along_y);
+        if (length > 0) least = std::min(least, (shape.x[i] * along_y - shape.y[i] * along_x) / length);
+    }
+    return least;
+}
+
+DrawnShape drawn(const Json& outline) {
+    const std::vector<std::vector<double>> vertices = outline["vertices"];
+    const std::size_t count = vertices.size();
+    const auto normal = [&](std::size_t from) {  // outward, of the side that begins at a vertex
+        const auto &a = vertices[from % count], &b = vertices[(from + 1) % count];
+        return direction_of(b[1] - a[1], a[0] - b[0]);
+    };
+    DrawnShape shape;
+    for (std::size_t i = 0; i < count; ++i)
+        add_corner(shape, vertices[i][0], vertices[i][1], outline["radius"], normal(i + count - 1),
+                   normal(i));
+    shape.mark = kMark * inradius_of(shape);
+    return shape;
+}
+
+}  // namespace
+
+std::vector<DrawnShape> drawn_shapes(const Json& settings) {
+    std::vector<DrawnShape> shapes;
+    if (!settings.is_object() || !settings.contains("shapes")) return shapes;
+    for (const Json& outline : settings["shapes"]) shapes.push_back(drawn(outline));
+    return shapes;
+}
+
+std::vector<double> shape_of_bodies(const H5Reader& trajectory) {
+    return trajectory.has("shape") ? trajectory.body_column("shape") : std::vector<double>{};
+}
+
+}  // namespace carom::report
