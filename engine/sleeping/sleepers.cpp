@@ -56,23 +56,32 @@ bool Sleepers<Real>::note_still(WorldState<Real>& world, double dt, double subst
 /// Finds the islands of the contacts that carry an impulse, which of them stay awake and which lean on
 /// sleepers.
 template <class Real>
-void Sleepers<Real>::connect(const WorldState<Real>& world, const ContactGraph<Real>& graph) {
+void Sleepers<Real>::connect(const WorldState<Real>& world, const ContactGraph<Real>& graph,
+                             std::span<const LoadedContact> others) {
     const Bodies<Real>& bodies = world.bodies;
     islands_.reset(bodies.count);
     stays_awake_.assign(bodies.count, 0);
     leaning_.clear();
     for_each_loaded(graph.pairs, [&](std::size_t i) { islands_.join(graph.pairs.a[i], graph.pairs.b[i]); });
+    const auto is_pair = [&](const LoadedContact& contact) {
+        return contact.b.is_body() && !contact.b.is_sleeper(bodies.count) &&
+               !bodies.is_immovable(static_cast<std::size_t>(contact.b.row()));
+    };
+    for (const LoadedContact& contact : others)
+        if (is_pair(contact)) islands_.join(contact.a, contact.b.row());
     const auto keep_awake = [&](std::int32_t row) {
         stays_awake_[static_cast<std::size_t>(islands_.island_of(row))] = 1;
     };
-    for_each_loaded(graph.supports, [&](std::size_t i) {
-        const std::int32_t row = graph.supports.a[i];
-        const Partner support = graph.supports.partner(i);
+    const auto lean = [&](std::int32_t row, Partner support) {
         if (support.is_sleeper(bodies.count))
             leaning_.push_back({row, bodies.island[static_cast<std::size_t>(support.row())]});
         else if (!is_steady(world, support))
             keep_awake(row);
-    });
+    };
+    for_each_loaded(graph.supports,
+                    [&](std::size_t i) { lean(graph.supports.a[i], graph.supports.partner(i)); });
+    for (const LoadedContact& contact : others)
+        if (!is_pair(contact)) lean(contact.a, contact.b);
     for (std::size_t row = 0; row < bodies.count; ++row)
         if (bodies.is_immovable(row) || bodies.still[row] < static_cast<float>(kTimeToSleep))
             keep_awake(static_cast<std::int32_t>(row));
@@ -135,13 +144,13 @@ void Sleepers<Real>::rename_island(WorldState<Real>& world, std::int32_t from, s
 }
 
 template <class Real>
-bool Sleepers<Real>::put_to_sleep(WorldState<Real>& world, ContactGraph<Real>& graph, double dt,
-                                  double substep) {
+bool Sleepers<Real>::put_to_sleep(WorldState<Real>& world, ContactGraph<Real>& graph,
+                                  std::span<const LoadedContact> others, double dt, double substep) {
     Bodies<Real>& bodies = world.bodies;
     since_look_ += dt;
     if (!note_still(world, dt, substep) || since_look_ < kLookInterval) return false;
     since_look_ = 0;
-    connect(world, graph);
+    connect(world, graph, others);
     label_.assign(bodies.count, -1);
     bool any = false;
     for (std::size_t row = 0; row < bodies.count; ++row) {
@@ -183,19 +192,21 @@ void Sleepers<Real>::forget_contacts(ContactGraph<Real>& graph, const WorldState
 
 template <class Real>
 bool Sleepers<Real>::mark_pressed(const WorldState<Real>& world, const ContactGraph<Real>& graph,
-                                  double substep) {
+                                  std::span<const LoadedContact> others, double substep) {
     const Bodies<Real>& bodies = world.bodies;
     if (pairs_.empty()) return false;
     const double gravity = std::sqrt(length_squared(world.gravity));
-    for_each_loaded(graph.supports, [&](std::size_t i) {
-        const Partner support = graph.supports.partner(i);
+    const auto press = [&](Partner support, double impulse) {
         if (!support.is_sleeper(bodies.count)) return;
         const auto sleeper = static_cast<std::size_t>(support.row());
-        const double speed =
-            static_cast<double>(graph.supports.normal_impulse[i]) * bodies.inverse_mass(sleeper);
-        if (speed > kWakingShare * still_speed(gravity, substep, bodies.inradius(sleeper)))
+        const double speed = impulse * bodies.inverse_mass(sleeper);
+        if (speed > kWakingShare * still_speed(gravity, substep, bodies.radius[sleeper]))
             mark(bodies.island[sleeper]);
+    };
+    for_each_loaded(graph.supports, [&](std::size_t i) {
+        press(graph.supports.partner(i), static_cast<double>(graph.supports.normal_impulse[i]));
     });
+    for (const LoadedContact& contact : others) press(contact.b, contact.impulse);
     return !marked_.empty();
 }
 

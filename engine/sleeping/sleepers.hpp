@@ -11,6 +11,13 @@
 
 namespace carom {
 
+/// A contact that carries an impulse, of shapes that the contact graph does not know.
+struct LoadedContact {
+    std::int32_t a;  // row
+    Partner b;
+    double impulse;  // N s, along the normal, of a substep
+};
+
 /// The bodies that sleep: rows behind those that a step works on. They stand in a grid of their own, which
 /// those awake look into when their candidate pairs are found; to them a sleeper is a support.
 ///
@@ -38,12 +45,16 @@ class Sleepers {
 
     // At its end.
 
-    /// Marks the islands that something presses on. @return whether there are any.
-    bool mark_pressed(const WorldState<Real>& world, const ContactGraph<Real>& graph, double substep);
+    /// Marks the islands that something presses on.
+    /// @param others  contacts besides those of the graph, here and below
+    /// @return whether there are any.
+    bool mark_pressed(const WorldState<Real>& world, const ContactGraph<Real>& graph,
+                      std::span<const LoadedContact> others, double substep);
     /// Counts for how long each body has been still, and puts islands to sleep all of whose bodies have been
     /// so for long enough.
     /// @return whether rows have changed.
-    bool put_to_sleep(WorldState<Real>& world, ContactGraph<Real>& graph, double dt, double substep);
+    bool put_to_sleep(WorldState<Real>& world, ContactGraph<Real>& graph,
+                      std::span<const LoadedContact> others, double dt, double substep);
 
     // At any time.
 
@@ -97,7 +108,8 @@ class Sleepers {
                     const Executor& executor);
     std::span<const std::int32_t> find_near(const WorldState<Real>& world, Vec2 place, double reach);
     bool note_still(WorldState<Real>& world, double dt, double substep) const;
-    void connect(const WorldState<Real>& world, const ContactGraph<Real>& graph);
+    void connect(const WorldState<Real>& world, const ContactGraph<Real>& graph,
+                 std::span<const LoadedContact> others);
     void keep_contacts(const WorldState<Real>& world, ContactRows<Real>& contacts, double substep);
     void keep_contact(const WorldState<Real>& world, const ContactRows<Real>& contacts, std::size_t i,
                       double substep);

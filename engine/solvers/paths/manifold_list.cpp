@@ -18,7 +18,7 @@ void ManifoldList<Real>::clear() {
 }
 
 template <class Real>
-void ManifoldList<Real>::add(std::int32_t row_a, std::int32_t partner, const Name& name) {
+void ManifoldList<Real>::add(std::int32_t row_a, std::int32_t partner, const ManifoldName& name) {
     a.push_back(row_a), b.push_back(partner), names.push_back(name), memory.push_back({});
 }
 
@@ -37,7 +37,7 @@ ManifoldColumns<Real> ManifoldList<Real>::columns() {
 template <class Real>
 std::size_t ManifoldList<Real>::bytes() const {
     std::size_t bytes = a.bytes() + b.bytes() + margin.bytes() + thickness.bytes() + friction.bytes() +
-                        restitution.bytes() + names.capacity() * sizeof(Name) +
+                        restitution.bytes() + names.capacity() * sizeof(ManifoldName) +
                         memory.capacity() * sizeof(ManifoldMemory<Real>);
     for_each_found_column(*this, [&](const Column<Real>& column) { bytes += column.bytes(); });
     return bytes;

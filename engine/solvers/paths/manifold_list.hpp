@@ -18,27 +18,34 @@ struct ManifoldMemory {
     Real normal1 = 0, normal2 = 0, tangent = 0;  // N s, of a substep
 
     bool is_loaded() const { return normal1 + normal2 > 0; }
+    void rescale(Real factor) { normal1 *= factor, normal2 *= factor, tangent *= factor; }
     /// The same contact seen from its other body: the normal turns round, and with it the order of the
     /// points.
     ManifoldMemory reversed() const { return {-normal_x, -normal_y, normal2, normal1, tangent}; }
 };
 
+/// Names a contact whatever row its bodies have.
+struct ManifoldName {
+    BodyId a, b;             // b: a body; of a wall an id that no body has, of an edge its body
+    std::int32_t place = 0;  // of a wall its side, of an edge its number in the body; else 0
+    friend bool operator==(const ManifoldName&, const ManifoldName&) = default;
+};
+
+template <class Real>
+struct KeptManifold {
+    ManifoldName name;
+    ManifoldMemory<Real> memory;
+};
+
 /// Contacts of convex shapes that can come about before the candidate pairs change, as columns.
 template <class Real>
 struct ManifoldList {
-    /// Names a contact whatever row its bodies have.
-    struct Name {
-        BodyId a, b;             // b: a body; of a wall an id that no body has, of an edge its body
-        std::int32_t place = 0;  // of a wall its side, of an edge its number in the body; else 0
-        friend bool operator==(const Name&, const Name&) = default;
-    };
-
-    Column<std::int32_t> a, b;  ///< row of a body that moves; Partner
-    Column<Real> margin;        ///< m
-    Column<Real> thickness;     ///< m, the smaller inradius of the two
-    Column<Real> friction;      ///< Coulomb coefficient
-    Column<Real> restitution;   ///< no unit
-    std::vector<Name> names;    ///< of every contact
+    Column<std::int32_t> a, b;        ///< row of a body that moves; Partner
+    Column<Real> margin;              ///< m
+    Column<Real> thickness;           ///< m, the smaller inradius of the two
+    Column<Real> friction;            ///< Coulomb coefficient
+    Column<Real> restitution;         ///< no unit
+    std::vector<ManifoldName> names;  ///< of every contact
     std::vector<ManifoldMemory<Real>> memory;
 
     // Found anew in every step: kernels/manifold_arguments.hpp.
@@ -49,7 +56,7 @@ struct ManifoldList {
     void clear();
     /// Appends a contact; `fit` is to be called when all are in. Padding names body 0 twice: what kernels
     /// find there is not looked at.
-    void add(std::int32_t row_a, std::int32_t partner, const Name& name);
+    void add(std::int32_t row_a, std::int32_t partner, const ManifoldName& name);
     void fit();
 
     ManifoldColumns<Real> columns();

@@ -59,13 +59,46 @@ void PathSolver<Real>::add_pair(const WorldState<Real>& world, std::int32_t a, s
 
 template <class Real>
 void PathSolver<Real>::renew(const WorldState<Real>& world, const Candidates<Real>& candidates,
-                             const EdgeCandidates<Real>&) {
+                             const EdgeCandidates<Real>&, std::span<const SleeperPair> sleepers) {
     live_.clear();
     if (!world.bodies.has_shapes) return bodies_.clear(), surfaces_.clear();
     std::swap(bodies_, old_), bodies_.clear();
+    // Of a contact that wakes, what it had when it fell asleep.
+    if (world.bodies.asleep != asleep_then_)
+        for (const KeptManifold<Real>& kept : asleep_)
+            old_.add(0, 0, kept.name), old_.memory.back() = kept.memory;
     for (std::size_t p = 0; p < candidates.pair_count(); ++p)
         add_pair(world, candidates.pair_a()[p], candidates.pair_b()[p]);
+    for (const SleeperPair& pair : sleepers) add_pair(world, pair.row, pair.sleeper);
     recall(bodies_, old_);
+    if (world.bodies.asleep != asleep_then_) keep_of_sleepers(world);
+    asleep_then_ = world.bodies.asleep;
+}
+
+/// Keeps what no contact has recalled, if it is of a body that sleeps.
+template <class Real>
+void PathSolver<Real>::keep_of_sleepers(const WorldState<Real>& world) {
+    asleep_.clear();
+    const auto sleeps = [&](BodyId id) {
+        return world.handles.is_alive(id) && world.handles.row_of_slot(id.index) >= world.bodies.count;
+    };
+    for (std::size_t i = 0; i < old_.count(); ++i)
+        if (!is_recalled_[i] && old_.memory[i].is_loaded() &&
+            (sleeps(old_.names[i].a) || sleeps(old_.names[i].b)))
+            asleep_.push_back({old_.names[i], old_.memory[i]});
+}
+
+template <class Real>
+std::span<const LoadedContact> PathSolver<Real>::loaded() {
+    loaded_.clear();
+    for (const std::int32_t contact : live_) {
+        const ManifoldList<Real>& list = list_of(contact);
+        const std::size_t i = place_of(contact);
+        if (list.memory[i].is_loaded())
+            loaded_.push_back({list.a[i], Partner(list.b[i]),
+                               static_cast<double>(list.memory[i].normal1 + list.memory[i].normal2)});
+    }
+    return loaded_;
 }
 
 template <class Real>
@@ -89,16 +122,18 @@ void PathSolver<Real>::recall(ManifoldList<Real>& list, const ManifoldList<Real>
         std::int32_t& first = first_of_slot_[old.names[i].a.index];
         next_of_slot_[i] = first, first = static_cast<std::int32_t>(i);
     }
-    const auto find = [&](const typename ManifoldList<Real>::Name& name) -> const ManifoldMemory<Real>* {
+    is_recalled_.assign(old.count(), 0);
+    const auto find = [&](const ManifoldName& name) -> const ManifoldMemory<Real>* {
         if (name.a.index >= slots) return nullptr;
-        for (std::int32_t i = first_of_slot_[name.a.index]; i >= 0;
-             i = next_of_slot_[static_cast<std::size_t>(i)])
-            if (old.names[static_cast<std::size_t>(i)] == name)
-                return &old.memory[static_cast<std::size_t>(i)];
+        for (std::int32_t n = first_of_slot_[name.a.index]; n >= 0;
+             n = next_of_slot_[static_cast<std::size_t>(n)]) {
+            const auto i = static_cast<std::size_t>(n);
+            if (old.names[i] == name) return is_recalled_[i] = 1, &old.memory[i];
+        }
         return nullptr;
     };
     for (std::size_t i = 0; i < list.count(); ++i) {
-        const auto& name = list.names[i];
+        const ManifoldName& name = list.names[i];
         if (const auto* memory = find(name))
             list.memory[i] = *memory;
         else if (const auto* other = find({name.b, name.a, name.place}))
@@ -111,8 +146,8 @@ void PathSolver<Real>::rescale(double factor) {
     if (factor == 1) return;
     const auto kept = static_cast<Real>(factor);
     for (ManifoldList<Real>* list : {&bodies_, &surfaces_})
-        for (ManifoldMemory<Real>& memory : list->memory)
-            memory.normal1 *= kept, memory.normal2 *= kept, memory.tangent *= kept;
+        for (ManifoldMemory<Real>& memory : list->memory) memory.rescale(kept);
+    for (KeptManifold<Real>& kept_manifold : asleep_) kept_manifold.memory.rescale(kept);
 }
 
 template <class Real>

@@ -8,6 +8,7 @@
 #include "broadphase/edge_candidates.hpp"
 #include "constraints/partner.hpp"
 #include "kernels/path_arguments.hpp"
+#include "sleeping/sleepers.hpp"
 #include "solvers/paths/manifold_list.hpp"
 #include "solvers/paths/path_cut.hpp"
 #include "solvers/substeps/body_records.hpp"
@@ -57,7 +58,7 @@ class PathSolver {
 
     /// Lists what can touch, when candidate pairs have been found anew.
     void renew(const WorldState<Real>& world, const Candidates<Real>& candidates,
-               const EdgeCandidates<Real>& edges);
+               const EdgeCandidates<Real>& edges, std::span<const SleeperPair> sleepers);
     /// Adds the pairs that have come with new margins.
     void add(const WorldState<Real>& world, const Candidates<Real>& candidates,
              const EdgeCandidates<Real>& edges);
@@ -88,6 +89,8 @@ class PathSolver {
                                  static_cast<double>(list.restitution[i])});
         }
     }
+    /// The contacts that carry an impulse at the end of a step, for those who look after sleepers.
+    std::span<const LoadedContact> loaded();
     /// Keeps the impulses for the next step.
     void end();
 
@@ -95,8 +98,8 @@ class PathSolver {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.counters, self.bodies_, self.surfaces_, self.live_, self.cut_, self.since_cut_,
-                self.solved_, self.is_calm_, self.is_cut_calm_);
+        archive(self.counters, self.bodies_, self.surfaces_, self.asleep_, self.asleep_then_, self.live_,
+                self.cut_, self.since_cut_, self.solved_, self.is_calm_, self.is_cut_calm_);
     }
 
   private:
@@ -104,6 +107,7 @@ class PathSolver {
 
     SolvePaths<Real> arguments(const SubstepTerms& terms, BodyRecords<Real>& records);
     void run(Pass pass, SolvePaths<Real> arguments, const StepLoops<Real>& loops);
+    void keep_of_sleepers(const WorldState<Real>& world);
     void add_pair(const WorldState<Real>& world, std::int32_t a, std::int32_t b);
     void recall(ManifoldList<Real>& list, const ManifoldList<Real>& old);
     void pose_bodies(const WorldState<Real>& world);
@@ -128,6 +132,11 @@ class PathSolver {
     ManifoldList<Real> bodies_;    // contacts of two bodies
     ManifoldList<Real> surfaces_;  // of a body and a wall or an edge
     ManifoldList<Real> old_;
+    /// Contacts of bodies that sleep, or slept when candidates were found last.
+    std::vector<KeptManifold<Real>> asleep_;
+    std::size_t asleep_then_ = 0;            // bodies that slept then
+    std::vector<std::uint8_t> is_recalled_;  // by contact of old_
+    std::vector<LoadedContact> loaded_;
     std::vector<std::int32_t> first_of_slot_, next_of_slot_;  // contacts of old_ by the slot of their a
     Column<Real> pose_;                                       // [rows][4]: x, y [m], cosine, sine
     Column<double> pose_angle_;                               // rad, that cosine and sine are of

@@ -62,14 +62,15 @@ void wake_sleepers(SoftSimulation<Real>& sim) {
 template <class Real>
 void put_to_sleep(SoftSimulation<Real>& sim) {
     WorldState<Real>& world = sim.world;
-    bool is_pressed = sim.sleepers.mark_pressed(world, sim.soft.graph, sim.substep_dt);
+    const std::span<const LoadedContact> others = sim.soft.paths.loaded();
+    bool is_pressed = sim.sleepers.mark_pressed(world, sim.soft.graph, others, sim.substep_dt);
     if (!sim.lost.empty()) is_pressed = sim.sleepers.mark_all(world);  // what they lay on may be gone
     if (is_pressed) {
         wake_marked(sim);
         return;
     }
     if (do_edges_move(world)) return;
-    if (!sim.sleepers.put_to_sleep(world, sim.soft.graph, sim.flight_dt, sim.substep_dt)) return;
+    if (!sim.sleepers.put_to_sleep(world, sim.soft.graph, others, sim.flight_dt, sim.substep_dt)) return;
     Sleepers<Real>::forget_contacts(sim.soft.graph, world);
     rows_changed(sim);
 }

@@ -33,7 +33,7 @@ void update_contacts(SoftSimulation<Real>& sim) {
     } else {
         sim.edge_candidates.find(sim.world, sim.candidates);
         sim.soft.graph.renew(sim.candidates, sim.edge_candidates, sim.world.bodies, walls, sim.executor);
-        sim.soft.paths.renew(sim.world, sim.candidates, sim.edge_candidates);
+        sim.soft.paths.renew(sim.world, sim.candidates, sim.edge_candidates, sim.sleepers.pairs());
     }
     sim.graph_of_rebuild = sim.candidates.rebuild_count();
     sim.sleepers.restore_impulses(sim.soft.graph, sim.world, sim.soft.substep_of_impulses());
