@@ -31,22 +31,19 @@ template <std::size_t kRecord, class Real, std::size_t kLanes>
 /// Vertices and normals in the frame of their body.
 /// @param last  3 or 7: the place that has every lane's last vertex
 template <class Real, class Lanes>
-[[gnu::always_inline]] inline Polygons<typename Lanes::Batch> load_polygons(
-    const ConvexShape<Real>* shapes, const ShapeRows<Lanes::size>& rows, int last) {
-    Polygons<typename Lanes::Batch> polygons;
+[[gnu::always_inline]] inline void load_polygons(const ConvexShape<Real>* shapes,
+                                                 const ShapeRows<Lanes::size>& rows, int last,
+                                                 Polygons<typename Lanes::Batch>& polygons) {
+    const auto load = [&](const Real* column, typename Lanes::Batch* to) {
+        const auto records = Lanes::load_rows4(column, rows.row);
+        to[0] = records[0], to[1] = records[1], to[2] = records[2], to[3] = records[3];
+    };
     polygons.count = rows.most_vertices, polygons.last = last;
     for (int first = 0; first < last; first += 4) {
-        const auto x = Lanes::load_rows4(shapes->x + first, rows.row);
-        const auto y = Lanes::load_rows4(shapes->y + first, rows.row);
-        const auto nx = Lanes::load_rows4(shapes->normal_x + first, rows.row);
-        const auto ny = Lanes::load_rows4(shapes->normal_y + first, rows.row);
-        for (int i = 0; i < 4; ++i) {
-            const auto at = static_cast<std::size_t>(i);
-            polygons.x[first + i] = x[at], polygons.y[first + i] = y[at];
-            polygons.normal_x[first + i] = nx[at], polygons.normal_y[first + i] = ny[at];
-        }
+        load(shapes->x + first, polygons.x + first), load(shapes->y + first, polygons.y + first);
+        load(shapes->normal_x + first, polygons.normal_x + first);
+        load(shapes->normal_y + first, polygons.normal_y + first);
     }
-    return polygons;
 }
 
 /// The last four Reals of a shape: its last normal's y, radius, extent and inradius.
@@ -103,8 +100,8 @@ std::size_t find_manifolds(const FindManifolds<Real>& k, std::size_t first, std:
         const int last_vertex = of_a.most_vertices > 4 || of_b.most_vertices > 4 ? 7 : 3;
 
         ConvexPair<F> pair;
-        pair.a = load_polygons<Real, Lanes>(k.shapes, of_a, last_vertex);
-        pair.b = load_polygons<Real, Lanes>(k.shapes, of_b, last_vertex);
+        load_polygons<Real, Lanes>(k.shapes, of_a, last_vertex, pair.a);
+        load_polygons<Real, Lanes>(k.shapes, of_b, last_vertex, pair.b);
         const RelativePose<F> pose = relative_pose<F>(a, b);
         place(pair.b, pose.cosine, pose.sine, pose.x, pose.y);
         pair.b_x = pose.x, pair.b_y = pose.y;

@@ -29,7 +29,7 @@ struct BoxPair {
 /// either box has all it needs as sums of its half sides.
 template <class Real, class F>
 [[gnu::always_inline]] inline Manifold<F> find_box_manifold(const BoxPair<F>& pair) {
-    using simd::abs, simd::min, simd::select;
+    using simd::abs, simd::max, simd::min, simd::select;
     const F zero(Real(0)), one(Real(1));
     const F cosine = pair.cosine, sine = pair.sine, c = abs(cosine), s = abs(sine);
     const auto sign = [&](F value) { return select(value < zero, -one, one); };
@@ -43,31 +43,33 @@ template <class Real, class F>
     const F of_by = abs(by) - pair.half_by - (pair.half_ax * s + pair.half_ay * c);
     const auto a_is_y = of_ay > of_ax, b_is_y = of_by > of_bx;
 
-    // Outward normals, each in the frame of its own box; then that of b in the frame of a.
-    const F nax = select(a_is_y, zero, sign(ax)), nay = select(a_is_y, sign(ay), zero);
-    const F nbx = select(b_is_y, zero, -sign(bx)), nby = select(b_is_y, -sign(by), zero);
-    const F turned_x = cosine * nbx - sine * nby, turned_y = sine * nbx + cosine * nby;
+    // Outward normals: in the frame of a, and of b in both frames.
+    const F sign_a = sign(select(a_is_y, ay, ax)), sign_b = -sign(select(b_is_y, by, bx));
+    const F turned_x = sign_b * select(b_is_y, -sine, cosine);
+    const F turned_y = sign_b * select(b_is_y, cosine, sine);
     const F size = min(min(pair.half_ax, pair.half_ay), min(pair.half_bx, pair.half_by));
     const auto swapped = b_has_reference<Real>(select(a_is_y, of_ay, of_ax), select(b_is_y, of_by, of_bx),
-                                               nax * turned_x + nay * turned_y, size);
+                                               sign_a * select(a_is_y, turned_y, turned_x), size);
 
     // From here on in the frame of the box that has the reference.
-    const F nx = select(swapped, nbx, nax), ny = select(swapped, nby, nay);
-    const auto is_y = ny * ny > zero;
+    const auto is_y = (swapped & b_is_y) | ((!swapped) & a_is_y);
+    const F side = select(swapped, -one, one);
     const F half_x = select(swapped, pair.half_bx, pair.half_ax);
     const F half_y = select(swapped, pair.half_by, pair.half_ay);
     const F height = select(is_y, half_y, half_x), half = select(is_y, half_x, half_y);
-    const F other_x = select(swapped, -bx, ax), other_y = select(swapped, -by, ay);
-    const F centre_above = nx * other_x + ny * other_y, centre_along = nx * other_y - ny * other_x;
+    const F other_x = select(swapped, bx, ax), other_y = select(swapped, by, ay);
+    const F normal = select(swapped, sign_b, sign_a);  // along the axis that is_y says
+    const F centre_above = select(is_y, abs(other_y), abs(other_x));
+    const F centre_along = side * normal * select(is_y, -other_x, other_y);
 
-    // The other box's x axis along the normal and along the edge, and the side that faces the reference.
-    const F turn = select(swapped, -sine, sine);
-    const F above = cosine * nx + turn * ny, along = turn * nx - cosine * ny;
-    const auto faces_x = abs(above) > abs(along);
+    // The side of the other box that faces the reference, by the angle between the boxes less whole quarters
+    // of a turn: its cosine is the greater one.
+    const auto turned_little = c > s;
+    const F facing_above = -max(c, s);
+    const F facing_along = -side * select(turned_little, sign(cosine) * sine, -sign(sine) * cosine);
+    const auto faces_x = (is_y & (!turned_little)) | ((!is_y) & turned_little);
     const F other_half_x = select(swapped, pair.half_ax, pair.half_bx);
     const F other_half_y = select(swapped, pair.half_ay, pair.half_by);
-    const F facing_above = -select(faces_x, abs(above), abs(along));
-    const F facing_along = select(faces_x, -sign(above) * along, sign(along) * above);
     const F depth = select(faces_x, other_half_x, other_half_y);
     const F width = select(faces_x, other_half_y, other_half_x);
     const F middle_above = centre_above + depth * facing_above - height;
@@ -87,7 +89,9 @@ template <class Real, class F>
                            .other_radius = zero,
                            .size = size};
     const Manifold<F> found = manifold_at_face<false, Real>(view, swapped);
-    return with_normal_from(found, select(swapped, turned_x, nx), select(swapped, turned_y, ny));
+    const F ax_normal = select(a_is_y, zero, sign_a), ay_normal = select(a_is_y, sign_a, zero);
+    return with_normal_from(found, select(swapped, turned_x, ax_normal),
+                            select(swapped, turned_y, ay_normal));
 }
 
 }  // namespace
