@@ -68,16 +68,14 @@ template <class F, class Pose>
             a[2] * dy - a[3] * dx};
 }
 
-/// Writes manifolds whose normals are in the frame of a.
 /// @return how many are live.
-template <class Real, class Lanes, class Pose, class F>
+template <class Real, class Lanes, class F>
 [[gnu::always_inline]] inline std::size_t store_manifolds(const FindManifolds<Real>& k, std::size_t p,
-                                                          const Pose& a, const Manifold<F>& m) {
+                                                          const Manifold<F>& m) {
     const ManifoldColumns<Real>& out = k.out;
     const auto is_live = simd::min(m.separation1, m.separation2) <= Lanes::load(k.margin + p);
     const F none(static_cast<Real>(kNoPoint));
-    Lanes::store(out.normal_x + p, a[2] * m.normal_x - a[3] * m.normal_y);
-    Lanes::store(out.normal_y + p, a[3] * m.normal_x + a[2] * m.normal_y);
+    Lanes::store(out.normal_x + p, m.normal_x), Lanes::store(out.normal_y + p, m.normal_y);
     Lanes::store(out.lever_a1 + p, m.lever_a1), Lanes::store(out.lever_a2 + p, m.lever_a2);
     Lanes::store(out.lever_b1 + p, m.lever_b1), Lanes::store(out.lever_b2 + p, m.lever_b2);
     Lanes::store(out.lever_a_t + p, m.lever_a_t), Lanes::store(out.lever_b_t + p, m.lever_b_t);
@@ -86,32 +84,55 @@ template <class Real, class Lanes, class Pose, class F>
     return static_cast<std::size_t>(__builtin_popcount(simd::bitmask(is_live)));
 }
 
+/// Finds the faces of some pairs, then their points: two chains of operations that wait for each other are
+/// too long for a processor to look beyond one batch.
+/// @param load  load(p, pose, pair): shapes of pairs p ... in the frame of a
+/// @return how many pairs are nearer than their margin.
+template <bool kRounded, class Pair, class Real, class Lanes, class Load>
+[[gnu::always_inline]] inline std::size_t find_by_faces(const FindManifolds<Real>& k, std::size_t first,
+                                                        std::size_t last, const Load& load) {
+    using F = typename Lanes::Batch;
+    constexpr std::size_t kPairs = 64;
+    FacedPair<F> faced[kPairs / Lanes::size];
+    std::size_t live = 0;
+    for (std::size_t begin = first; begin < last; begin += kPairs) {
+        const std::size_t end = last - begin < kPairs ? last : begin + kPairs;
+        FacedPair<F>* face = faced;
+        for (std::size_t p = begin; p < end; p += Lanes::size, ++face) {
+            const auto a = Lanes::load_rows4(k.pose, k.a + p), b = Lanes::load_rows4(k.pose, k.b + p);
+            Pair pair;
+            load(p, relative_pose<F>(a, b), pair);
+            find_face<Real>(pair, *face);
+            const F x = face->normal_x, y = face->normal_y;
+            face->normal_x = a[2] * x - a[3] * y, face->normal_y = a[3] * x + a[2] * y;
+        }
+        face = faced;
+        for (std::size_t p = begin; p < end; p += Lanes::size, ++face)
+            live += store_manifolds<Real, Lanes>(k, p, manifold_of<kRounded, Real>(*face));
+    }
+    return live;
+}
+
 /// Manifolds of pairs of convex shapes.
 /// @return how many pairs are nearer than their margin.
 template <class Real, class Isa>
 std::size_t find_manifolds(const FindManifolds<Real>& k, std::size_t first, std::size_t last) {
     using Lanes = simd::Lanes<Real, Isa>;
-    using F = typename Lanes::Batch;
-    std::size_t live = 0;
-    for (std::size_t p = first; p < last; p += Lanes::size) {
-        const auto a = Lanes::load_rows4(k.pose, k.a + p), b = Lanes::load_rows4(k.pose, k.b + p);
+    using Pair = ConvexPair<typename Lanes::Batch>;
+    const auto load = [&](std::size_t p, const auto& pose, Pair& pair) {
         const auto of_a = shape_rows<4, Real, Lanes::size>(k, k.a + p);
         const auto of_b = shape_rows<4, Real, Lanes::size>(k, k.b + p);
         const int last_vertex = of_a.most_vertices > 4 || of_b.most_vertices > 4 ? 7 : 3;
-
-        ConvexPair<F> pair;
         load_polygons<Real, Lanes>(k.shapes, of_a, last_vertex, pair.a);
         load_polygons<Real, Lanes>(k.shapes, of_b, last_vertex, pair.b);
-        const RelativePose<F> pose = relative_pose<F>(a, b);
         place(pair.b, pose.cosine, pose.sine, pose.x, pose.y);
         pair.b_x = pose.x, pair.b_y = pose.y;
         const auto sizes_a = load_sizes<Real, Lanes>(k.shapes, of_a);
         const auto sizes_b = load_sizes<Real, Lanes>(k.shapes, of_b);
         pair.radius_a = sizes_a[1], pair.radius_b = sizes_b[1];
         pair.size = simd::min(sizes_a[3], sizes_b[3]);
-        live += store_manifolds<Real, Lanes>(k, p, a, find_manifold<Real>(pair));
-    }
-    return live;
+    };
+    return find_by_faces<true, Pair, Real, Lanes>(k, first, last, load);
 }
 
 /// Half the sides of boxes: a record of two has the last x and the first y of a corner.
@@ -128,18 +149,13 @@ template <class Real, class Lanes>
 template <class Real, class Isa>
 std::size_t find_box_manifolds(const FindManifolds<Real>& k, std::size_t first, std::size_t last) {
     using Lanes = simd::Lanes<Real, Isa>;
-    using F = typename Lanes::Batch;
-    std::size_t live = 0;
-    for (std::size_t p = first; p < last; p += Lanes::size) {
-        const auto a = Lanes::load_rows4(k.pose, k.a + p), b = Lanes::load_rows4(k.pose, k.b + p);
+    using Pair = BoxPair<typename Lanes::Batch>;
+    const auto load = [&](std::size_t p, const auto& pose, Pair& pair) {
         const auto half_a = load_half_sides<Real, Lanes>(k, k.a + p);
         const auto half_b = load_half_sides<Real, Lanes>(k, k.b + p);
-        const RelativePose<F> pose = relative_pose<F>(a, b);
-        const BoxPair<F> pair{pose.cosine, pose.sine, pose.x,    pose.y,
-                              half_a[0],   half_a[1], half_b[0], half_b[1]};
-        live += store_manifolds<Real, Lanes>(k, p, a, find_box_manifold<Real>(pair));
-    }
-    return live;
+        pair = {pose.cosine, pose.sine, pose.x, pose.y, half_a[0], half_a[1], half_b[0], half_b[1]};
+    };
+    return find_by_faces<false, Pair, Real, Lanes>(k, first, last, load);
 }
 
 }  // namespace

@@ -25,10 +25,9 @@ struct BoxPair {
     F half_bx, half_by;  // m, of b
 };
 
-/// Where two boxes touch, as find_manifold() tells it, which also says what the terms are: the frame of
-/// either box has all it needs as sums of its half sides.
+/// What find_face() tells of convex shapes: the frame of either box has all it needs as sums of half sides.
 template <class Real, class F>
-[[gnu::always_inline]] inline Manifold<F> find_box_manifold(const BoxPair<F>& pair) {
+[[gnu::always_inline]] inline void find_face(const BoxPair<F>& pair, FacedPair<F>& found) {
     using simd::abs, simd::max, simd::min, simd::select;
     const F zero(Real(0)), one(Real(1));
     const F cosine = pair.cosine, sine = pair.sine, c = abs(cosine), s = abs(sine);
@@ -76,22 +75,22 @@ template <class Real, class F>
     const F middle_along = centre_along + depth * facing_along;
     const F rise = width * facing_along, reach = width * facing_above;
 
-    const FaceView<F> view{.from = -half,
-                           .to = half,
-                           .low_along = middle_along + reach,
-                           .low_above = middle_above - rise,
-                           .high_along = middle_along - reach,
-                           .high_above = middle_above + rise,
-                           .height = height,
-                           .centre_along = centre_along,
-                           .centre_above = centre_above,
-                           .radius = zero,
-                           .other_radius = zero,
-                           .size = size};
-    const Manifold<F> found = manifold_at_face<false, Real>(view, swapped);
+    found.view = {.from = -half,
+                  .to = half,
+                  .low_along = middle_along + reach,
+                  .low_above = middle_above - rise,
+                  .high_along = middle_along - reach,
+                  .high_above = middle_above + rise,
+                  .height = height,
+                  .centre_along = centre_along,
+                  .centre_above = centre_above,
+                  .radius = zero,
+                  .other_radius = zero,
+                  .size = size};
     const F ax_normal = select(a_is_y, zero, sign_a), ay_normal = select(a_is_y, sign_a, zero);
-    return with_normal_from(found, select(swapped, turned_x, ax_normal),
-                            select(swapped, turned_y, ay_normal));
+    found.normal_x = select(swapped, turned_x, ax_normal);
+    found.normal_y = select(swapped, turned_y, ay_normal);
+    found.side = side;
 }
 
 }  // namespace

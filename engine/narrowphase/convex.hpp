@@ -36,6 +36,14 @@ struct FaceView {
     F size;                        // m, the smaller inradius
 };
 
+/// A pair as its reference face sees it.
+template <class F>
+struct FacedPair {
+    FaceView<F> view;
+    F normal_x, normal_y;  // outward normal of the reference edge
+    F side;                // 1: the reference is an edge of a; -1: of b
+};
+
 /// A manifold of two points, in the terms of ManifoldColumns.
 template <class F>
 struct Manifold {
@@ -46,13 +54,14 @@ struct Manifold {
 };
 
 /// Points of a reference and an incident edge: the part of the incident edge that lies over the reference,
-/// else the nearest points of both. The normal is that of the pair, from a to b, in the frame of the
-/// reference: x along the reference's own normal, y along its edge.
+/// else the nearest points of both. Separations are not held against a margin.
 /// @tparam kRounded  whether shapes may have a radius, and so be a disc
-template <bool kRounded, class Real, class F, class Mask>
-[[gnu::always_inline]] inline Manifold<F> manifold_at_face(const FaceView<F>& view, Mask b_has_reference) {
+template <bool kRounded, class Real, class F>
+[[gnu::always_inline]] inline Manifold<F> manifold_of(const FacedPair<F>& pair) {
     using simd::abs, simd::max, simd::min, simd::select, simd::sqrt;
     const F zero(Real(0)), one(Real(1)), half(Real(0.5));
+    const FaceView<F>& view = pair.view;
+    const auto b_has_reference = pair.side < zero;
     const F tolerance = F(static_cast<Real>(kNoLength)) * view.size;
     const F length = view.high_along - view.low_along, rise = view.high_above - view.low_above;
 
@@ -106,8 +115,7 @@ template <bool kRounded, class Real, class F, class Mask>
     lowest += height;
 
     Manifold<F> found;
-    const F side = select(b_has_reference, -one, one);
-    const F nx = side * normal_above, ny = side * normal_along;
+    const F nx = pair.side * normal_above, ny = pair.side * normal_along;
     const auto lever = [&](F above, F along) { return above * ny - along * nx; };
     const auto lever_t = [&](F above, F along) { return above * nx + along * ny; };
     const F lever1 = lever(height1, along1), lever2 = lever(height2, along2);
@@ -116,7 +124,8 @@ template <bool kRounded, class Real, class F, class Mask>
     const F centre_t = lever_t(view.centre_above, view.centre_along);
     const F of_a = select(b_has_reference, centre, zero), of_b = centre - of_a;
     const F of_a_t = select(b_has_reference, centre_t, zero), of_b_t = centre_t - of_a_t;
-    found.normal_x = nx, found.normal_y = ny;
+    found.normal_x = pair.normal_x * nx - pair.normal_y * ny;
+    found.normal_y = pair.normal_y * nx + pair.normal_x * ny;
     found.lever_a1 = lever1 - of_a, found.lever_a2 = lever2 - of_a;
     found.lever_b1 = lever1 - of_b, found.lever_b2 = lever2 - of_b;
     found.lever_a_t = both_t - of_a_t, found.lever_b_t = both_t - of_b_t;
@@ -129,14 +138,6 @@ template <bool kRounded, class Real, class F, class Mask>
         found.separation1 = separation1;
         found.separation2 = select(is_single, none, separation2);
     }
-    return found;
-}
-
-/// The same with the normal out of the frame of the reference, whose own normal is (nx, ny).
-template <class F>
-[[gnu::always_inline]] inline Manifold<F> with_normal_from(Manifold<F> found, F nx, F ny) {
-    const F x = nx * found.normal_x - ny * found.normal_y, y = ny * found.normal_x + nx * found.normal_y;
-    found.normal_x = x, found.normal_y = y;
     return found;
 }
 
@@ -217,10 +218,9 @@ struct ConvexPair {
     F size;  // m, the smaller inradius
 };
 
-/// Where two convex shapes touch. The normal is in the frame of a. Separations are not yet held against a
-/// margin.
+/// Two convex shapes as the face sees them from which one is farthest from the other, in the frame of a.
 template <class Real, class F>
-[[gnu::always_inline]] inline Manifold<F> find_manifold(const ConvexPair<F>& pair) {
+[[gnu::always_inline]] inline void find_face(const ConvexPair<F>& pair, FacedPair<F>& found) {
     using simd::select;
     const F zero(Real(0)), one(Real(1));
     const Face<F> of_a = farthest_face<Real>(pair.a, pair.b), of_b = farthest_face<Real>(pair.b, pair.a);
@@ -255,19 +255,19 @@ template <class Real, class F>
     const F other_x = select(swapped, -pair.b_x, pair.b_x), other_y = select(swapped, -pair.b_y, pair.b_y);
     const auto along = [&](F x, F y) { return nx * y - ny * x; };
     const auto above = [&](F x, F y) { return nx * x + ny * y; };
-    const FaceView<F> view{.from = along(from_x - centre_x, from_y - centre_y),
-                           .to = along(to_x - centre_x, to_y - centre_y),
-                           .low_along = along(low_x - centre_x, low_y - centre_y),
-                           .low_above = above(low_x - from_x, low_y - from_y),
-                           .high_along = along(high_x - centre_x, high_y - centre_y),
-                           .high_above = above(high_x - from_x, high_y - from_y),
-                           .height = above(from_x - centre_x, from_y - centre_y),
-                           .centre_along = along(other_x, other_y),
-                           .centre_above = above(other_x, other_y),
-                           .radius = select(swapped, pair.radius_b, pair.radius_a),
-                           .other_radius = select(swapped, pair.radius_a, pair.radius_b),
-                           .size = pair.size};
-    return with_normal_from(manifold_at_face<true, Real>(view, swapped), nx, ny);
+    found.normal_x = nx, found.normal_y = ny, found.side = select(swapped, -one, one);
+    found.view = {.from = along(from_x - centre_x, from_y - centre_y),
+                  .to = along(to_x - centre_x, to_y - centre_y),
+                  .low_along = along(low_x - centre_x, low_y - centre_y),
+                  .low_above = above(low_x - from_x, low_y - from_y),
+                  .high_along = along(high_x - centre_x, high_y - centre_y),
+                  .high_above = above(high_x - from_x, high_y - from_y),
+                  .height = above(from_x - centre_x, from_y - centre_y),
+                  .centre_along = along(other_x, other_y),
+                  .centre_above = above(other_x, other_y),
+                  .radius = select(swapped, pair.radius_b, pair.radius_a),
+                  .other_radius = select(swapped, pair.radius_a, pair.radius_b),
+                  .size = pair.size};
 }
 
 }  // namespace
