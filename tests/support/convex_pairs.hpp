@@ -64,6 +64,7 @@ class ConvexPairs {
         pose[2] = static_cast<Real>(std::cos(angle)), pose[3] = static_cast<Real>(std::sin(angle));
     }
 
+    Real* pose() { return pose_.data(); }
     ConvexShape<Real>& shape(std::size_t row) { return shapes_[row]; }
     double margin(std::size_t i) const { return margin_[i]; }
     PlacedShape placed(std::size_t row) const { return place(shapes_[row], pose_.data() + 4 * row); }
