@@ -49,6 +49,8 @@ struct SolvePaths {
     Real recovery;                  // share of an overlap that a substep takes away, by displacement
     Real push;                      // 1/s: largest displacement of that kind in thicknesses a second
     Real velocity_tolerance;        // m/s, by which a contact may miss its law
+    int bold_iterations;            // that change all rows of the active set that are wrong; the others
+                                    // change one row a path
     int most_iterations;            // of the active set
     int sweeps_of_unsettled;        // over paths whose active set does not settle by then
     void* scratch;                  // of path_scratch_bytes(longest bundle) bytes, aligned to 64

@@ -107,6 +107,7 @@ struct LinkScratch {
     F dvx, dvy, du;             // of the far body's velocity
     Mask pushes1, pushes2;      // the active set
     Mask slips_up, slips_down;  // the tangential impulse is at its limit, with + and with - friction
+    Mask would_slip_up;         // if it slipped now
 };
 
 template <class Lanes>
@@ -323,15 +324,36 @@ void eliminate(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch) {
     }
 }
 
+/// Turns one row of the active set round in the lanes where `row` is of this link.
+/// @param first  number of the link's first row
+template <class Lanes>
+void change_row(LinkScratch<Lanes>& s, typename Lanes::Batch row, typename Lanes::Number first) {
+    using F = typename Lanes::Batch;
+    const auto turn_round = [&](auto& mask, auto where) {
+        const auto is_off = !mask;
+        mask = (mask & (!where)) | (is_off & where);
+    };
+    turn_round(s.pushes1, row == F(first)), turn_round(s.pushes2, row == F(first + 1));
+    const auto tangent = row == F(first + 2), slips = s.slips_up | s.slips_down;
+    const auto breaks = tangent & (!slips);
+    s.slips_up = (s.slips_up & !tangent) | (breaks & s.would_slip_up);
+    s.slips_down = (s.slips_down & !tangent) | (breaks & !s.would_slip_up);
+}
+
 /// The impulses from the last link to the first, what they do to the bodies, and the next active set.
 /// @param by_speed, by_impulse  tolerances [m/s], the second of impulse times inverse mass
+/// @param is_wary  change the active set of each lane in one row alone, the one that is farthest from its
+/// law: where many change at once they may do so for ever
 /// @return lanes that are not solved yet
 template <class Lanes, class Real>
 typename Lanes::Mask substitute(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch,
-                                typename Lanes::Batch by_speed, typename Lanes::Batch by_impulse) {
+                                typename Lanes::Batch by_speed, typename Lanes::Batch by_impulse,
+                                bool is_wary) {
     using F = typename Lanes::Batch;
+    using simd::select;
     const F zero(0);
     auto bad = zero < zero;
+    F worst = zero, worst_row(Real(-1));  // m/s; 3 link + row of the link
     // Change of velocity of the far body of the link that is looked at, and of its near body.
     F far_x = zero, far_y = zero, far_u = zero;
     const auto check = [&](std::size_t i, F near_x, F near_y, F near_u) {
@@ -353,9 +375,21 @@ typename Lanes::Mask substitute(const PathBatch<Real>& p, LinkScratch<Lanes>* sc
         const auto sticks = !(s.slips_up | s.slips_down);
         const auto breaks = sticks & ((simd::abs(new_t) - limit) * w > by_impulse);
         const auto holds = (s.slips_up & (vt > by_speed)) | (s.slips_down & (vt < -by_speed));
-        s.pushes1 = (s.pushes1 & !off1) | on1, s.pushes2 = (s.pushes2 & !off2) | on2;
-        s.slips_up = (s.slips_up & !holds) | (breaks & (new_t > zero));
-        s.slips_down = (s.slips_down & !holds) | (breaks & (new_t <= zero));
+        s.would_slip_up = new_t > zero;
+        if (is_wary) {
+            const auto compare = [&](F miss, std::size_t row) {
+                const auto is_worse = miss > worst;
+                worst = select(is_worse, miss, worst);
+                worst_row = select(is_worse, F(static_cast<Real>(3 * i + row)), worst_row);
+            };
+            compare(select(off1, -new1 * w, select(on1, s.floor1 - v1, zero)), 0);
+            compare(select(off2, -new2 * w, select(on2, s.floor2 - v2, zero)), 1);
+            compare(select(breaks, (simd::abs(new_t) - limit) * w, select(holds, simd::abs(vt), zero)), 2);
+        } else {
+            s.pushes1 = (s.pushes1 & !off1) | on1, s.pushes2 = (s.pushes2 & !off2) | on2;
+            s.slips_up = (s.slips_up & !holds) | (breaks & s.would_slip_up);
+            s.slips_down = (s.slips_down & !holds) | (breaks & !s.would_slip_up);
+        }
         const auto is_sound = simd::abs(v1) + simd::abs(v2) + simd::abs(vt) < F(static_cast<Real>(kUnsound));
         bad = bad | off1 | on1 | off2 | on2 | breaks | holds | !is_sound;
     };
@@ -379,6 +413,9 @@ typename Lanes::Mask substitute(const PathBatch<Real>& p, LinkScratch<Lanes>* sc
     LinkScratch<Lanes>& head = scratch[p.length];
     head.dvx = -head.w * jx_next, head.dvy = -head.w * jy_next, head.du = -head.w2 * spin_next;
     check(0, head.dvx, head.dvy, head.du);
+    if (is_wary)
+        for (std::size_t i = 0; i < p.length; ++i)
+            change_row<Lanes>(scratch[i], worst_row, static_cast<Real>(3 * i));
     return bad;
 }
 
@@ -434,7 +471,7 @@ PathCounts solve_paths(const SolvePaths<Real>& arguments, std::size_t first, std
         auto bad = F(0) <= F(0);
         for (int i = 0; i < k.most_iterations && simd::any(bad); ++i) {
             eliminate<Lanes>(p, scratch);
-            bad = substitute<Lanes>(p, scratch, by_speed, by_impulse);
+            bad = substitute<Lanes>(p, scratch, by_speed, by_impulse, i >= k.bold_iterations);
             counts.iterations += p.length;
         }
         apply_changes<Lanes>(p, scratch, !bad);

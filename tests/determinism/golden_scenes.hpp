@@ -190,9 +190,48 @@ inline Scene bouncing_crowd() {
     return scene;
 }
 
+/// Boxes, capsules, polygons and discs that fall on boxes that nothing moves, one of which turns; some
+/// bounce, some do not turn.
+inline Scene mixed_shapes() {
+    Scene scene;
+    scene.name = "mixed shapes";
+    scene.gravity = {0, -10};
+    const Material rough{.friction = 0.5, .restitution = 0.2};
+    scene.add({.type = BodyType::static_body, .shape = Box{20, 2}, .position = {0, -1}, .material = rough});
+    for (const double side : {-1.0, 1.0})
+        scene.add({.type = BodyType::static_body,
+                   .shape = Box{1, 30},
+                   .position = {7.5 * side, 10},
+                   .angle = 0.1 * side,
+                   .material = rough});
+    scene.add({.type = BodyType::kinematic_body,
+               .shape = Capsule{2, 0.3},
+               .position = {0, 3},
+               .angular_velocity = 1.5,
+               .material = rough});
+    for (int i = 0; i < 120; ++i) {
+        Body body;
+        const double size = 0.7 + 0.1 * (i % 4);
+        if (i % 4 == 0) body.shape = Box{size, 0.6 * size};
+        if (i % 4 == 1) body.shape = Disc{0.4 * size};
+        if (i % 4 == 2) body.shape = Capsule{0.5 * size, 0.25 * size};
+        if (i % 4 == 3)
+            body.shape =
+                Polygon{.vertices = {{0, 0}, {size, 0}, {0.8 * size, 0.6 * size}, {0.2 * size, size}},
+                        .radius = i % 8 == 3 ? 0.05 : 0};
+        body.position = {-5 + 1.1 * (i % 10), 4.5 + 1.2 * (i / 10)};
+        body.fixed_rotation = i % 11 == 0;
+        body.angle = 0.37 * i, body.angular_velocity = body.fixed_rotation ? 0 : i % 5 - 2;
+        body.material = {.friction = i % 3 == 0 ? 0.2 : 0.6, .restitution = i % 6 == 0 ? 0.6 : 0};
+        scene.add(body);
+    }
+    return scene;
+}
+
 inline std::vector<Scene> golden_scenes() {
-    return {bouncing_crowd(),   woken_sleepers(), rolling_sizes(), gas(400, {0.5, 0.5}, 1), falling_sizes(),
-            moving_obstacles(), stack_at_rest(),  rough_sizes(),   turning_chain(),         rough_gas()};
+    return {mixed_shapes(),          bouncing_crowd(), woken_sleepers(),   rolling_sizes(),
+            gas(400, {0.5, 0.5}, 1), falling_sizes(),  moving_obstacles(), stack_at_rest(),
+            rough_sizes(),           turning_chain(),  rough_gas()};
 }
 
 }  // namespace carom::test

@@ -16,6 +16,7 @@
 
 #include "determinism/golden_scenes.hpp"
 #include "scene/call_effects.hpp"
+#include "support/box_scenes.hpp"
 #include "support/effort.hpp"
 #include "support/report.hpp"
 
@@ -42,6 +43,7 @@ struct Golden {
     std::uint64_t single_precision, double_precision;
 };
 constexpr Golden kGolden[] = {
+    {"mixed shapes", 0x267c86f124fc08b4, 0x1e41962ddb24949f},
     {"bouncing crowd", 0x32f5cf7cf7591ae8, 0x5d0e0f7fea4c8122},
     {"rough gas", 0xc009256aceff94e4, 0xb74961daf77a2622},
     {"gas", 0x680b8eec4001de52, 0x87bedad9b790c353},
@@ -84,6 +86,9 @@ TEST_SUITE("determinism/same bits") {
             scene = gas(12'000, {0.4, 0.6}, 0.2);
             scene.gravity = {0, -30};
             for (Body& body : scene.bodies) body.material.friction = 0.5;
+        }
+        SUBCASE("solver soft with boxes") {
+            scene = box_pyramid(90);
         }
         SUBCASE("solver soft with what bounces") {
             scene = gas(12'000, {0.4, 0.6}, 0.6);

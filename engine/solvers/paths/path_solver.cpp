@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 
 #include "constraints/partner.hpp"
 #include "effects/friction.hpp"
 #include "effects/restitution.hpp"
 #include "math/rotation.hpp"
+#include "narrowphase/box_box.hpp"
 
 namespace carom {
 namespace {
@@ -17,18 +17,19 @@ namespace {
 
 /// Share of an overlap that a substep takes away. Pushes do work on the loads that they lift: at 0.4 heaps of
 /// boxes shake for ever.
-const double kRecovery = getenv("REC") ? atof(getenv("REC")) : 0.05;
+constexpr double kRecovery = 0.05;
 /// Largest displacement of that kind, in thicknesses a second.
 constexpr double kPushThicknesses = 6;
 /// Contacts in a path: what is longer is cut. While many paths do not settle they are kept short: a long one
 /// that fails has done more in vain.
 constexpr std::size_t kLongestPath = 128, kLongestOfRestless = 16;
 /// Share of paths that do not settle, below which paths become long and above which they become short.
-const double kCalm = getenv("CALM") ? atof(getenv("CALM")) : 0.005,
-             kRestless = getenv("RESTL") ? atof(getenv("RESTL")) : 0.05;
-/// Iterations of the active set; and Gauss-Seidel sweeps over a path where it does not settle by then.
-const int kMostIterations = getenv("IT") ? atoi(getenv("IT")) : 8,
-          kSweepsOfUnsettled = getenv("SU") ? atoi(getenv("SU")) : 4;
+constexpr double kCalm = 0.001, kRestless = 0.01;
+/// Fewer contacts have long paths from the start; more begin with short ones, as heaps do that still settle.
+constexpr std::size_t kFewContacts = 1024;
+/// Iterations of the active set: those that change all of its rows that are wrong; all, while paths are long
+/// and while they are short. Gauss-Seidel sweeps over a path where it does not settle by then.
+constexpr int kBoldIterations = 4, kMostIterations = 40, kMostOfRestless = 8, kSweepsOfUnsettled = 4;
 /// By which a contact may miss its law, in shares of what gravity adds to a speed in a substep.
 constexpr double kTolerance = 2e-4;
 /// A contact that may be rotated by so much keeps its impulses: cosine of 25 degrees.
@@ -36,7 +37,7 @@ constexpr double kSameNormal = 0.9;
 /// Two points whose rows are alike by more than this are solved as one: det K / (k11 k22).
 constexpr double kLeastDeterminant = 1e-3;
 /// Paths are cut anew after so many steps, since loads have changed.
-const int kStepsOfCut = getenv("CUT") ? atoi(getenv("CUT")) : 30;
+constexpr int kStepsOfCut = 30;
 
 // ns on one thread, for the executor.
 constexpr double kNanosecondsToFind = 10, kNanosecondsToFill = 10, kNanosecondsToSolve = 10;
@@ -45,12 +46,15 @@ constexpr std::size_t kBundlesPerTask = 4, kContactsPerTask = 256;
 }  // namespace
 
 template <class Real>
-void PathSolver<Real>::add_pair(const WorldState<Real>& world, std::int32_t a, std::int32_t b) {
+void PathSolver<Real>::add_pair(const WorldState<Real>& world, std::int32_t a, std::int32_t b, bool boxes) {
     const Bodies<Real>& bodies = world.bodies;
     if (a > b) std::swap(a, b);
     const auto i = static_cast<std::size_t>(a), k = static_cast<std::size_t>(b);
     if (bodies.is_disc(i) && bodies.is_disc(k)) return;
     if (bodies.shape[i] < 0 || bodies.shape[k] < 0) return;  // edges
+    if (boxes != (is_box_of_[static_cast<std::size_t>(bodies.shape[i])] &&
+                  is_box_of_[static_cast<std::size_t>(bodies.shape[k])]))
+        return;
     const bool a_moves = !bodies.is_immovable(i), b_moves = k < bodies.count && !bodies.is_immovable(k);
     if (!a_moves && !b_moves) return;
     if (!a_moves) std::swap(a, b);
@@ -67,10 +71,15 @@ void PathSolver<Real>::renew(const WorldState<Real>& world, const Candidates<Rea
     if (world.bodies.asleep != asleep_then_)
         for (const KeptManifold<Real>& kept : asleep_)
             old_.add(0, 0, kept.name), old_.memory.back() = kept.memory;
-    for (std::size_t p = 0; p < candidates.pair_count(); ++p)
-        add_pair(world, candidates.pair_a()[p], candidates.pair_b()[p]);
-    for (const SleeperPair& pair : sleepers) add_pair(world, pair.row, pair.sleeper);
+    list_boxes(world.shapes);
+    // Boxes first: blocks of them alone have a quicker kernel.
+    for (const bool boxes : {true, false}) {
+        for (std::size_t p = 0; p < candidates.pair_count(); ++p)
+            add_pair(world, candidates.pair_a()[p], candidates.pair_b()[p], boxes);
+        for (const SleeperPair& pair : sleepers) add_pair(world, pair.row, pair.sleeper, boxes);
+    }
     recall(bodies_, old_);
+    find_box_blocks(world.bodies, 0);
     if (world.bodies.asleep != asleep_then_) keep_of_sleepers(world);
     asleep_then_ = world.bodies.asleep;
 }
@@ -102,11 +111,36 @@ std::span<const LoadedContact> PathSolver<Real>::loaded() {
 }
 
 template <class Real>
+void PathSolver<Real>::list_boxes(const ShapeStore<Real>& shapes) {
+    is_box_of_.resize(shapes.size());
+    for (std::size_t shape = 0; shape < shapes.size(); ++shape)
+        is_box_of_[shape] = is_box(shapes[static_cast<std::int32_t>(shape)]);
+}
+
+template <class Real>
+void PathSolver<Real>::find_box_blocks(const Bodies<Real>& bodies, std::size_t first) {
+    blocks_are_boxes_.resize(padded(bodies_.count()) / kRowPadding);
+    for (std::size_t block = first; block < blocks_are_boxes_.size(); ++block) {
+        bool all = true;
+        const std::size_t last = std::min(bodies_.count(), (block + 1) * kRowPadding);
+        for (std::size_t i = block * kRowPadding; i < last; ++i)
+            for (const std::int32_t row : {bodies_.a[i], bodies_.b[i]})
+                all =
+                    all && is_box_of_[static_cast<std::size_t>(bodies.shape[static_cast<std::size_t>(row)])];
+        blocks_are_boxes_[block] = all;
+    }
+}
+
+template <class Real>
 void PathSolver<Real>::add(const WorldState<Real>& world, const Candidates<Real>& candidates,
                            const EdgeCandidates<Real>&) {
     if (!world.bodies.has_shapes) return;
-    for (const auto& pair : candidates.new_pairs()) add_pair(world, pair.a, pair.b);
+    const std::size_t before = bodies_.count();
+    list_boxes(world.shapes);
+    for (const bool boxes : {true, false})
+        for (const auto& pair : candidates.new_pairs()) add_pair(world, pair.a, pair.b, boxes);
     bodies_.fit();
+    find_box_blocks(world.bodies, before / kRowPadding);
 }
 
 /// Gives the contacts of a list what those of the same name had in the old one.
@@ -201,7 +235,12 @@ void PathSolver<Real>::find(const WorldState<Real>& world, const SubstepTerms& t
             const FindManifolds<Real> k{pose_.data(),     bodies.shape.data(), world.shapes.data(),
                                         bodies_.a.data(), bodies_.b.data(),    bodies_.margin.data(),
                                         bodies_.columns()};
-            loops.kernels->convex->find_manifolds(k, first, padded(last));
+            for (std::size_t i = first; i < last; i += kRowPadding) {
+                const auto kernel = blocks_are_boxes_[i / kRowPadding]
+                                        ? loops.kernels->convex->find_box_manifolds
+                                        : loops.kernels->convex->find_manifolds;
+                kernel(k, i, i + kRowPadding);
+            }
         });
     const bool is_same = list_live();
     note_calm();
@@ -232,7 +271,10 @@ bool PathSolver<Real>::list_live() {
 /// Judges by the last step whether paths settle.
 template <class Real>
 void PathSolver<Real>::note_calm() {
-    if (solved_ == 0) return;
+    if (solved_ == 0) {
+        is_calm_ = live_.size() < kFewContacts;
+        return;
+    }
     const double share = static_cast<double>(counters.unsettled) / static_cast<double>(solved_);
     is_calm_ = share < (is_calm_ ? kRestless : kCalm);
     solved_ = 0;
@@ -389,7 +431,9 @@ SolvePaths<Real> PathSolver<Real>::arguments(const SubstepTerms& terms, BodyReco
     k.h = static_cast<Real>(terms.substep_dt), k.inverse_h = static_cast<Real>(1 / terms.substep_dt);
     k.recovery = static_cast<Real>(kRecovery), k.push = static_cast<Real>(kPushThicknesses);
     k.velocity_tolerance = static_cast<Real>(kTolerance * terms.fall_speed());
-    k.most_iterations = kMostIterations, k.sweeps_of_unsettled = kSweepsOfUnsettled;
+    k.bold_iterations = kBoldIterations;
+    k.most_iterations = is_cut_calm_ ? kMostIterations : kMostOfRestless;
+    k.sweeps_of_unsettled = kSweepsOfUnsettled;
     return k;
 }
 

@@ -99,7 +99,8 @@ class PathSolver {
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
         archive(self.counters, self.bodies_, self.surfaces_, self.asleep_, self.asleep_then_, self.live_,
-                self.cut_, self.since_cut_, self.solved_, self.is_calm_, self.is_cut_calm_);
+                self.blocks_are_boxes_, self.cut_, self.since_cut_, self.solved_, self.is_calm_,
+                self.is_cut_calm_);
     }
 
   private:
@@ -108,7 +109,10 @@ class PathSolver {
     SolvePaths<Real> arguments(const SubstepTerms& terms, BodyRecords<Real>& records);
     void run(Pass pass, SolvePaths<Real> arguments, const StepLoops<Real>& loops);
     void keep_of_sleepers(const WorldState<Real>& world);
-    void add_pair(const WorldState<Real>& world, std::int32_t a, std::int32_t b);
+    /// Adds a pair of which not both are discs, if both are boxes or not both, as `boxes` says.
+    void add_pair(const WorldState<Real>& world, std::int32_t a, std::int32_t b, bool boxes);
+    void list_boxes(const ShapeStore<Real>& shapes);
+    void find_box_blocks(const Bodies<Real>& bodies, std::size_t first);
     void recall(ManifoldList<Real>& list, const ManifoldList<Real>& old);
     void pose_bodies(const WorldState<Real>& world);
     bool list_live();
@@ -137,6 +141,8 @@ class PathSolver {
     std::size_t asleep_then_ = 0;            // bodies that slept then
     std::vector<std::uint8_t> is_recalled_;  // by contact of old_
     std::vector<LoadedContact> loaded_;
+    std::vector<std::uint8_t> is_box_of_;                     // by shape
+    std::vector<std::uint8_t> blocks_are_boxes_;              // by block of kRowPadding contacts of bodies_
     std::vector<std::int32_t> first_of_slot_, next_of_slot_;  // contacts of old_ by the slot of their a
     Column<Real> pose_;                                       // [rows][4]: x, y [m], cosine, sine
     Column<double> pose_angle_;                               // rad, that cosine and sine are of

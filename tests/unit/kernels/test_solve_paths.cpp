@@ -78,7 +78,7 @@ struct RandomPaths {
         k.velocity = velocity.data(), k.displacement = displacement.data(), k.turn = turn.data();
         k.h = static_cast<Real>(kH), k.inverse_h = static_cast<Real>(1 / kH);
         k.recovery = Real(0.05), k.push = 6, k.velocity_tolerance = Real(1e-5);
-        k.most_iterations = 30, k.sweeps_of_unsettled = 0, k.scratch = scratch.data();
+        k.bold_iterations = 4, k.most_iterations = 60, k.sweeps_of_unsettled = 0, k.scratch = scratch.data();
         return k;
     }
 
@@ -161,7 +161,8 @@ TEST_SUITE("kernels/solve_paths") {
             for (const KernelTables* tables : runnable_kernel_tables()) {
                 RandomPaths<Real> paths(seed, 1 + seed % 16, 0.5);
                 SolvePaths<Real> k = paths.arguments();
-                k.most_iterations = 3, k.sweeps_of_unsettled = 4;  // so that some do not settle
+                k.bold_iterations = 2, k.most_iterations = 3,
+                k.sweeps_of_unsettled = 4;  // so that some do not settle
                 const auto& kernels = tables->of<Real>().convex->paths;
                 kernels.warm_start(k, 0, 1), kernels.solve(k, 0, 1), kernels.sweep(k, 0, 1);
                 if (is_first) {
