@@ -1,5 +1,7 @@
 #include "solvers/paths/manifold_list.hpp"
 
+#include <algorithm>
+
 namespace carom {
 
 template <class Real>
@@ -26,6 +28,8 @@ template <class Real>
 void ManifoldList<Real>::fit() {
     for (Column<Real>* column : {&margin, &thickness, &friction, &restitution}) column->resize(count());
     for_each_found_column(*this, [&](Column<Real>& column) { column.resize(count()); });
+    if (names.empty()) return;
+    for (Column<std::int32_t>* rows : {&a, &b}) std::fill(rows->end(), rows->data() + padded(count()), a[0]);
 }
 
 template <class Real>

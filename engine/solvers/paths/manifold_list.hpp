@@ -54,8 +54,8 @@ struct ManifoldList {
 
     std::size_t count() const { return names.size(); }
     void clear();
-    /// Appends a contact; `fit` is to be called when all are in. Padding names body 0 twice: what kernels
-    /// find there is not looked at.
+    /// Appends a contact; `fit` is to be called when all are in. Padding names the body of the first one
+    /// twice: what kernels find there is not looked at, but row 0 may be edges, which have no shape.
     void add(std::int32_t row_a, std::int32_t partner, const ManifoldName& name);
     void fit();
 
