@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "broadphase/edge_candidates.hpp"
 #include "math/rotation.hpp"
@@ -9,6 +10,7 @@
 #include "narrowphase/disc_edge.hpp"
 #include "shapes/convex_geometry.hpp"
 #include "shapes/walls.hpp"
+#include "world/shape_separations.hpp"
 
 namespace carom {
 namespace {
@@ -61,16 +63,21 @@ void add_walls(const WorldState<Real>& world, Overlaps& overlaps) {
 }
 
 /// Edges count like walls.
+/// @param shapes  null in a world of discs; gets pairs with what is no disc
 template <class Real>
-void add_edges(const WorldState<Real>& world, const Candidates<Real>& discs, Overlaps& overlaps) {
+void add_edges(const WorldState<Real>& world, const Candidates<Real>& discs, ShapeSeparations<Real>* shapes,
+               Overlaps& overlaps) {
     EdgeCandidates<Real> edges;
     edges.place(world, 0);
     edges.find(world, discs);
     for (const EdgePair pair : edges.pairs()) {
         const auto row = static_cast<std::size_t>(pair.row);
-        if (!world.bodies.is_disc(row)) continue;  // see add_pairs
         const Edge& edge = world.edges[pair.edge];
         const EdgePose& pose = edges.pose_of(edge);
+        if (!world.bodies.is_disc(row)) {
+            shapes->add(pair.row, edge, pose);
+            continue;
+        }
         const Vec2 x{world.bodies.position_x[row], world.bodies.position_y[row]};
         const Vec2 p = rotate_back(pose.turn, x - pose.position);
         const double share = nearest_share(p, edge.a, edge.b);
@@ -80,15 +87,18 @@ void add_edges(const WorldState<Real>& world, const Candidates<Real>& discs, Ove
     }
 }
 
-/// Pairs of discs. Of pairs in which another shape takes part the contacts of the solver say where they
-/// touch; they are not counted here yet.
+/// @param shapes  null in a world of discs; gets pairs with what is no disc
 template <class Real>
-void add_pairs(const Bodies<Real>& bodies, const Candidates<Real>& discs, Overlaps& overlaps) {
+void add_pairs(const Bodies<Real>& bodies, const Candidates<Real>& discs, ShapeSeparations<Real>* shapes,
+               Overlaps& overlaps) {
     overlaps.report.candidates += static_cast<std::int64_t>(discs.pair_count());
     for (std::size_t p = 0; p < discs.pair_count(); ++p) {
         const auto a = static_cast<std::size_t>(discs.pair_a()[p]);
         const auto b = static_cast<std::size_t>(discs.pair_b()[p]);
-        if (!bodies.are_discs(discs.pair_a()[p], discs.pair_b()[p])) continue;
+        if (!bodies.are_discs(discs.pair_a()[p], discs.pair_b()[p])) {
+            shapes->add(discs.pair_a()[p], discs.pair_b()[p]);
+            continue;
+        }
         const Vec2 d{static_cast<double>(bodies.position_x[b]) - static_cast<double>(bodies.position_x[a]),
                      static_cast<double>(bodies.position_y[b]) - static_cast<double>(bodies.position_y[a])};
         const double radius_a = bodies.radius[a], radius_b = bodies.radius[b];
@@ -125,9 +135,16 @@ OverlapReport measure_overlaps(Simulation<Real>& sim) {
     // A clock that stands still: pairs of the present positions.
     discs.update(world.bodies, FlightClock{}, {}, {}, 0, *sim.kernels, sim.executor);
     Overlaps overlaps;
-    add_pairs(world.bodies, discs, overlaps);
+    std::optional<ShapeSeparations<Real>> shapes;
+    if (world.bodies.has_shapes) shapes.emplace(world);
+    ShapeSeparations<Real>* const of_shapes = shapes ? &*shapes : nullptr;
+    add_pairs(world.bodies, discs, of_shapes, overlaps);
     if (world.walls) add_walls(world, overlaps);
-    if (!world.edges.empty()) add_edges(world, discs, overlaps);
+    if (!world.edges.empty()) add_edges(world, discs, of_shapes, overlaps);
+    if (shapes)
+        shapes->for_each_touching(*sim.kernels, [&](double separation, double inradius, bool is_edge) {
+            is_edge ? overlaps.add_wall(separation, inradius) : overlaps.add(separation, inradius);
+        });
     if (overlaps.report.touching > 0)
         overlaps.report.mean = overlaps.sum / static_cast<double>(overlaps.report.touching);
     return overlaps.report;

@@ -62,9 +62,11 @@ struct BodyState {
 
 /// How deep bodies and walls overlap now, measured from positions: over all pairs but those of two bodies
 /// that never move; sleeping bodies take part, quarantined ones do not. Overlaps are fractions of the smaller
-/// body's radius over touching pairs (separation < 0).
+/// body's radius over touching pairs (separation < 0); the radius of a box, capsule or polygon is here its
+/// inradius: of a box half of its shorter side.
 struct OverlapReport {
-    /// Pairs nearer than a tenth of the smallest radius, and walls that are touched.
+    /// Pairs nearer than a tenth of the smallest radius, and walls that are touched; what is no disc counts
+    /// there as the disc around it.
     std::int64_t candidates = 0;
     std::int64_t touching = 0;
     double mean = 0;

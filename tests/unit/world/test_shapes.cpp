@@ -3,6 +3,8 @@
 #include <carom/pairwise.hpp>
 #include <carom/world.hpp>
 
+#include "math/rotation.hpp"
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -150,6 +152,17 @@ TEST_CASE("shapes come and go between steps, and the others stay what they are")
     }
 }
 
+TEST_CASE("a world whose first body is a line steps boxes that touch each other") {
+    Scene scene;
+    scene.gravity = {0, -9};
+    scene.add({.type = BodyType::static_body, .shape = Segment{{-5, -50}, {5, -50}}});
+    for (int i = 0; i < 3; ++i) scene.add({.shape = Box{1, 1}, .position = {0.1 * i, 0.999 * i}});
+    World world(scene);
+    for (int i = 0; i < 10; ++i) world.step(kStep);
+    CHECK(world.state({1, 0}).position.y < -0.1);
+    CHECK(world.quarantined().empty());
+}
+
 TEST_CASE("a world of shapes that is restored goes on to the same bits") {
     World world(flying());
     for (int i = 0; i < 30; ++i) world.step(kStep);
@@ -216,6 +229,38 @@ TEST_CASE(
     scene.add({.shape = Box{1, 1}, .position = {5, 0}});
     CHECK(refusal_of(scene).find("rotation forced off although it has body 1 with the shape \"box\"") !=
           std::string::npos);
+}
+
+TEST_CASE("overlaps of shapes are those of their surfaces, in inradii of the smaller one") {
+    const double corner = std::acos(-1) / 4;
+    Scene boxes;
+    boxes.add({.shape = Box{2, 1}});
+    boxes.add({.shape = Box{1, 4}, .position = {1.45, 1}});  // 0.05 m in the first one's side
+    boxes.add({.shape = Disc{1}, .position = {-1.9, 0}});    // 0.1 m
+    boxes.add({.shape = Capsule{2, 0.25}, .position = {20, 0}});
+    boxes.add({.shape = Box{1, 1}, .position = {20, 0.24 + std::sqrt(0.5)}, .angle = corner});  // 0.01 m
+    boxes.add({.shape = Polygon{{{0, 0}, {1, 0}, {0, 1}}, 0.1}, .position = {40, 0}});
+    const OverlapReport report = World64(boxes).overlaps();
+    CHECK(report.touching == 3);
+    CHECK(report.max == doctest::Approx(0.1 / 0.5).epsilon(1e-6));
+    CHECK(report.mean == doctest::Approx((0.05 / 0.5 + 0.1 / 0.5 + 0.01 / 0.25) / 3).epsilon(1e-6));
+}
+
+TEST_CASE("how deep shapes are in the edges of a chain is measured edge by edge") {
+    Scene scene;
+    scene.add({.type = BodyType::static_body,
+               .shape = Chain{{{-5, 0}, {0, 0}, {5, 0}, {5, 5}}, false},
+               .position = {1, 1},
+               .angle = 0.3});
+    const Rotation turn = rotation_by(0.3);
+    const auto place = [&](Vec2 p) { return Vec2{1, 1} + rotate(turn, p); };
+    scene.add({.shape = Box{1, 2}, .position = place({-3, 0.99}), .angle = 0.3});       // one edge, 0.01 m
+    scene.add({.shape = Capsule{1, 0.5}, .position = place({0, 0.48}), .angle = 0.3});  // two, 0.02 m each
+    scene.add({.shape = Box{1, 1}, .position = place({4.47, 2}), .angle = 0.3});  // the upright one, -0.03
+    const OverlapReport report = World64(scene).overlaps();
+    CHECK(report.touching == 3);
+    CHECK(report.max == doctest::Approx(0.04).epsilon(1e-6));
+    CHECK(report.mean == doctest::Approx((0.02 + 0.04 + 0.04) / 3).epsilon(1e-6));
 }
 
 TEST_CASE("how deep a turned box is in a wall is measured at its lowest corner") {

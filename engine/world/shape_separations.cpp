@@ -1,0 +1,70 @@
+#include "world/shape_separations.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "kernels/manifold_arguments.hpp"
+#include "math/vec2_math.hpp"
+#include "shapes/convex_geometry.hpp"
+
+namespace carom {
+
+template <class Real>
+ShapeSeparations<Real>::ShapeSeparations(const WorldState<Real>& world)
+    : rows_(world.bodies.rows()), shape_(world.bodies.shape) {
+    shapes_.resize(world.shapes.size());
+    std::copy_n(world.shapes.data(), world.shapes.size(), shapes_.data());
+    for (std::size_t row = 0; row < rows_; ++row) {
+        const double angle = world.bodies.has_rotation ? static_cast<double>(world.bodies.angle[row]) : 0;
+        add_pose({world.bodies.position_x[row], world.bodies.position_y[row]}, rotation_by(angle));
+    }
+}
+
+template <class Real>
+void ShapeSeparations<Real>::add_pose(Vec2 place, Rotation turn) {
+    for (const double value : {place.x, place.y, turn.cos, turn.sin})
+        pose_.push_back(static_cast<Real>(value));
+}
+
+template <class Real>
+void ShapeSeparations<Real>::add(std::int32_t a, std::int32_t b) {
+    a_.push_back(a), b_.push_back(b);
+}
+
+/// The edge is a capsule without a radius whose body is the edge alone.
+template <class Real>
+void ShapeSeparations<Real>::add(std::int32_t row, const Edge& edge, const EdgePose& pose) {
+    const Vec2 along = edge.b - edge.a;
+    const double length = std::sqrt(length_squared(along));
+    const Vec2 direction = rotate(pose.turn, (1 / length) * along);
+    ConvexShape<Real> shape = convex_shape_of<Real>(Capsule{length, 0});
+    shape.inradius = static_cast<Real>(kNoPoint);  // the body's is the smaller one
+    add(row, static_cast<std::int32_t>(shape_.size()));
+    shape_.push_back(static_cast<std::int32_t>(shapes_.size())), shapes_.push_back(shape);
+    add_pose(pose.position + rotate(pose.turn, 0.5 * (edge.a + edge.b)), {direction.x, direction.y});
+}
+
+template <class Real>
+void ShapeSeparations<Real>::find(const KernelTable<Real>& kernels) {
+    const std::size_t pairs = a_.size();
+    if (pairs == 0) return;
+    // Padding names bodies that have a shape: that of row 0 may be edges.
+    std::fill(a_.end(), a_.data() + padded(pairs), a_[0]),
+        std::fill(b_.end(), b_.data() + padded(pairs), b_[0]);
+    const Column<Real> margin(pairs);    // zero
+    std::array<Column<Real>, 8> others;  // normals and levers, which are not asked for
+    for (Column<Real>& column : others) column.resize(pairs);
+    separation1_.resize(pairs), separation2_.resize(pairs);
+    const ManifoldColumns<Real> out{
+        others[0].data(), others[1].data(), others[2].data(), others[3].data(),    others[4].data(),
+        others[5].data(), others[6].data(), others[7].data(), separation1_.data(), separation2_.data()};
+    kernels.convex->find_manifolds(
+        {pose_.data(), shape_.data(), shapes_.data(), a_.data(), b_.data(), margin.data(), out}, 0,
+        padded(pairs));
+}
+
+template class ShapeSeparations<float>;
+template class ShapeSeparations<double>;
+
+}  // namespace carom

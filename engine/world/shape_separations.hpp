@@ -1,0 +1,50 @@
+#pragma once
+
+#include "broadphase/edge_candidates.hpp"
+#include "isa/kernel_table.hpp"
+#include "state/world_state.hpp"
+
+namespace carom {
+
+/// How far convex shapes are from each other and from edges now, pair by pair, where they touch.
+template <class Real>
+class ShapeSeparations {
+  public:
+    explicit ShapeSeparations(const WorldState<Real>& world);
+
+    /// Two rows, not both discs, neither of them edges.
+    void add(std::int32_t a, std::int32_t b);
+    /// A row and an edge, as an edge of any chain: ends count.
+    void add(std::int32_t row, const Edge& edge, const EdgePose& pose);
+
+    /// Calls touch(separation [m], < 0, smaller inradius of the two [m], whether the other one is an edge)
+    /// for the pairs that overlap. Cost: about 20 ns a pair.
+    template <class Touch>
+    void for_each_touching(const KernelTable<Real>& kernels, const Touch& touch) {
+        find(kernels);
+        for (std::size_t pair = 0; pair < a_.size(); ++pair) {
+            const double separation = std::fmin(separation1_[pair], separation2_[pair]);
+            if (!(separation < 0)) continue;
+            const bool is_edge = static_cast<std::size_t>(b_[pair]) >= rows_;
+            touch(separation, std::fmin(inradius_of(a_[pair]), inradius_of(b_[pair])), is_edge);
+        }
+    }
+
+  private:
+    void find(const KernelTable<Real>& kernels);
+    void add_pose(Vec2 place, Rotation turn);
+    double inradius_of(std::int32_t row) const {
+        return shapes_[static_cast<std::size_t>(shape_[static_cast<std::size_t>(row)])].inradius;
+    }
+
+    std::size_t rows_;  // of bodies; rows behind them are edges
+    Column<std::int32_t> a_, b_, shape_;
+    Column<Real> pose_;
+    Column<ConvexShape<Real>> shapes_;
+    Column<Real> separation1_, separation2_;
+};
+
+extern template class ShapeSeparations<float>;
+extern template class ShapeSeparations<double>;
+
+}  // namespace carom
