@@ -1,6 +1,7 @@
 #pragma once
 
 #include "kernels/manifold_arguments.hpp"
+#include "narrowphase/manifold.hpp"
 #include "simd/scalar_lanes.hpp"
 
 // Where two convex shapes touch: polygons of 1 to 8 vertices, grown by a radius. One text for numbers and for
@@ -42,15 +43,6 @@ struct FacedPair {
     FaceView<F> view;
     F normal_x, normal_y;  // outward normal of the reference edge
     F side;                // 1: the reference is an edge of a; -1: of b
-};
-
-/// A manifold of two points, in the terms of ManifoldColumns.
-template <class F>
-struct Manifold {
-    F normal_x, normal_y;
-    F lever_a1, lever_a2, lever_b1, lever_b2;
-    F lever_a_t, lever_b_t;
-    F separation1, separation2;
 };
 
 /// Points of a reference and an incident edge: the part of the incident edge that lies over the reference,
@@ -218,20 +210,14 @@ struct ConvexPair {
     F size;  // m, the smaller inradius
 };
 
-/// Two convex shapes as the face sees them from which one is farthest from the other, in the frame of a.
-template <class Real, class F>
-[[gnu::always_inline]] inline void find_face(const ConvexPair<F>& pair, FacedPair<F>& found) {
+/// A pair as an edge of one of them sees it, in the frame of a.
+/// @param face     of b where `swapped`, else of a
+template <class Real, class F, class Mask>
+[[gnu::always_inline]] inline void view_from(const Face<F>& face, Mask swapped, const ConvexPair<F>& pair,
+                                             FacedPair<F>& found) {
     using simd::select;
     const F zero(Real(0)), one(Real(1));
-    const Face<F> of_a = farthest_face<Real>(pair.a, pair.b), of_b = farthest_face<Real>(pair.b, pair.a);
-    const F cosine = of_a.normal_x * of_b.normal_x + of_a.normal_y * of_b.normal_y;
-    const auto swapped = b_has_reference<Real>(of_a.separation, of_b.separation, cosine, pair.size);
-    const F from_x = select(swapped, of_b.from_x, of_a.from_x);
-    const F from_y = select(swapped, of_b.from_y, of_a.from_y);
-    const F to_x = select(swapped, of_b.to_x, of_a.to_x), to_y = select(swapped, of_b.to_y, of_a.to_y);
-    F nx = select(swapped, of_b.normal_x, of_a.normal_x);
-    const F ny = select(swapped, of_b.normal_y, of_a.normal_y);
-    nx = select(nx * nx + ny * ny == zero, one, nx);  // two discs: any frame will do
+    const F nx = face.normal_x, ny = face.normal_y;
 
     // The incident edge: its normal is most opposite to that of the reference.
     F most = one + one, low_x = zero, low_y = zero, high_x = zero, high_y = zero;
@@ -256,18 +242,37 @@ template <class Real, class F>
     const auto along = [&](F x, F y) { return nx * y - ny * x; };
     const auto above = [&](F x, F y) { return nx * x + ny * y; };
     found.normal_x = nx, found.normal_y = ny, found.side = select(swapped, -one, one);
-    found.view = {.from = along(from_x - centre_x, from_y - centre_y),
-                  .to = along(to_x - centre_x, to_y - centre_y),
+    found.view = {.from = along(face.from_x - centre_x, face.from_y - centre_y),
+                  .to = along(face.to_x - centre_x, face.to_y - centre_y),
                   .low_along = along(low_x - centre_x, low_y - centre_y),
-                  .low_above = above(low_x - from_x, low_y - from_y),
+                  .low_above = above(low_x - face.from_x, low_y - face.from_y),
                   .high_along = along(high_x - centre_x, high_y - centre_y),
-                  .high_above = above(high_x - from_x, high_y - from_y),
-                  .height = above(from_x - centre_x, from_y - centre_y),
+                  .high_above = above(high_x - face.from_x, high_y - face.from_y),
+                  .height = above(face.from_x - centre_x, face.from_y - centre_y),
                   .centre_along = along(other_x, other_y),
                   .centre_above = above(other_x, other_y),
                   .radius = select(swapped, pair.radius_b, pair.radius_a),
                   .other_radius = select(swapped, pair.radius_a, pair.radius_b),
                   .size = pair.size};
+}
+
+/// A pair as the face sees it from which one is farthest from the other, in the frame of a.
+template <class Real, class F>
+[[gnu::always_inline]] inline void find_face(const ConvexPair<F>& pair, FacedPair<F>& found) {
+    using simd::select;
+    const F zero(Real(0)), one(Real(1));
+    const Face<F> of_a = farthest_face<Real>(pair.a, pair.b), of_b = farthest_face<Real>(pair.b, pair.a);
+    const F cosine = of_a.normal_x * of_b.normal_x + of_a.normal_y * of_b.normal_y;
+    const auto swapped = b_has_reference<Real>(of_a.separation, of_b.separation, cosine, pair.size);
+    Face<F> face;
+    face.from_x = select(swapped, of_b.from_x, of_a.from_x);
+    face.from_y = select(swapped, of_b.from_y, of_a.from_y);
+    face.to_x = select(swapped, of_b.to_x, of_a.to_x), face.to_y = select(swapped, of_b.to_y, of_a.to_y);
+    const F nx = select(swapped, of_b.normal_x, of_a.normal_x);
+    const F ny = select(swapped, of_b.normal_y, of_a.normal_y);
+    face.normal_x = select(nx * nx + ny * ny == zero, one, nx);  // two discs: any frame will do
+    face.normal_y = ny;
+    view_from<Real>(face, swapped, pair, found);
 }
 
 }  // namespace

@@ -1,0 +1,15 @@
+#pragma once
+
+namespace carom {
+
+/// Where two convex shapes touch, in the terms of ManifoldColumns (kernels/manifold_arguments.hpp): a number
+/// or a batch each.
+template <class F>
+struct Manifold {
+    F normal_x, normal_y;
+    F lever_a1, lever_a2, lever_b1, lever_b2;  // m
+    F lever_a_t, lever_b_t;                    // m
+    F separation1, separation2;                // m
+};
+
+}  // namespace carom
