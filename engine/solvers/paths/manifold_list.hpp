@@ -35,6 +35,7 @@ template <class Real>
 struct KeptManifold {
     ManifoldName name;
     ManifoldMemory<Real> memory;
+    bool is_surface = false;  ///< b is no body
 };
 
 /// Contacts of convex shapes that can come about before the candidate pairs change, as columns.

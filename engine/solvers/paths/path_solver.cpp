@@ -63,14 +63,17 @@ void PathSolver<Real>::add_pair(const WorldState<Real>& world, std::int32_t a, s
 
 template <class Real>
 void PathSolver<Real>::renew(const WorldState<Real>& world, const Candidates<Real>& candidates,
-                             const EdgeCandidates<Real>&, std::span<const SleeperPair> sleepers) {
+                             const EdgeCandidates<Real>& edges, std::span<const SleeperPair> sleepers) {
     live_.clear();
+    surface_finder_.renew(world, edges);
     if (!world.bodies.has_shapes) return bodies_.clear(), surfaces_.clear();
     std::swap(bodies_, old_), bodies_.clear();
     // Of a contact that wakes, what it had when it fell asleep.
     if (world.bodies.asleep != asleep_then_)
-        for (const KeptManifold<Real>& kept : asleep_)
-            old_.add(0, 0, kept.name), old_.memory.back() = kept.memory;
+        for (const KeptManifold<Real>& kept : asleep_) {
+            ManifoldList<Real>& list = kept.is_surface ? surfaces_ : old_;
+            list.add(0, 0, kept.name), list.memory.back() = kept.memory;
+        }
     list_boxes(world.shapes);
     // Boxes first: blocks of them alone have a quicker kernel.
     for (const bool boxes : {true, false}) {
@@ -94,7 +97,10 @@ void PathSolver<Real>::keep_of_sleepers(const WorldState<Real>& world) {
     for (std::size_t i = 0; i < old_.count(); ++i)
         if (!is_recalled_[i] && old_.memory[i].is_loaded() &&
             (sleeps(old_.names[i].a) || sleeps(old_.names[i].b)))
-            asleep_.push_back({old_.names[i], old_.memory[i]});
+            asleep_.push_back({old_.names[i], old_.memory[i], false});
+    for (std::size_t i = 0; i < surfaces_.count(); ++i)
+        if (surfaces_.memory[i].is_loaded() && sleeps(surfaces_.names[i].a))
+            asleep_.push_back({surfaces_.names[i], surfaces_.memory[i], true});
 }
 
 template <class Real>
@@ -133,8 +139,9 @@ void PathSolver<Real>::find_box_blocks(const Bodies<Real>& bodies, std::size_t f
 
 template <class Real>
 void PathSolver<Real>::add(const WorldState<Real>& world, const Candidates<Real>& candidates,
-                           const EdgeCandidates<Real>&) {
+                           const EdgeCandidates<Real>& edges) {
     if (!world.bodies.has_shapes) return;
+    surface_finder_.add(world, edges);
     const std::size_t before = bodies_.count();
     list_boxes(world.shapes);
     for (const bool boxes : {true, false})
@@ -143,10 +150,9 @@ void PathSolver<Real>::add(const WorldState<Real>& world, const Candidates<Real>
     find_box_blocks(world.bodies, before / kRowPadding);
 }
 
-/// Gives the contacts of a list what those of the same name had in the old one.
+/// Files the contacts that carry something by their body a.
 template <class Real>
-void PathSolver<Real>::recall(ManifoldList<Real>& list, const ManifoldList<Real>& old) {
-    list.fit();
+void PathSolver<Real>::file_by_slot(const ManifoldList<Real>& old) {
     std::uint32_t slots = 0;
     for (const auto& name : old.names) slots = std::max(slots, name.a.index + 1);
     first_of_slot_.assign(slots, -1);
@@ -156,6 +162,14 @@ void PathSolver<Real>::recall(ManifoldList<Real>& list, const ManifoldList<Real>
         std::int32_t& first = first_of_slot_[old.names[i].a.index];
         next_of_slot_[i] = first, first = static_cast<std::int32_t>(i);
     }
+}
+
+/// Gives the contacts of a list what those of the same name had in the old one.
+template <class Real>
+void PathSolver<Real>::recall(ManifoldList<Real>& list, const ManifoldList<Real>& old) {
+    list.fit();
+    file_by_slot(old);
+    const std::size_t slots = first_of_slot_.size();
     is_recalled_.assign(old.count(), 0);
     const auto find = [&](const ManifoldName& name) -> const ManifoldMemory<Real>* {
         if (name.a.index >= slots) return nullptr;
@@ -172,6 +186,31 @@ void PathSolver<Real>::recall(ManifoldList<Real>& list, const ManifoldList<Real>
             list.memory[i] = *memory;
         else if (const auto* other = find({name.b, name.a, name.place}))
             list.memory[i] = other->reversed();
+    }
+}
+
+/// A body may touch a chain in several places: each takes what the one before it had that faced the same way.
+template <class Real>
+void PathSolver<Real>::recall_surfaces() {
+    file_by_slot(old_surfaces_);
+    is_recalled_.assign(old_surfaces_.count(), 0);
+    for (std::size_t i = 0; i < surfaces_.count(); ++i) {
+        const ManifoldName& name = surfaces_.names[i];
+        if (name.a.index >= first_of_slot_.size()) continue;
+        std::int32_t best = -1;
+        Real most = static_cast<Real>(kSameNormal);
+        for (std::int32_t n = first_of_slot_[name.a.index]; n >= 0;
+             n = next_of_slot_[static_cast<std::size_t>(n)]) {
+            const auto k = static_cast<std::size_t>(n);
+            if (is_recalled_[k] || !(old_surfaces_.names[k] == name)) continue;
+            const ManifoldMemory<Real>& memory = old_surfaces_.memory[k];
+            const Real alike =
+                memory.normal_x * surfaces_.normal_x[i] + memory.normal_y * surfaces_.normal_y[i];
+            if (alike > most) best = n, most = alike;
+        }
+        if (best < 0) continue;
+        is_recalled_[static_cast<std::size_t>(best)] = 1;
+        surfaces_.memory[i] = old_surfaces_.memory[static_cast<std::size_t>(best)];
     }
 }
 
@@ -201,11 +240,17 @@ void PathSolver<Real>::pose_bodies(const WorldState<Real>& world) {
 }
 
 template <class Real>
-void PathSolver<Real>::find(const WorldState<Real>& world, const SubstepTerms& terms,
-                            const ContactDistance& near, BodyRecords<Real>& records,
-                            const StepLoops<Real>& loops) {
-    if (is_idle()) return;
+void PathSolver<Real>::find(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
+                            const SubstepTerms& terms, const ContactDistance& near,
+                            BodyRecords<Real>& records, const StepLoops<Real>& loops) {
+    std::swap(surfaces_, old_surfaces_);
+    if (is_idle(world)) {
+        surfaces_.clear(), live_.clear(), was_live_.clear(), counters.contacts = 0;
+        return;
+    }
     pose_bodies(world);
+    surface_finder_.find(world, edges, terms, near, surfaces_);
+    recall_surfaces();
     const Bodies<Real>& bodies = world.bodies;
     const auto reach_in_step = [&](std::size_t row) {
         if (bodies.is_immovable(row) && (bodies.flags_of(row) & kKinematic) == 0) return Real(0);
@@ -245,7 +290,7 @@ void PathSolver<Real>::find(const WorldState<Real>& world, const SubstepTerms& t
     const bool is_same = list_live();
     note_calm();
     if (!is_same || ++since_cut_ >= kStepsOfCut || is_cut_calm_ != is_calm_) cut_paths(world);
-    lay_out(world, records, loops);
+    lay_out(world, edges, records, loops);
 }
 
 /// @return whether they are those of the step before
@@ -265,7 +310,8 @@ bool PathSolver<Real>::list_live() {
         else
             surfaces_.memory[i] = {};
     counters.contacts = static_cast<std::int64_t>(live_.size());
-    return live_ == was_live_;
+    return live_ == was_live_ &&
+           std::equal(surfaces_.a.begin(), surfaces_.a.end(), old_surfaces_.a.begin(), old_surfaces_.a.end());
 }
 
 /// Judges by the last step whether paths settle.
@@ -310,8 +356,8 @@ void PathSolver<Real>::cut_paths(const WorldState<Real>& world) {
 
 /// Rows at rest for the padding of each bundle and for what nothing moves, then the links of all contacts.
 template <class Real>
-void PathSolver<Real>::lay_out(const WorldState<Real>& world, BodyRecords<Real>& records,
-                               const StepLoops<Real>& loops) {
+void PathSolver<Real>::lay_out(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
+                               BodyRecords<Real>& records, const StepLoops<Real>& loops) {
     const Bodies<Real>& bodies = world.bodies;
     counters.bundles = static_cast<std::int64_t>(cut_.bundles());
     counters.links = static_cast<std::int64_t>(cut_.links());
@@ -356,13 +402,15 @@ void PathSolver<Real>::lay_out(const WorldState<Real>& world, BodyRecords<Real>&
         heads_[lane] = cut_.places()[number].is_reversed ? row_of_far_[number] : a;
     }
     for (std::size_t n = 0; n < live_.size(); ++n) {
-        const std::int32_t partner = list_of(live_[n]).b[place_of(live_[n])];
-        if (partner < 0 || partner == row_of_far_[n]) continue;
-        const auto b = static_cast<std::size_t>(partner);
+        const Partner partner(list_of(live_[n]).b[place_of(live_[n])]);
+        if (partner.stored() == row_of_far_[n] || partner.is_wall()) continue;
+        const std::size_t b = partner.is_edge() ? edges.pose_of(world.edges[partner.edge_number()]).row
+                                                : static_cast<std::size_t>(partner.row());
         if ((bodies.flags_of(b) & kKinematic) == 0) continue;
         Real* velocity = &records.velocity[4 * static_cast<std::size_t>(row_of_far_[n])];
         velocity[0] = bodies.velocity_x[b], velocity[1] = bodies.velocity_y[b];
-        velocity[2] = bodies.angular_velocity[b] * bodies.rim(b);
+        if (bodies.has_rotation)
+            velocity[2] = bodies.angular_velocity[b] * (partner.is_edge() ? Real(1) : bodies.rim(b));
     }
     scratch_.resize(path_scratch_bytes(cut_.longest()) * std::size_t{16});
 }
@@ -380,7 +428,8 @@ void PathSolver<Real>::fill_link(const WorldState<Real>& world, const BodyRecord
     const auto row_a = static_cast<std::size_t>(list.a[i]);
     const Real rim_a = 1 / bodies.rim(row_a);
     const bool is_body = list.b[i] >= 0;
-    const Real rim_b = is_body ? 1 / bodies.rim(static_cast<std::size_t>(list.b[i])) : Real(0);
+    // The rim of what is no body is 1 m.
+    const Real rim_b = is_body ? 1 / bodies.rim(static_cast<std::size_t>(list.b[i])) : Real(1);
     Real a1 = list.lever_a1[i] * rim_a, a2 = list.lever_a2[i] * rim_a, at = list.lever_a_t[i] * rim_a;
     Real b1 = list.lever_b1[i] * rim_b, b2 = list.lever_b2[i] * rim_b, bt = list.lever_b_t[i] * rim_b;
     Real s1 = list.separation1[i], s2 = list.separation2[i];
@@ -502,9 +551,10 @@ void PathSolver<Real>::end() {
 template <class Real>
 std::size_t PathSolver<Real>::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-    return bodies_.bytes() + surfaces_.bytes() + old_.bytes() + of(first_of_slot_) + of(next_of_slot_) +
-           pose_.bytes() + pose_angle_.bytes() + of(live_) + of(was_live_) + of(row_of_far_) +
-           of(contact_links_) + cut_.bytes() + links_.bytes() + heads_.bytes() + scratch_.bytes();
+    return bodies_.bytes() + surfaces_.bytes() + old_.bytes() + old_surfaces_.bytes() +
+           surface_finder_.bytes() + of(first_of_slot_) + of(next_of_slot_) + pose_.bytes() +
+           pose_angle_.bytes() + of(live_) + of(was_live_) + of(row_of_far_) + of(contact_links_) +
+           cut_.bytes() + links_.bytes() + heads_.bytes() + scratch_.bytes();
 }
 
 template class PathSolver<float>;

@@ -11,6 +11,7 @@
 #include "sleeping/sleepers.hpp"
 #include "solvers/paths/manifold_list.hpp"
 #include "solvers/paths/path_cut.hpp"
+#include "solvers/paths/surface_finder.hpp"
 #include "solvers/substeps/body_records.hpp"
 #include "solvers/substeps/step_terms.hpp"
 #include "state/world_state.hpp"
@@ -25,12 +26,6 @@ struct PathCounters {
     std::int64_t unsettled = 0;  ///< paths whose active set did not settle, in all substeps
     std::int64_t impacts = 0;    ///< so far
     std::int64_t cuts = 0;       ///< steps that cut the contacts into paths anew, so far
-};
-
-/// Separation up to which bodies at rest are in contact [m].
-struct ContactDistance {
-    double share, fall;  // of the thickness of the thinner body; m, what gravity adds in a step
-    double operator()(double thickness) const { return share * thickness + fall; }
 };
 
 /// A contact in its place along a path.
@@ -54,7 +49,9 @@ class PathSolver {
     PathCounters counters;
 
     /// Whether no contact can come about.
-    bool is_idle() const { return bodies_.count() + surfaces_.count() == 0; }
+    bool is_idle(const WorldState<Real>& world) const {
+        return bodies_.count() == 0 && surface_finder_.is_idle(world);
+    }
 
     /// Lists what can touch, when candidate pairs have been found anew.
     void renew(const WorldState<Real>& world, const Candidates<Real>& candidates,
@@ -65,8 +62,8 @@ class PathSolver {
     /// Forgets the impulses, or rescales them to substeps of another length.
     void rescale(double factor);
     /// Finds the contacts of the step and lays them out along paths.
-    void find(const WorldState<Real>& world, const SubstepTerms& terms, const ContactDistance& near,
-              BodyRecords<Real>& records, const StepLoops<Real>& loops);
+    void find(const WorldState<Real>& world, const EdgeCandidates<Real>& edges, const SubstepTerms& terms,
+              const ContactDistance& near, BodyRecords<Real>& records, const StepLoops<Real>& loops);
     /// Gives the bodies the impulses of the step before.
     void warm_start(const SubstepTerms& terms, BodyRecords<Real>& records, const StepLoops<Real>& loops);
     /// Solves a substep.
@@ -98,9 +95,9 @@ class PathSolver {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.counters, self.bodies_, self.surfaces_, self.asleep_, self.asleep_then_, self.live_,
-                self.blocks_are_boxes_, self.cut_, self.since_cut_, self.solved_, self.is_calm_,
-                self.is_cut_calm_);
+        archive(self.counters, self.bodies_, self.surfaces_, self.surface_finder_, self.asleep_,
+                self.asleep_then_, self.live_, self.blocks_are_boxes_, self.cut_, self.since_cut_,
+                self.solved_, self.is_calm_, self.is_cut_calm_);
     }
 
   private:
@@ -114,6 +111,8 @@ class PathSolver {
     void list_boxes(const ShapeStore<Real>& shapes);
     void find_box_blocks(const Bodies<Real>& bodies, std::size_t first);
     void recall(ManifoldList<Real>& list, const ManifoldList<Real>& old);
+    void file_by_slot(const ManifoldList<Real>& old);
+    void recall_surfaces();
     void pose_bodies(const WorldState<Real>& world);
     bool list_live();
     void note_calm();
@@ -124,7 +123,8 @@ class PathSolver {
                         : links_[place.link - 1].body[place.lane];
     }
     void cut_paths(const WorldState<Real>& world);
-    void lay_out(const WorldState<Real>& world, BodyRecords<Real>& records, const StepLoops<Real>& loops);
+    void lay_out(const WorldState<Real>& world, const EdgeCandidates<Real>& edges, BodyRecords<Real>& records,
+                 const StepLoops<Real>& loops);
     void fill_link(const WorldState<Real>& world, const BodyRecords<Real>& records, std::size_t number);
 
     /// A contact by its number in live_: from 0 on those of bodies_, below 0 those of surfaces_.
@@ -138,7 +138,9 @@ class PathSolver {
     ManifoldList<Real> old_;
     /// Contacts of bodies that sleep, or slept when candidates were found last.
     std::vector<KeptManifold<Real>> asleep_;
-    std::size_t asleep_then_ = 0;            // bodies that slept then
+    std::size_t asleep_then_ = 0;  // bodies that slept then
+    SurfaceFinder<Real> surface_finder_;
+    ManifoldList<Real> old_surfaces_;
     std::vector<std::uint8_t> is_recalled_;  // by contact of old_
     std::vector<LoadedContact> loaded_;
     std::vector<std::uint8_t> is_box_of_;                     // by shape

@@ -76,7 +76,7 @@ class SoftSolver {
     void find_contacts(const WorldState<Real>& world, const EdgeCandidates<Real>& edges, Column<Real>& motion,
                        double dt);
     /// Finds the contacts of shapes and lays them out along paths.
-    void find_manifolds(const WorldState<Real>& world);
+    void find_manifolds(const WorldState<Real>& world, const EdgeCandidates<Real>& edges);
     /// Tells what bounces from what rests (impacts.hpp).
     void mark_impacts(const WorldState<Real>& world, const Candidates<Real>& neighbours);
     /// Whether bodies are gone on which others rested.
