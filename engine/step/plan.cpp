@@ -49,6 +49,8 @@ Plan describe_plan(Simulation<Real>& sim, const CalledEffects& called) {
         plan.columns.push_back({name, unit, sizeof(column[0])});
         plan.bytes_per_body += sizeof(column[0]);
     });
+    plan.shapes = sim.world.shapes.distinct();
+    if (plan.shapes > 0) plan.bytes_per_shape = sizeof(ConvexShape<Real>);
     return plan;
 }
 

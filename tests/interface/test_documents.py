@@ -85,7 +85,7 @@ class DocumentsTest(ProgramTest):
     def test_commands_of_getting_started_work(self):
         self.run_document("docs/getting-started.md")
         results = {path.name for path in (self.folder / "out").iterdir()}
-        self.assertEqual(results, {"rain", "rain.png", "rain-double", "rain-fine", "rain-naive", "rain-scalar", "seed"})
+        self.assertEqual(results, {"pyramid", "rain", "rain.png", "rain-double", "rain-fine", "rain-naive", "rain-scalar", "seed"})
         seen = self.shell("python3 look.py")
         self.assertRegex(seen, r"the ball rose to [\d.]+ m\n")
 

@@ -77,6 +77,9 @@ struct Plan {
     std::vector<StageReport> stages;
     std::vector<ColumnReport> columns;
     std::size_t bytes_per_body = 0;  ///< the columns' sum; scratch memory is in Profile::bytes
+    /// Distinct geometries that bodies share: 0 where all are discs, segments and chains.
+    std::size_t shapes = 0;
+    std::size_t bytes_per_shape = 0;
 };
 
 }  // namespace carom

@@ -129,6 +129,17 @@ TEST_CASE("discs have no columns of shapes until the first other shape comes, an
     CHECK(mixed.body_count() == 6);
 }
 
+TEST_CASE("a plan counts the shapes that bodies share, and a world of discs has none") {
+    Scene scene = flying();
+    for (int i = 0; i < 10; ++i) scene.add({.shape = Box{2, 0.5}, .position = {10.0 * i, 300}});
+    const Plan plan = World(scene).plan();
+    CHECK(plan.shapes == 4);
+    CHECK(plan.bytes_per_shape > 8 * 4 * sizeof(float));
+    scene.bodies.erase(scene.bodies.begin(), scene.bodies.begin() + 3), scene.bodies.resize(1);
+    CHECK(World(scene).plan().shapes == 0);
+    CHECK(World(scene).plan().bytes_per_shape == 0);
+}
+
 TEST_CASE("shapes come and go between steps, and the others stay what they are") {
     World world(flying());
     std::vector<BodyId> added;

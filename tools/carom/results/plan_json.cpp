@@ -16,7 +16,9 @@ Json plan_json(const Plan& plan) {
               {"effects", Json::array()},
               {"stages", Json::array()},
               {"columns", Json::array()},
-              {"bytes_per_body", plan.bytes_per_body}};
+              {"bytes_per_body", plan.bytes_per_body},
+              {"shapes", plan.shapes},
+              {"bytes_per_shape", plan.bytes_per_shape}};
     for (const EffectReport& effect : plan.effects)
         json["effects"].push_back({{"name", effect.name}, {"on", effect.on}, {"reason", effect.reason}});
     for (const StageReport& stage : plan.stages)
