@@ -151,6 +151,21 @@ TEST_SUITE("hard cases/boxes") {
                 CHECK(most <= before + 1e-3 * std::fabs(before) + 1e-4);
             }
     }
+    TEST_CASE_TEMPLATE("boxes that do not turn pile up and rest, with rotation switched off", Real, float,
+                       double) {
+        Scene scene = box_ground(0.5);
+        scene.walls = Walls{.min = {-3, -20}, .max = {3, 40}};
+        for (int i = 0; i < 60; ++i) {
+            Body box = box_at(-2.5 + 0.9 * (i % 6), 0.6 + 0.95 * (i / 6), 0.8, 0.8, 0.5);
+            box.fixed_rotation = true;
+            scene.add(box);
+        }
+        scene.effects.rotation = false;
+        BoxRun<Real> run(scene);
+        run.steps(600);
+        CHECK(run.rms_speed() < 1e-3);
+        CHECK(run.world.overlaps().max < 0.03);
+    }
     TEST_CASE_TEMPLATE("a disc between a heavy box and a post is never expelled", Real, float, double) {
         Scene scene = box_ground(0.5);
         scene.add({.type = BodyType::static_body,

@@ -11,6 +11,9 @@
 
 namespace carom {
 
+/// A contact whose normal turns by no more than this keeps its impulses: cosine of 25 degrees.
+inline constexpr double kSameNormal = 0.9;
+
 /// What lasts of a contact of convex shapes from step to step.
 template <class Real>
 struct ManifoldMemory {

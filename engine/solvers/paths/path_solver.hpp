@@ -4,14 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "broadphase/candidates.hpp"
-#include "broadphase/edge_candidates.hpp"
 #include "constraints/partner.hpp"
 #include "kernels/path_arguments.hpp"
-#include "sleeping/sleepers.hpp"
-#include "solvers/paths/manifold_list.hpp"
+#include "solvers/paths/manifolds.hpp"
 #include "solvers/paths/path_cut.hpp"
-#include "solvers/paths/surface_finder.hpp"
 #include "solvers/substeps/body_records.hpp"
 #include "solvers/substeps/step_terms.hpp"
 #include "state/world_state.hpp"
@@ -39,28 +35,15 @@ struct PathContact {
     double restitution;
 };
 
-/// The contacts of convex shapes that are no discs: what can touch, what does, and the impulses, solved
-/// exactly along paths of contacts.
+/// Solves the contacts of convex shapes that are no discs exactly, along paths of contacts.
 ///
 /// Cost: docs/decisions/0027-paths-of-contacts.md.
 template <class Real>
 class PathSolver {
   public:
     PathCounters counters;
+    Manifolds<Real> manifolds;  ///< what can touch
 
-    /// Whether no contact can come about.
-    bool is_idle(const WorldState<Real>& world) const {
-        return bodies_.count() == 0 && surface_finder_.is_idle(world);
-    }
-
-    /// Lists what can touch, when candidate pairs have been found anew.
-    void renew(const WorldState<Real>& world, const Candidates<Real>& candidates,
-               const EdgeCandidates<Real>& edges, std::span<const SleeperPair> sleepers);
-    /// Adds the pairs that have come with new margins.
-    void add(const WorldState<Real>& world, const Candidates<Real>& candidates,
-             const EdgeCandidates<Real>& edges);
-    /// Forgets the impulses, or rescales them to substeps of another length.
-    void rescale(double factor);
     /// Finds the contacts of the step and lays them out along paths.
     void find(const WorldState<Real>& world, const EdgeCandidates<Real>& edges, const SubstepTerms& terms,
               const ContactDistance& near, BodyRecords<Real>& records, const StepLoops<Real>& loops);
@@ -77,17 +60,16 @@ class PathSolver {
     /// Calls fn(contact) for each PathContact of the step.
     template <class Fn>
     void for_each(const Fn& fn) const {
-        for (std::size_t n = 0; n < live_.size(); ++n) {
-            const ManifoldList<Real>& list = live_[n] >= 0 ? bodies_ : surfaces_;
-            const std::size_t i = place_of(live_[n]);
+        const auto live = manifolds.live();
+        for (std::size_t n = 0; n < live.size(); ++n) {
+            const ManifoldList<Real>& list = manifolds.list_of(live[n]);
+            const std::size_t i = Manifolds<Real>::place_of(live[n]);
             const typename PathCut::Place place = cut_.places()[n];
             fn(PathContact<Real>{links_[place.link], place.lane, near_row(place),
                                  links_[place.link].body[place.lane], Partner(list.b[i]), place.is_reversed,
                                  static_cast<double>(list.restitution[i])});
         }
     }
-    /// The contacts that carry an impulse at the end of a step, for those who look after sleepers.
-    std::span<const LoadedContact> loaded();
     /// Keeps the impulses for the next step.
     void end();
 
@@ -95,9 +77,8 @@ class PathSolver {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.counters, self.bodies_, self.surfaces_, self.surface_finder_, self.asleep_,
-                self.asleep_then_, self.live_, self.blocks_are_boxes_, self.cut_, self.since_cut_,
-                self.solved_, self.is_calm_, self.is_cut_calm_);
+        archive(self.counters, self.manifolds, self.cut_, self.since_cut_, self.solved_, self.is_calm_,
+                self.is_cut_calm_);
     }
 
   private:
@@ -105,16 +86,6 @@ class PathSolver {
 
     SolvePaths<Real> arguments(const SubstepTerms& terms, BodyRecords<Real>& records);
     void run(Pass pass, SolvePaths<Real> arguments, const StepLoops<Real>& loops);
-    void keep_of_sleepers(const WorldState<Real>& world);
-    /// Adds a pair of which not both are discs, if both are boxes or not both, as `boxes` says.
-    void add_pair(const WorldState<Real>& world, std::int32_t a, std::int32_t b, bool boxes);
-    void list_boxes(const ShapeStore<Real>& shapes);
-    void find_box_blocks(const Bodies<Real>& bodies, std::size_t first);
-    void recall(ManifoldList<Real>& list, const ManifoldList<Real>& old);
-    void file_by_slot(const ManifoldList<Real>& old);
-    void recall_surfaces();
-    void pose_bodies(const WorldState<Real>& world);
-    bool list_live();
     void note_calm();
     /// Row of the body where a link begins.
     std::int32_t near_row(PathCut::Place place) const {
@@ -127,29 +98,7 @@ class PathSolver {
                  const StepLoops<Real>& loops);
     void fill_link(const WorldState<Real>& world, const BodyRecords<Real>& records, std::size_t number);
 
-    /// A contact by its number in live_: from 0 on those of bodies_, below 0 those of surfaces_.
-    ManifoldList<Real>& list_of(std::int32_t contact) { return contact >= 0 ? bodies_ : surfaces_; }
-    static std::size_t place_of(std::int32_t contact) {
-        return static_cast<std::size_t>(contact >= 0 ? contact : ~contact);
-    }
-
-    ManifoldList<Real> bodies_;    // contacts of two bodies
-    ManifoldList<Real> surfaces_;  // of a body and a wall or an edge
-    ManifoldList<Real> old_;
-    /// Contacts of bodies that sleep, or slept when candidates were found last.
-    std::vector<KeptManifold<Real>> asleep_;
-    std::size_t asleep_then_ = 0;  // bodies that slept then
-    SurfaceFinder<Real> surface_finder_;
-    ManifoldList<Real> old_surfaces_;
-    std::vector<std::uint8_t> is_recalled_;  // by contact of old_
-    std::vector<LoadedContact> loaded_;
-    std::vector<std::uint8_t> is_box_of_;                     // by shape
-    std::vector<std::uint8_t> blocks_are_boxes_;              // by block of kRowPadding contacts of bodies_
-    std::vector<std::int32_t> first_of_slot_, next_of_slot_;  // contacts of old_ by the slot of their a
-    Column<Real> pose_;                                       // [rows][4]: x, y [m], cosine, sine
-    Column<double> pose_angle_;                               // rad, that cosine and sine are of
-    std::vector<std::int32_t> live_, was_live_;               // contacts that can touch in this step
-    std::vector<std::int32_t> row_of_far_;                    // of each of live_: the row of b in the records
+    std::vector<std::int32_t> row_of_far_;  // of each contact: the row of b in the records
     std::vector<ContactLink> contact_links_;
     PathCut cut_;
     int since_cut_ = 0;        // steps

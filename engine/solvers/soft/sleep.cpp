@@ -62,7 +62,7 @@ void wake_sleepers(SoftSimulation<Real>& sim) {
 template <class Real>
 void put_to_sleep(SoftSimulation<Real>& sim) {
     WorldState<Real>& world = sim.world;
-    const std::span<const LoadedContact> others = sim.soft.paths.loaded();
+    const std::span<const LoadedContact> others = sim.soft.paths.manifolds.loaded();
     bool is_pressed = sim.sleepers.mark_pressed(world, sim.soft.graph, others, sim.substep_dt);
     if (!sim.lost.empty()) is_pressed = sim.sleepers.mark_all(world);  // what they lay on may be gone
     if (is_pressed) {

@@ -29,11 +29,11 @@ void update_contacts(SoftSimulation<Real>& sim) {
     if (sim.graph_of_rebuild == sim.candidates.rebuild_count()) {
         sim.edge_candidates.add_strays(sim.world, sim.candidates);
         sim.soft.graph.add(sim.candidates, sim.edge_candidates, sim.world.bodies, walls);
-        sim.soft.paths.add(sim.world, sim.candidates, sim.edge_candidates);
+        sim.soft.paths.manifolds.add(sim.world, sim.candidates, sim.edge_candidates);
     } else {
         sim.edge_candidates.find(sim.world, sim.candidates);
         sim.soft.graph.renew(sim.candidates, sim.edge_candidates, sim.world.bodies, walls, sim.executor);
-        sim.soft.paths.renew(sim.world, sim.candidates, sim.edge_candidates, sim.sleepers.pairs());
+        sim.soft.paths.manifolds.renew(sim.world, sim.candidates, sim.edge_candidates, sim.sleepers.pairs());
     }
     sim.graph_of_rebuild = sim.candidates.rebuild_count();
     sim.sleepers.restore_impulses(sim.soft.graph, sim.world, sim.soft.substep_of_impulses());

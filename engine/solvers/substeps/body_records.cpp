@@ -17,7 +17,7 @@ StartColumns<Real> BodyRecords<Real>::start_columns() {
 
 template <class Real>
 Real* BodyRecords<Real>::turn() {
-    return has_rotation_ ? turn_.data() : nullptr;
+    return turn_.empty() ? nullptr : turn_.data();
 }
 
 template <class Real>
@@ -28,7 +28,9 @@ void BodyRecords<Real>::begin(const WorldState<Real>& world, const Column<Real>&
     count_ = bodies.count, has_rotation_ = world.effects.rotation;
     const std::size_t rows = padded(count_ + padding_rows);
     velocity.resize(4 * rows), displacement.resize(2 * rows);
-    turn_.resize(has_rotation_ ? rows : 0);
+    // Contacts of shapes ask for turns even where no body can turn.
+    turn_.resize(has_rotation_ || bodies.has_shapes ? rows : 0);
+    if (!has_rotation_) std::fill(turn_.begin(), turn_.end(), Real(0));
     start_x_.resize(rows), start_y_.resize(rows), start_rim_.resize(has_rotation_ ? rows : 0);
     const auto real = [](double value) { return static_cast<Real>(value); };
     BeginSubsteps<Real> k{};
@@ -55,7 +57,7 @@ template <class Real>
 void BodyRecords<Real>::add_still_rows(std::size_t added) {
     const std::size_t all = padded(rows() + added);
     velocity.resize(4 * all), displacement.resize(2 * all);
-    if (has_rotation_) turn_.resize(all);
+    if (!turn_.empty()) turn_.resize(all);
 }
 
 template <class Real>

@@ -1,0 +1,304 @@
+#include "solvers/paths/manifolds.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "effects/friction.hpp"
+#include "effects/restitution.hpp"
+#include "math/rotation.hpp"
+#include "narrowphase/box_box.hpp"
+
+namespace carom {
+namespace {
+
+// For the executor: ns a contact on one thread, and contacts of a task.
+constexpr double kNanosecondsToFind = 10;
+constexpr std::size_t kContactsPerTask = 256;
+
+}  // namespace
+
+template <class Real>
+void Manifolds<Real>::add_pair(const WorldState<Real>& world, std::int32_t a, std::int32_t b, bool boxes) {
+    const Bodies<Real>& bodies = world.bodies;
+    if (a > b) std::swap(a, b);
+    const auto i = static_cast<std::size_t>(a), k = static_cast<std::size_t>(b);
+    if (bodies.is_disc(i) && bodies.is_disc(k)) return;
+    if (bodies.shape[i] < 0 || bodies.shape[k] < 0) return;  // edges
+    if (boxes != (is_box_of_[static_cast<std::size_t>(bodies.shape[i])] &&
+                  is_box_of_[static_cast<std::size_t>(bodies.shape[k])]))
+        return;
+    const bool a_moves = !bodies.is_immovable(i), b_moves = k < bodies.count && !bodies.is_immovable(k);
+    if (!a_moves && !b_moves) return;
+    if (!a_moves) std::swap(a, b);
+    bodies_.add(a, b, {bodies.id[static_cast<std::size_t>(a)], bodies.id[static_cast<std::size_t>(b)], 0});
+}
+
+template <class Real>
+void Manifolds<Real>::renew(const WorldState<Real>& world, const Candidates<Real>& candidates,
+                            const EdgeCandidates<Real>& edges, std::span<const SleeperPair> sleepers) {
+    live_.clear();
+    surface_finder_.renew(world, edges);
+    if (!world.bodies.has_shapes) return bodies_.clear(), surfaces_.clear();
+    std::swap(bodies_, old_), bodies_.clear();
+    // Of a contact that wakes, what it had when it fell asleep.
+    if (world.bodies.asleep != asleep_then_)
+        for (const KeptManifold<Real>& kept : asleep_) {
+            ManifoldList<Real>& list = kept.is_surface ? surfaces_ : old_;
+            list.add(0, 0, kept.name), list.memory.back() = kept.memory;
+        }
+    list_boxes(world.shapes);
+    // Boxes first: blocks of them alone have a quicker kernel.
+    for (const bool boxes : {true, false}) {
+        for (std::size_t p = 0; p < candidates.pair_count(); ++p)
+            add_pair(world, candidates.pair_a()[p], candidates.pair_b()[p], boxes);
+        for (const SleeperPair& pair : sleepers) add_pair(world, pair.row, pair.sleeper, boxes);
+    }
+    recall(bodies_, old_);
+    find_box_blocks(world.bodies, 0);
+    if (world.bodies.asleep != asleep_then_) keep_of_sleepers(world);
+    asleep_then_ = world.bodies.asleep;
+}
+
+/// Keeps what no contact has recalled, if it is of a body that sleeps.
+template <class Real>
+void Manifolds<Real>::keep_of_sleepers(const WorldState<Real>& world) {
+    asleep_.clear();
+    const auto sleeps = [&](BodyId id) {
+        return world.handles.is_alive(id) && world.handles.row_of_slot(id.index) >= world.bodies.count;
+    };
+    for (std::size_t i = 0; i < old_.count(); ++i)
+        if (!is_recalled_[i] && old_.memory[i].is_loaded() &&
+            (sleeps(old_.names[i].a) || sleeps(old_.names[i].b)))
+            asleep_.push_back({old_.names[i], old_.memory[i], false});
+    for (std::size_t i = 0; i < surfaces_.count(); ++i)
+        if (surfaces_.memory[i].is_loaded() && sleeps(surfaces_.names[i].a))
+            asleep_.push_back({surfaces_.names[i], surfaces_.memory[i], true});
+}
+
+template <class Real>
+std::span<const LoadedContact> Manifolds<Real>::loaded() {
+    loaded_.clear();
+    for (const std::int32_t contact : live_) {
+        const ManifoldList<Real>& list = list_of(contact);
+        const std::size_t i = place_of(contact);
+        if (list.memory[i].is_loaded())
+            loaded_.push_back({list.a[i], Partner(list.b[i]),
+                               static_cast<double>(list.memory[i].normal1 + list.memory[i].normal2)});
+    }
+    return loaded_;
+}
+
+template <class Real>
+void Manifolds<Real>::list_boxes(const ShapeStore<Real>& shapes) {
+    is_box_of_.resize(shapes.size());
+    for (std::size_t shape = 0; shape < shapes.size(); ++shape)
+        is_box_of_[shape] = is_box(shapes[static_cast<std::int32_t>(shape)]);
+}
+
+template <class Real>
+void Manifolds<Real>::find_box_blocks(const Bodies<Real>& bodies, std::size_t first) {
+    blocks_are_boxes_.resize(padded(bodies_.count()) / kRowPadding);
+    for (std::size_t block = first; block < blocks_are_boxes_.size(); ++block) {
+        bool all = true;
+        const std::size_t last = std::min(bodies_.count(), (block + 1) * kRowPadding);
+        for (std::size_t i = block * kRowPadding; i < last; ++i)
+            for (const std::int32_t row : {bodies_.a[i], bodies_.b[i]})
+                all =
+                    all && is_box_of_[static_cast<std::size_t>(bodies.shape[static_cast<std::size_t>(row)])];
+        blocks_are_boxes_[block] = all;
+    }
+}
+
+template <class Real>
+void Manifolds<Real>::add(const WorldState<Real>& world, const Candidates<Real>& candidates,
+                          const EdgeCandidates<Real>& edges) {
+    if (!world.bodies.has_shapes) return;
+    surface_finder_.add(world, edges);
+    const std::size_t before = bodies_.count();
+    list_boxes(world.shapes);
+    for (const bool boxes : {true, false})
+        for (const auto& pair : candidates.new_pairs()) add_pair(world, pair.a, pair.b, boxes);
+    bodies_.fit();
+    find_box_blocks(world.bodies, before / kRowPadding);
+}
+
+/// Files the contacts that carry something by their body a.
+template <class Real>
+void Manifolds<Real>::file_by_slot(const ManifoldList<Real>& old) {
+    std::uint32_t slots = 0;
+    for (const auto& name : old.names) slots = std::max(slots, name.a.index + 1);
+    first_of_slot_.assign(slots, -1);
+    next_of_slot_.resize(old.count());
+    for (std::size_t i = 0; i < old.count(); ++i) {
+        if (!old.memory[i].is_loaded()) continue;
+        std::int32_t& first = first_of_slot_[old.names[i].a.index];
+        next_of_slot_[i] = first, first = static_cast<std::int32_t>(i);
+    }
+}
+
+/// Gives the contacts of a list what those of the same name had in the old one.
+template <class Real>
+void Manifolds<Real>::recall(ManifoldList<Real>& list, const ManifoldList<Real>& old) {
+    list.fit();
+    file_by_slot(old);
+    const std::size_t slots = first_of_slot_.size();
+    is_recalled_.assign(old.count(), 0);
+    const auto find = [&](const ManifoldName& name) -> const ManifoldMemory<Real>* {
+        if (name.a.index >= slots) return nullptr;
+        for (std::int32_t n = first_of_slot_[name.a.index]; n >= 0;
+             n = next_of_slot_[static_cast<std::size_t>(n)]) {
+            const auto i = static_cast<std::size_t>(n);
+            if (old.names[i] == name) return is_recalled_[i] = 1, &old.memory[i];
+        }
+        return nullptr;
+    };
+    for (std::size_t i = 0; i < list.count(); ++i) {
+        const ManifoldName& name = list.names[i];
+        if (const auto* memory = find(name))
+            list.memory[i] = *memory;
+        else if (const auto* other = find({name.b, name.a, name.place}))
+            list.memory[i] = other->reversed();
+    }
+}
+
+/// A body may touch a chain in several places: each takes what the one before it had that faced the same way.
+template <class Real>
+void Manifolds<Real>::recall_surfaces() {
+    file_by_slot(old_surfaces_);
+    is_recalled_.assign(old_surfaces_.count(), 0);
+    for (std::size_t i = 0; i < surfaces_.count(); ++i) {
+        const ManifoldName& name = surfaces_.names[i];
+        if (name.a.index >= first_of_slot_.size()) continue;
+        std::int32_t best = -1;
+        Real most = static_cast<Real>(kSameNormal);
+        for (std::int32_t n = first_of_slot_[name.a.index]; n >= 0;
+             n = next_of_slot_[static_cast<std::size_t>(n)]) {
+            const auto k = static_cast<std::size_t>(n);
+            if (is_recalled_[k] || !(old_surfaces_.names[k] == name)) continue;
+            const ManifoldMemory<Real>& memory = old_surfaces_.memory[k];
+            const Real alike =
+                memory.normal_x * surfaces_.normal_x[i] + memory.normal_y * surfaces_.normal_y[i];
+            if (alike > most) best = n, most = alike;
+        }
+        if (best < 0) continue;
+        is_recalled_[static_cast<std::size_t>(best)] = 1;
+        surfaces_.memory[i] = old_surfaces_.memory[static_cast<std::size_t>(best)];
+    }
+}
+
+template <class Real>
+void Manifolds<Real>::rescale(double factor) {
+    if (factor == 1) return;
+    const auto kept = static_cast<Real>(factor);
+    for (ManifoldList<Real>* list : {&bodies_, &surfaces_})
+        for (ManifoldMemory<Real>& memory : list->memory) memory.rescale(kept);
+    for (KeptManifold<Real>& kept_manifold : asleep_) kept_manifold.memory.rescale(kept);
+}
+
+template <class Real>
+void Manifolds<Real>::pose_bodies(const WorldState<Real>& world) {
+    const Bodies<Real>& bodies = world.bodies;
+    const std::size_t rows = bodies.rows();
+    pose_.resize(4 * rows), pose_angle_.resize(rows);
+    for (std::size_t row = 0; row < rows; ++row) {
+        Real* pose = &pose_[4 * row];
+        pose[0] = bodies.position_x[row], pose[1] = bodies.position_y[row];
+        const double angle = bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0;
+        if (angle == pose_angle_[row] && (pose[2] != 0 || pose[3] != 0)) continue;
+        const Rotation turn = rotation_by(angle);
+        pose[2] = static_cast<Real>(turn.cos), pose[3] = static_cast<Real>(turn.sin);
+        pose_angle_[row] = angle;
+    }
+}
+
+template <class Real>
+bool Manifolds<Real>::find(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
+                           const SubstepTerms& terms, const ContactDistance& near,
+                           const StepLoops<Real>& loops) {
+    std::swap(surfaces_, old_surfaces_);
+    if (is_idle(world)) {
+        surfaces_.clear(), live_.clear(), was_live_.clear();
+        return true;
+    }
+    pose_bodies(world);
+    surface_finder_.find(world, edges, terms, near, surfaces_);
+    recall_surfaces();
+    const Bodies<Real>& bodies = world.bodies;
+    const auto reach_in_step = [&](std::size_t row) {
+        if (bodies.is_immovable(row) && (bodies.flags_of(row) & kKinematic) == 0) return Real(0);
+        const Real turns = bodies.has_rotation ? std::fabs(bodies.angular_velocity[row]) : Real(0);
+        return std::fabs(bodies.velocity_x[row]) + std::fabs(bodies.velocity_y[row]) +
+               turns * bodies.radius[row];
+    };
+    const auto real_dt = static_cast<Real>(terms.dt);
+    const bool friction_varies = !bodies.friction.is_uniform();
+    const Property<Real>& inradius = bodies.inradius();
+    loops.executor->for_each_chunk(
+        bodies_.count(), kContactsPerTask, kNanosecondsToFind,
+        [&](std::size_t, std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) {
+                const auto a = static_cast<std::size_t>(bodies_.a[i]),
+                           b = static_cast<std::size_t>(bodies_.b[i]);
+                const bool b_moves = b < bodies.count && !bodies.is_immovable(b);
+                // What nothing moves may be huge: how thick it is says nothing of the contact.
+                bodies_.thickness[i] = b_moves ? std::min(inradius[a], inradius[b]) : inradius[a];
+                bodies_.margin[i] = static_cast<Real>(near(static_cast<double>(bodies_.thickness[i]))) +
+                                    real_dt * (reach_in_step(a) + reach_in_step(b));
+                bodies_.restitution[i] =
+                    static_cast<Real>(pair_restitution(bodies.restitution[a], bodies.restitution[b]));
+                bodies_.friction[i] =
+                    friction_varies ? static_cast<Real>(pair_friction(bodies.friction[a], bodies.friction[b]))
+                                    : bodies.friction[a];
+            }
+            const FindManifolds<Real> k{pose_.data(),     bodies.shape.data(), world.shapes.data(),
+                                        bodies_.a.data(), bodies_.b.data(),    bodies_.margin.data(),
+                                        bodies_.columns()};
+            for (std::size_t i = first; i < last; i += kRowPadding) {
+                const auto kernel = blocks_are_boxes_[i / kRowPadding]
+                                        ? loops.kernels->convex->find_box_manifolds
+                                        : loops.kernels->convex->find_manifolds;
+                kernel(k, i, i + kRowPadding);
+            }
+        });
+    return list_live();
+}
+
+/// @return whether they are those of the step before
+template <class Real>
+bool Manifolds<Real>::list_live() {
+    std::swap(live_, was_live_);
+    live_.clear();
+    const auto none = static_cast<Real>(kNoPoint);
+    for (std::size_t i = 0; i < bodies_.count(); ++i)
+        if (bodies_.separation1[i] < none)
+            live_.push_back(static_cast<std::int32_t>(i));
+        else
+            bodies_.memory[i] = {};
+    for (std::size_t i = 0; i < surfaces_.count(); ++i)
+        if (surfaces_.separation1[i] < none)
+            live_.push_back(~static_cast<std::int32_t>(i));
+        else
+            surfaces_.memory[i] = {};
+    return live_ == was_live_ &&
+           std::equal(surfaces_.a.begin(), surfaces_.a.end(), old_surfaces_.a.begin(), old_surfaces_.a.end());
+}
+
+template <class Real>
+void Manifolds<Real>::keep(std::int32_t contact, Real normal1, Real normal2, Real tangent) {
+    ManifoldMemory<Real>& memory = list_of(contact).memory[place_of(contact)];
+    memory.normal1 = normal1, memory.normal2 = normal2, memory.tangent = tangent;
+}
+
+template <class Real>
+std::size_t Manifolds<Real>::bytes() const {
+    const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
+    return bodies_.bytes() + surfaces_.bytes() + old_.bytes() + old_surfaces_.bytes() +
+           surface_finder_.bytes() + of(asleep_) + of(is_recalled_) + of(loaded_) + of(is_box_of_) +
+           of(blocks_are_boxes_) + of(first_of_slot_) + of(next_of_slot_) + pose_.bytes() +
+           pose_angle_.bytes() + of(live_) + of(was_live_);
+}
+
+template class Manifolds<float>;
+template class Manifolds<double>;
+
+}  // namespace carom

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "broadphase/candidates.hpp"
+#include "broadphase/edge_candidates.hpp"
+#include "sleeping/sleepers.hpp"
+#include "solvers/paths/contact_distance.hpp"
+#include "solvers/paths/manifold_list.hpp"
+#include "solvers/paths/surface_finder.hpp"
+#include "solvers/substeps/step_terms.hpp"
+#include "state/world_state.hpp"
+
+namespace carom {
+
+/// The contacts of convex shapes that are no discs: which can come about, which do in a step, and the
+/// impulses that they keep from step to step. A contact is known by the handles of its bodies, so that rows
+/// may change.
+///
+/// Cost: about 30 ns a pair when candidate pairs are found anew; 10 ns a pair and step.
+template <class Real>
+class Manifolds {
+  public:
+    /// Lists what can touch, when candidate pairs have been found anew.
+    void renew(const WorldState<Real>& world, const Candidates<Real>& candidates,
+               const EdgeCandidates<Real>& edges, std::span<const SleeperPair> sleepers);
+    /// Adds the pairs that have come with new margins.
+    void add(const WorldState<Real>& world, const Candidates<Real>& candidates,
+             const EdgeCandidates<Real>& edges);
+    /// Forgets the impulses, or rescales them to substeps of another length.
+    void rescale(double factor);
+    /// Finds the contacts of the step.
+    /// @return whether they are those of the step before
+    bool find(const WorldState<Real>& world, const EdgeCandidates<Real>& edges, const SubstepTerms& terms,
+              const ContactDistance& near, const StepLoops<Real>& loops);
+
+    /// The contacts that can touch in this step. From 0 on they are of two bodies, below 0 of a body and a
+    /// wall or an edge.
+    std::span<const std::int32_t> live() const { return live_; }
+    ManifoldList<Real>& list_of(std::int32_t contact) { return contact >= 0 ? bodies_ : surfaces_; }
+    const ManifoldList<Real>& list_of(std::int32_t contact) const {
+        return contact >= 0 ? bodies_ : surfaces_;
+    }
+    static std::size_t place_of(std::int32_t contact) {
+        return static_cast<std::size_t>(contact >= 0 ? contact : ~contact);
+    }
+    /// Keeps the impulses of a contact [N s] for the next step.
+    void keep(std::int32_t contact, Real normal1, Real normal2, Real tangent);
+    /// The contacts that carry an impulse at the end of a step, for those who look after sleepers.
+    std::span<const LoadedContact> loaded();
+
+    std::size_t bytes() const;
+
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.bodies_, self.surfaces_, self.surface_finder_, self.asleep_, self.asleep_then_,
+                self.live_, self.blocks_are_boxes_);
+    }
+
+  private:
+    bool is_idle(const WorldState<Real>& world) const {
+        return bodies_.count() == 0 && surface_finder_.is_idle(world);
+    }
+    void keep_of_sleepers(const WorldState<Real>& world);
+    /// Adds a pair of which not both are discs, if both are boxes or not both, as `boxes` says.
+    void add_pair(const WorldState<Real>& world, std::int32_t a, std::int32_t b, bool boxes);
+    void list_boxes(const ShapeStore<Real>& shapes);
+    void find_box_blocks(const Bodies<Real>& bodies, std::size_t first);
+    void file_by_slot(const ManifoldList<Real>& old);
+    void recall(ManifoldList<Real>& list, const ManifoldList<Real>& old);
+    void recall_surfaces();
+    void pose_bodies(const WorldState<Real>& world);
+    bool list_live();
+
+    ManifoldList<Real> bodies_;    // contacts of two bodies
+    ManifoldList<Real> surfaces_;  // of a body and a wall or an edge, of the last step
+    ManifoldList<Real> old_, old_surfaces_;
+    SurfaceFinder<Real> surface_finder_;
+    /// Contacts of bodies that slept when candidates were found last.
+    std::vector<KeptManifold<Real>> asleep_;
+    std::size_t asleep_then_ = 0;  // bodies that slept then
+    std::vector<std::int32_t> live_, was_live_;
+    std::vector<LoadedContact> loaded_;
+    std::vector<std::uint8_t> is_box_of_;         // by shape
+    std::vector<std::uint8_t> blocks_are_boxes_;  // by block of kRowPadding contacts of bodies_
+    Column<Real> pose_;                           // [rows][4]: x, y [m], cosine, sine
+    Column<double> pose_angle_;                   // rad, that cosine and sine are of
+    // Old contacts by the slot of their body a: the first of each slot, the one that follows each.
+    std::vector<std::int32_t> first_of_slot_, next_of_slot_;
+    std::vector<std::uint8_t> is_recalled_;  // by old contact
+};
+
+extern template class Manifolds<float>;
+extern template class Manifolds<double>;
+
+}  // namespace carom
