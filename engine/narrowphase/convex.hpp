@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "kernels/manifold_arguments.hpp"
 #include "narrowphase/manifold.hpp"
 #include "simd/scalar_lanes.hpp"
@@ -18,6 +20,9 @@ namespace {
 /// Share of the smaller inradius below which lengths of a manifold count as none: vertices so close to each
 /// other have no direction, points so close are one point.
 inline constexpr double kNoLength = 1e-4;
+
+/// Vertices closer than so many round-offs of the distance of the centres have no direction either.
+inline constexpr double kNoDirection = 256;
 
 /// Share of the smaller inradius by which the face of b has to be farther from a than that of a from b to be
 /// the reference of two faces that are parallel; so which of two stacked boxes has the reference does not
@@ -78,7 +83,9 @@ template <bool kRounded, class Real, class F>
     const F apart_along = view.low_along + share * length - corner;
     const F apart_above = view.low_above + share * rise;
     const F distance = sqrt(apart_along * apart_along + apart_above * apart_above);
-    const auto has_direction = is_corner & (distance > tolerance);
+    const F round_off = F(static_cast<Real>(kNoDirection) * std::numeric_limits<Real>::epsilon()) *
+                        (abs(view.centre_along) + abs(view.centre_above));
+    const auto has_direction = is_corner & (distance > max(tolerance, round_off));
     const F inverse = one / select(has_direction, distance, one);
     const F normal_along = select(has_direction, apart_along * inverse, zero);
     const F normal_above = select(has_direction, apart_above * inverse, one);

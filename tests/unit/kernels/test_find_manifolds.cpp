@@ -14,13 +14,13 @@ namespace {
 using enum ShapeKind;
 
 struct PairClass {
-    const char* name;
+    std::string name;
     ShapeKind a, b;
     double ratio;  // greatest, of sizes
     bool by_box_kernel = false;
 };
 
-constexpr PairClass kClasses[] = {
+const PairClass kClasses[] = {
     {"disc and disc", disc, disc, 4},
     {"disc and capsule", disc, capsule, 3},
     {"disc and polygon", disc, polygon, 3},
