@@ -110,7 +110,7 @@ TEST_SUITE("kernels/find manifolds") {
             CHECK(bad_gap == 0);
             CHECK(bad_distance == 0);
             // Of faces that are nearly parallel the one of a has the reference; vertices that meet have none.
-            CHECK(inexact < pairs.count() / 30);
+            CHECK(inexact < pairs.count() / 20);
             CHECK(bad_place == 0);
             CHECK(bad_between == 0);
         }
