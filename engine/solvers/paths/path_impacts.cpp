@@ -7,7 +7,7 @@ namespace carom {
 namespace {
 
 /// Rounds over all contacts in a substep: what a blow sets in motion may hit the next body in the same one.
-constexpr int kRounds = 4;
+constexpr int kRounds = 8;
 /// Slower than so many times what gravity adds in a substep is no impact but a contact.
 constexpr double kRestFalls = 2;
 
@@ -53,8 +53,8 @@ bool carry_out(const PathContact<Real>& contact, double rest_speed, double h, Bo
     const auto turn_of = [&](std::int32_t row) {
         return static_cast<double>(records.turn()[static_cast<std::size_t>(row)]);
     };
-    std::array<double, 2> v{}, wanted{};
-    bool meets = false;
+    std::array<double, 2> v{};
+    std::array<bool, 2> meets{};  // what is not met yet has an impact of its own, later
     for (std::size_t k = 0; k < 2; ++k) {
         v[k] = relative(a.start, a.start_rim, b.start, b.start_rim, k);
         if (k == 1 && !has_two) break;
@@ -62,36 +62,33 @@ bool carry_out(const PathContact<Real>& contact, double rest_speed, double h, Bo
                            relative(place_of_row(contact.near), turn_of(contact.near),
                                     place_of_row(contact.far), turn_of(contact.far), k);
         const double soon = relative(a.foreseen, a.foreseen_rim, b.foreseen, b.foreseen_rim, k);
-        const bool reaches = v[k] < -rest_speed && gap + h * soon < 0;
-        meets = meets || reaches;
-        // What is reached bounces; what is not must not be passed.
-        wanted[k] = reaches ? -e * v[k] : -std::fmax(gap, 0) / h;
+        meets[k] = v[k] < -rest_speed && gap + h * soon < 0;
     }
-    if (!meets) return false;
+    if (!meets[0] && !meets[1]) return false;
     const double w = a.w + b.w;
     const auto mass = [&](std::size_t i, std::size_t k) {
         return (i < 2) == (k < 2) ? w + a.w2 * lever_a[i] * lever_a[k] + b.w2 * lever_b[i] * lever_b[k]
                                   : a.w2 * lever_a[i] * lever_a[k] + b.w2 * lever_b[i] * lever_b[k];
     };
     const double k11 = mass(0, 0), k12 = mass(0, 1), k22 = mass(1, 1);
-    const auto solve = [&](const std::array<double, 2>& target) -> std::array<double, 2> {
-        const double b1 = v[0] - target[0], b2 = v[1] - target[1];
-        if (!has_two) return {std::fmax(0, -b1 / k11), 0};
+    // Newton's law of what is met: each point leaves at e times the speed it came with, or faster.
+    const double b1 = (1 + e) * v[0], b2 = (1 + e) * v[1];
+    std::array<double, 2> x{};
+    if (!meets[1]) {
+        x = {-b1 / k11, 0};
+    } else if (!meets[0]) {
+        x = {0, -b2 / k22};
+    } else {
         const double n1 = k12 * b2 - k22 * b1, n2 = k12 * b1 - k11 * b2, determinant = k11 * k22 - k12 * k12;
-        if (n1 >= 0 && n2 >= 0 && determinant > 0) return {n1 / determinant, n2 / determinant};
-        if (b1 < 0 && n2 <= 0) return {-b1 / k11, 0};
-        if (b2 < 0 && n1 <= 0) return {0, -b2 / k22};
-        return {0, 0};
-    };
-    // Energy that impulses add: x . (v + v') / 2, v' = v + K x.
-    const auto gain = [&](const std::array<double, 2>& x) {
-        return x[0] * (v[0] + 0.5 * (k11 * x[0] + k12 * x[1])) +
-               x[1] * (v[1] + 0.5 * (k12 * x[0] + k22 * x[1]));
-    };
-    std::array<double, 2> x = solve(wanted);
-    if (gain(x) > 0) x = solve({0, 0});  // two points, one of which parts: Newton's law would add energy
+        if (n1 >= 0 && n2 >= 0 && determinant > 0)
+            x = {n1 / determinant, n2 / determinant};
+        else
+            x = n2 <= 0 ? std::array<double, 2>{-b1 / k11, 0} : std::array<double, 2>{0, -b2 / k22};
+    }
+    // Work: x . (v + v') / 2, v' = v + K x.
+    const double work =
+        x[0] * (v[0] + 0.5 * (k11 * x[0] + k12 * x[1])) + x[1] * (v[1] + 0.5 * (k12 * x[0] + k22 * x[1]));
     const double sum = x[0] + x[1];
-    if (!(sum > 0)) return false;
     const double vt = relative(a.start, a.start_rim, b.start, b.start_rim, 2) + mass(0, 2) * x[0] +
                       mass(1, 2) * x[1],
                  ktt = mass(2, 2), limit = static_cast<double>(link.friction[lane]) * sum;
@@ -106,7 +103,7 @@ bool carry_out(const PathContact<Real>& contact, double rest_speed, double h, Bo
     give(a, -1, lever_a), give(b, 1, lever_b);
     if (contact.partner.is_wall()) books.wall_impulse += sum;
     if (!books.is_open) return true;
-    books.restitution += gain(x), books.friction += y * (vt + 0.5 * ktt * y);
+    books.restitution += work, books.friction += y * (vt + 0.5 * ktt * y);
     const bool is_far_moved = b.w > 0, is_near_moved = a.w > 0;
     if (is_far_moved && is_near_moved) return true;
     // What nothing moves: the energy that its own motion gives the other body comes from outside.
