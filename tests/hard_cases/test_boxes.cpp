@@ -165,6 +165,31 @@ TEST_SUITE("hard cases/boxes") {
         CHECK(run.rms_speed() < 1e-3);
         CHECK(run.world.overlaps().max < 0.03);
     }
+    TEST_CASE_TEMPLATE("a rod of 2 m and 2 cm that turns at 100 rad/s misses no peg, round or flat", Real,
+                       float, double) {
+        int missed = 0;
+        for (int shot = 0; shot < scaled(2000, 200); ++shot) {
+            const auto draw = [&](int number, double low, double high) {
+                return low +
+                       0.5 * (high - low) * (1 + jitter_of(static_cast<std::uint64_t>(8 * shot + number)));
+            };
+            const double distance = draw(0, 0.1, 0.95), place = draw(1, -3, 3);
+            Scene scene;
+            Body peg{.type = BodyType::static_body,
+                     .position = {distance * std::cos(place), distance * std::sin(place)}};
+            if (shot % 2 == 0)
+                peg.shape = Disc{0.03};
+            else
+                peg.shape = Segment{{0, -0.03}, {0, 0.03}};
+            scene.add(peg);
+            // It turns by 1.67 rad in the step, and the peg is up to 1.4 rad away.
+            scene.add({.shape = Box{2, 0.02}, .angle = place + draw(2, 0.2, 1.4), .angular_velocity = -100});
+            BoxRun<Real> run(scene);
+            run.steps(1);
+            missed += std::fabs(run.spin(1) + 100) < 1;
+        }
+        CHECK(missed == 0);
+    }
     TEST_CASE_TEMPLATE("a disc between a heavy box and a post is never expelled", Real, float, double) {
         Scene scene = box_ground(0.5);
         scene.add({.type = BodyType::static_body,

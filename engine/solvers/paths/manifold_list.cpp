@@ -39,6 +39,16 @@ ManifoldColumns<Real> ManifoldList<Real>::columns() {
 }
 
 template <class Real>
+void ManifoldList<Real>::set_manifold(std::size_t i, const Manifold<double>& found) {
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    normal_x[i] = real(found.normal_x), normal_y[i] = real(found.normal_y);
+    lever_a1[i] = real(found.lever_a1), lever_a2[i] = real(found.lever_a2);
+    lever_b1[i] = real(found.lever_b1), lever_b2[i] = real(found.lever_b2);
+    lever_a_t[i] = real(found.lever_a_t), lever_b_t[i] = real(found.lever_b_t);
+    separation1[i] = real(found.separation1), separation2[i] = real(found.separation2);
+}
+
+template <class Real>
 std::size_t ManifoldList<Real>::bytes() const {
     std::size_t bytes = a.bytes() + b.bytes() + margin.bytes() + thickness.bytes() + friction.bytes() +
                         restitution.bytes() + names.capacity() * sizeof(ManifoldName) +

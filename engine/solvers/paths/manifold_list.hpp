@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kernels/manifold_arguments.hpp"
+#include "narrowphase/manifold.hpp"
 #include "state/column.hpp"
 
 namespace carom {
@@ -64,6 +65,8 @@ struct ManifoldList {
     void fit();
 
     ManifoldColumns<Real> columns();
+    /// Writes what was found of a contact in double precision.
+    void set_manifold(std::size_t i, const Manifold<double>& found);
 
     std::size_t bytes() const;
 

@@ -7,6 +7,7 @@
 #include "effects/restitution.hpp"
 #include "math/rotation.hpp"
 #include "narrowphase/box_box.hpp"
+#include "solvers/paths/meeting.hpp"
 
 namespace carom {
 namespace {
@@ -223,44 +224,78 @@ bool Manifolds<Real>::find(const WorldState<Real>& world, const EdgeCandidates<R
     pose_bodies(world);
     surface_finder_.find(world, edges, terms, near, surfaces_);
     recall_surfaces();
+    loops.executor->for_each_chunk(bodies_.count(), kContactsPerTask, kNanosecondsToFind,
+                                   [&](std::size_t, std::size_t first, std::size_t last) {
+                                       describe_pairs(world, terms.dt, near, first, last);
+                                       find_pairs(world, *loops.kernels->convex, first, last);
+                                       find_meetings(world, terms.dt, first, last);
+                                   });
+    return list_live();
+}
+
+/// Coefficients, and how near is near enough: what both fly in the step, wherever to, and some more.
+template <class Real>
+void Manifolds<Real>::describe_pairs(const WorldState<Real>& world, double dt, const ContactDistance& near,
+                                     std::size_t first, std::size_t last) {
     const Bodies<Real>& bodies = world.bodies;
-    const auto reach_in_step = [&](std::size_t row) {
+    const auto way_in_step = [&](std::size_t row) {
         if (bodies.is_immovable(row) && (bodies.flags_of(row) & kKinematic) == 0) return Real(0);
         const Real turns = bodies.has_rotation ? std::fabs(bodies.angular_velocity[row]) : Real(0);
-        return std::fabs(bodies.velocity_x[row]) + std::fabs(bodies.velocity_y[row]) +
-               turns * bodies.radius[row];
+        return static_cast<Real>(dt) * (std::fabs(bodies.velocity_x[row]) +
+                                        std::fabs(bodies.velocity_y[row]) + turns * bodies.radius[row]);
     };
-    const auto real_dt = static_cast<Real>(terms.dt);
     const bool friction_varies = !bodies.friction.is_uniform();
     const Property<Real>& inradius = bodies.inradius();
-    loops.executor->for_each_chunk(
-        bodies_.count(), kContactsPerTask, kNanosecondsToFind,
-        [&](std::size_t, std::size_t first, std::size_t last) {
-            for (std::size_t i = first; i < last; ++i) {
-                const auto a = static_cast<std::size_t>(bodies_.a[i]),
-                           b = static_cast<std::size_t>(bodies_.b[i]);
-                const bool b_moves = b < bodies.count && !bodies.is_immovable(b);
-                // What nothing moves may be huge: how thick it is says nothing of the contact.
-                bodies_.thickness[i] = b_moves ? std::min(inradius[a], inradius[b]) : inradius[a];
-                bodies_.margin[i] = static_cast<Real>(near(static_cast<double>(bodies_.thickness[i]))) +
-                                    real_dt * (reach_in_step(a) + reach_in_step(b));
-                bodies_.restitution[i] =
-                    static_cast<Real>(pair_restitution(bodies.restitution[a], bodies.restitution[b]));
-                bodies_.friction[i] =
-                    friction_varies ? static_cast<Real>(pair_friction(bodies.friction[a], bodies.friction[b]))
-                                    : bodies.friction[a];
-            }
-            const FindManifolds<Real> k{pose_.data(),     bodies.shape.data(), world.shapes.data(),
-                                        bodies_.a.data(), bodies_.b.data(),    bodies_.margin.data(),
-                                        bodies_.columns()};
-            for (std::size_t i = first; i < last; i += kRowPadding) {
-                const auto kernel = blocks_are_boxes_[i / kRowPadding]
-                                        ? loops.kernels->convex->find_box_manifolds
-                                        : loops.kernels->convex->find_manifolds;
-                kernel(k, i, i + kRowPadding);
-            }
-        });
-    return list_live();
+    for (std::size_t i = first; i < last; ++i) {
+        const auto a = static_cast<std::size_t>(bodies_.a[i]), b = static_cast<std::size_t>(bodies_.b[i]);
+        const bool b_moves = b < bodies.count && !bodies.is_immovable(b);
+        // What nothing moves may be huge: how thick it is says nothing of the contact.
+        bodies_.thickness[i] = b_moves ? std::min(inradius[a], inradius[b]) : inradius[a];
+        bodies_.margin[i] = static_cast<Real>(near(static_cast<double>(bodies_.thickness[i]))) +
+                            way_in_step(a) + way_in_step(b);
+        bodies_.restitution[i] =
+            static_cast<Real>(pair_restitution(bodies.restitution[a], bodies.restitution[b]));
+        bodies_.friction[i] = friction_varies
+                                  ? static_cast<Real>(pair_friction(bodies.friction[a], bodies.friction[b]))
+                                  : bodies.friction[a];
+    }
+}
+
+/// @param first  a multiple of kRowPadding
+template <class Real>
+void Manifolds<Real>::find_pairs(const WorldState<Real>& world, const ConvexKernels<Real>& kernels,
+                                 std::size_t first, std::size_t last) {
+    const FindManifolds<Real> k{pose_.data(),     world.bodies.shape.data(), world.shapes.data(),
+                                bodies_.a.data(), bodies_.b.data(),          bodies_.margin.data(),
+                                bodies_.columns()};
+    for (std::size_t i = first; i < last; i += kRowPadding) {
+        const bool are_boxes = blocks_are_boxes_[i / kRowPadding] != 0;
+        (are_boxes ? kernels.find_box_manifolds : kernels.find_manifolds)(k, i, i + kRowPadding);
+    }
+}
+
+/// The contacts of bodies that in this step come farther than they are thick.
+template <class Real>
+void Manifolds<Real>::find_meetings(const WorldState<Real>& world, double dt, std::size_t first,
+                                    std::size_t last) {
+    const Bodies<Real>& bodies = world.bodies;
+    const auto turns = [&](std::size_t row) {
+        return bodies.has_rotation ? static_cast<double>(bodies.angular_velocity[row]) : 0;
+    };
+    for (std::size_t i = first; i < last; ++i) {
+        const Real gap = std::min(bodies_.separation1[i], bodies_.separation2[i]);
+        if (!(gap > 0) || !(gap < static_cast<Real>(kNoPoint))) continue;
+        const auto a = static_cast<std::size_t>(bodies_.a[i]), b = static_cast<std::size_t>(bodies_.b[i]);
+        const Vec2 dv{static_cast<double>(bodies.velocity_x[b]) - static_cast<double>(bodies.velocity_x[a]),
+                      static_cast<double>(bodies.velocity_y[b]) - static_cast<double>(bodies.velocity_y[a])};
+        const double way = dt * (std::sqrt(length_squared(dv)) + std::fabs(turns(a)) * bodies.radius[a] +
+                                 std::fabs(turns(b)) * bodies.radius[b]);
+        const double thickness = bodies_.thickness[i];
+        if (!(way > kFastThicknesses * thickness) || !(way > static_cast<double>(gap))) continue;
+        Manifold<double> met{};
+        if (meeting_manifold(moving_row(world, a), moving_row(world, b), dt, thickness, met))
+            bodies_.set_manifold(i, met);
+    }
 }
 
 /// @return whether they are those of the step before

@@ -72,6 +72,11 @@ class Manifolds {
     void recall(ManifoldList<Real>& list, const ManifoldList<Real>& old);
     void recall_surfaces();
     void pose_bodies(const WorldState<Real>& world);
+    void describe_pairs(const WorldState<Real>& world, double dt, const ContactDistance& near,
+                        std::size_t first, std::size_t last);
+    void find_pairs(const WorldState<Real>& world, const ConvexKernels<Real>& kernels, std::size_t first,
+                    std::size_t last);
+    void find_meetings(const WorldState<Real>& world, double dt, std::size_t first, std::size_t last);
     bool list_live();
 
     ManifoldList<Real> bodies_;    // contacts of two bodies

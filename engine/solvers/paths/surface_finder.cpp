@@ -9,6 +9,7 @@
 #include "kernels/manifold_arguments.hpp"
 #include "math/rotation.hpp"
 #include "shapes/walls.hpp"
+#include "solvers/paths/meeting.hpp"
 
 namespace carom {
 namespace {
@@ -26,6 +27,21 @@ PlacedConvex placed_row(const WorldState<Real>& world, std::size_t row) {
     const Bodies<Real>& bodies = world.bodies;
     return placed(world.shapes[bodies.shape[row]], {bodies.position_x[row], bodies.position_y[row]},
                   rotation_by(bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0));
+}
+
+/// An edge as a shape that does not move, in the frame of its body.
+MovingConvex still_edge(const Edge& edge) {
+    const Vec2 centre = 0.5 * (edge.a + edge.b), half = 0.5 * (edge.b - edge.a);
+    const double length = std::sqrt(length_squared(half));
+    const Vec2 normal{half.y / length, -half.x / length};  // right of the way from a to b
+    ConvexShape<double> shape{};
+    for (int i = 0; i < kMostVertices; ++i) {
+        const double end = i == 0 ? -1 : 1;
+        shape.x[i] = end * half.x, shape.y[i] = end * half.y;
+        shape.normal_x[i] = -end * normal.x, shape.normal_y[i] = -end * normal.y;
+    }
+    shape.extent = length, shape.count = 2;
+    return {shape, centre, {}, 0, 0};
 }
 
 /// A manifold of a frame that is turned, and whose origin is the body b's.
@@ -71,13 +87,8 @@ void SurfaceFinder<Real>::find(const WorldState<Real>& world, const EdgeCandidat
     const Bodies<Real>& bodies = world.bodies;
     const auto real = [](double value) { return static_cast<Real>(value); };
     for (std::size_t i = 0; i < list.count(); ++i) {
-        const Manifold<double>& m = manifolds_[i];
+        list.set_manifold(i, manifolds_[i]);
         const auto row = static_cast<std::size_t>(list.a[i]);
-        list.normal_x[i] = real(m.normal_x), list.normal_y[i] = real(m.normal_y);
-        list.lever_a1[i] = real(m.lever_a1), list.lever_a2[i] = real(m.lever_a2);
-        list.lever_b1[i] = real(m.lever_b1), list.lever_b2[i] = real(m.lever_b2);
-        list.lever_a_t[i] = real(m.lever_a_t), list.lever_b_t[i] = real(m.lever_b_t);
-        list.separation1[i] = real(m.separation1), list.separation2[i] = real(m.separation2);
         list.thickness[i] = bodies.inradius(row);
         const Partner support(list.b[i]);
         double friction = 0, restitution = 0;
@@ -137,17 +148,57 @@ void SurfaceFinder<Real>::find_edges(const WorldState<Real>& world, const EdgeCa
             std::sqrt(length_squared(pose.end_position - pose.position)) +
             std::fabs(pose.end_angle - pose.angle) * world.edges.body_of(near_edges_[0]).reach;
         PlacedConvex body = placed_row(world, row);
+        const Vec2 centre = body.centre;
+        const double angle_in_chain =
+            (bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0) - pose.angle;
         body.centre = rotate_back(pose.turn, body.centre - pose.position);
         body.turn = {body.turn.cos * pose.turn.cos + body.turn.sin * pose.turn.sin,
                      body.turn.sin * pose.turn.cos - body.turn.cos * pose.turn.sin};
         found_.clear();
-        find_chain_manifolds(body, world.edges.edges, near_edges_, margin, found_);
-        for (const ChainManifold& found : found_) {
+        MovingConvex moving = moving_row(world, row);  // in the frame of the chain
+        moving.centre = body.centre;
+        moving.velocity =
+            (1 / terms.dt) *
+            (rotate_back(pose.end_turn, centre + terms.dt * moving.velocity - pose.end_position) -
+             body.centre);
+        moving.spin -= (pose.end_angle - pose.angle) / terms.dt;
+        const double met = time_of_meeting_edges(world, moving, angle_in_chain, terms.dt, thickness);
+        PlacedConvex then = body;
+        if (met > 0)
+            then.centre = body.centre + met * moving.velocity,
+            then.turn = rotation_by(angle_in_chain + met * moving.spin);
+        find_chain_manifolds(then, world.edges.edges, near_edges_, margin, found_);
+        for (ChainManifold& found : found_) {
+            if (met > 0) {
+                moving.angle = angle_in_chain;
+                move_back(found.manifold, moving, {}, met);
+            }
             list.add(pairs_[first].row, Partner::edge(found.edge).stored(),
                      {bodies.id[row], bodies.id[pose.row], 0});
             manifolds_.push_back(turned(found.manifold, pose.turn));
         }
     }
+}
+
+/// The time at which a body that flies or turns farther in a step than it is thick meets the first of its
+/// near edges [s]; 0 if it does not, or is not so fast.
+/// @param body  in the frame of the chain
+template <class Real>
+double SurfaceFinder<Real>::time_of_meeting_edges(const WorldState<Real>& world, MovingConvex body,
+                                                  double angle, double dt, double thickness) const {
+    const double way = dt * (std::sqrt(length_squared(body.velocity)) +
+                             std::fabs(body.spin) * static_cast<double>(body.shape.extent));
+    if (!(way > kFastThicknesses * thickness)) return 0;
+    body.angle = angle;
+    double first = 0;
+    for (const std::int32_t number : near_edges_) {
+        const Edge& edge = world.edges[number];
+        const ConvexImpact impact = impact_time(body, still_edge(edge), dt, kMeetingTarget * thickness);
+        if (!impact.touches) continue;
+        if (!(impact.time > 0)) return 0;  // it touches already
+        if (first == 0 || impact.time < first) first = impact.time;
+    }
+    return first;
 }
 
 template <class Real>

@@ -6,6 +6,7 @@
 
 #include "broadphase/edge_candidates.hpp"
 #include "narrowphase/convex_edge.hpp"
+#include "narrowphase/convex_impact_time.hpp"
 #include "solvers/paths/contact_distance.hpp"
 #include "solvers/paths/manifold_list.hpp"
 #include "solvers/substeps/step_terms.hpp"
@@ -48,6 +49,9 @@ class SurfaceFinder {
                     ManifoldList<Real>& list);
     void find_edges(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
                     const SubstepTerms& terms, const ContactDistance& near, ManifoldList<Real>& list);
+
+    double time_of_meeting_edges(const WorldState<Real>& world, MovingConvex body, double angle, double dt,
+                                 double thickness) const;
 
     std::vector<Near> pairs_;
     // Scratch of one contact after the other.
