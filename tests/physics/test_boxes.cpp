@@ -1,5 +1,5 @@
-// A8, A9, A12, A25, A29, A30 (B15, B40 of docs/hard-cases.md) and A33 of docs/exact-cases.md: what boxes and
-// polygons do when they stand, slide, tip and lean, against Newton's and Coulomb's laws.
+// A8, A9, A12, A25, A29, A30 and A33 of docs/exact-cases.md, B15 and B40 of docs/hard-cases.md: what boxes
+// and polygons do when they stand, slide, tip and lean, against Newton's and Coulomb's laws.
 #include "support/box_scenes.hpp"
 #include "support/effort.hpp"
 #include "support/report.hpp"
@@ -68,6 +68,26 @@ Scene arch(double thickness_over_radius, int voussoirs) {
         scene.add({.shape = stone,
                    .position = mass_properties_of(stone).centroid,
                    .material = {.friction = friction}});
+    }
+    return scene;
+}
+
+/// Three storeys of pairs of cards 1 m long that lean on each other at `slope` to the ground, a card flat
+/// on each storey but the last.
+Scene card_house(double slope, double friction) {
+    const double thickness = 0.05, apart = 1.02, c = std::cos(slope), s = std::sin(slope);
+    Scene scene = box_ground(friction);
+    double floor = 0;
+    for (int pairs = 3; pairs >= 1; --pairs) {
+        const double middle = floor + 0.5 * (s + thickness * c), aside = 0.5 * (c + thickness * s);
+        for (int i = 0; i < pairs; ++i)
+            for (const double side : {-1.0, 1.0})
+                scene.add(box_at((i - 0.5 * (pairs - 1)) * apart + side * aside, middle, 1, thickness,
+                                 friction, -side * slope));
+        floor += s + thickness * c;
+        if (pairs == 1) break;
+        scene.add(box_at(0, floor + 0.5 * thickness, (pairs - 1) * apart + 0.3, thickness, friction));
+        floor += thickness;
     }
     return scene;
 }
@@ -238,6 +258,31 @@ TEST_SUITE("physics/boxes") {
             CHECK(falls.start(2).y - falls.place(2).y > 0.25);
         }
     }
+    TEST_CASE_TEMPLATE("A29: two round-edged cards that lean on each other stand as ladders do", Real, float,
+                       double) {
+        for (const double slope : {0.7, 1.0, 1.3}) {
+            CAPTURE(slope);
+            const double length = 2, radius = 0.05, c = std::cos(slope), s = std::sin(slope);
+            // About the point below: weight times half the length's shadow = push of the other card times
+            // height.
+            const double least = 0.5 * length * c / (length * s + radius);
+            const auto cards = [&](double friction) {
+                Scene scene = box_ground(friction, 20);
+                for (const double side : {-1.0, 1.0})
+                    scene.add({.shape = Capsule{length, radius},
+                               .position = {side * (0.5 * length * c + radius), 0.5 * length * s + radius},
+                               .angle = -side * slope,
+                               .material = {.friction = friction}});
+                return scene;
+            };
+            BoxRun<Real> stands(cards(1.03 * least)), falls(cards(0.97 * least));
+            stands.steps(scaled(1200, 600)), falls.steps(600);
+            report("A29: cards at ", slope, ": moved ", stands.farthest_shift(), " and ",
+                   falls.farthest_shift());
+            CHECK(stands.farthest_shift() < 1e-3);
+            CHECK(falls.start(1).y - falls.place(1).y > 0.25);
+        }
+    }
     TEST_CASE_TEMPLATE("A30: an arch stands at a thickness of .115 of its radius and falls at .100", Real,
                        float, double) {
         BoxRun<Real> stands(arch(0.115, 31)), falls(arch(0.100, 31));
@@ -247,6 +292,18 @@ TEST_SUITE("physics/boxes") {
                falls.start(crown).y - falls.place(crown).y);
         CHECK(stands.farthest_shift() < 1e-3);
         CHECK(falls.start(crown).y - falls.place(crown).y > 1);
+    }
+    TEST_CASE_TEMPLATE("B15: a card house moves by less than 1 % of a card in ten seconds", Real, float,
+                       double) {
+        for (const double slope : {65.0, 70.0, 75.0}) {  // degrees
+            CAPTURE(slope);
+            BoxRun<Real> run(card_house(slope * std::numbers::pi / 180, 0.6));
+            run.steps(600);
+            report("B15: cards at ", slope, " degrees: moved ", run.farthest_shift(), ", rms speed ",
+                   run.rms_speed());
+            CHECK(run.farthest_shift() < 0.01);
+            CHECK(run.rms_speed() < 1e-3);
+        }
     }
     TEST_CASE_TEMPLATE("A33: a wave of dominoes runs at one speed over sqrt(g l) at three sizes", Real, float,
                        double) {
