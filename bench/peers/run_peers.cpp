@@ -37,6 +37,13 @@ struct Entrant {
     void step() { peer->step(kStep), ++steps; }
 };
 
+void settle(Entrant& entrant, const BenchScene& scene) {
+    const double start = measure::thread_seconds();
+    for (int i = 0; i < scene.settle_steps; ++i) entrant.step();
+    if (scene.settle_steps > 0)
+        entrant.settle_seconds = (measure::thread_seconds() - start) / scene.settle_steps;
+}
+
 std::vector<Entrant> enter(const BenchScene& scene, const std::function<void(const std::string&)>& progress) {
     std::vector<Entrant> entrants;
     std::vector<PeerEngine> engines{carom_engine()};  // ours first
@@ -63,9 +70,7 @@ std::vector<Entrant> enter(const BenchScene& scene, const std::function<void(con
         if (entrant.peer) {
             progress(joined(scene.name, ", ", measure::grouped(bodies), " bodies: ", entrant.engine.name,
                             " settles"));
-            const double start = measure::thread_seconds();
-            for (int i = 0; i < scene.settle_steps; ++i) entrant.step();
-            entrant.settle_seconds = (measure::thread_seconds() - start) / scene.settle_steps;
+            settle(entrant, scene);
         }
         entrants.push_back(std::move(entrant));
     }
@@ -73,20 +78,29 @@ std::vector<Entrant> enter(const BenchScene& scene, const std::function<void(con
 }
 
 /// All take the same number of steps, so that energy and overlap are those of one moment: as many as make the
-/// first one's turn, which is ours, long enough.
-void take_turns(std::vector<Entrant>& entrants, measure::ContestOptions options) {
+/// first one's turn, which is ours, long enough. Of a scene that starts over a turn is a whole run.
+void take_turns(std::vector<Entrant>& entrants, const BenchScene& scene, measure::ContestOptions options) {
     std::vector<measure::Contestant> contestants;
     std::vector<Entrant*> running;
     for (Entrant& entrant : entrants)
         if (entrant.peer) {
             contestants.push_back(
                 {entrant.engine.name, [&entrant] { entrant.step(); }, entrant.engine.threads > 1});
+            if (scene.restart_steps > 0)
+                contestants.back().before_turn = [&entrant, &scene] {
+                    entrant.peer = entrant.engine.make(scene, {});
+                    entrant.steps = 0;
+                    settle(entrant, scene);
+                };
             running.push_back(&entrant);
         }
     if (running.empty()) return;
-    const double wanted = options.seconds_of_a_turn / running.front()->settle_seconds;
-    options.fewest_steps = static_cast<int>(
-        std::clamp(std::ceil(wanted), double{kFewestStepsOfATurn}, double{kMostStepsOfATurn}));
+    options.fewest_steps = scene.restart_steps;
+    if (scene.restart_steps == 0) {
+        const double wanted = options.seconds_of_a_turn / running.front()->settle_seconds;
+        options.fewest_steps = static_cast<int>(
+            std::clamp(std::ceil(wanted), double{kFewestStepsOfATurn}, double{kMostStepsOfATurn}));
+    }
     options.seconds_of_a_turn = 0;
     auto seconds = measure::run_contest(contestants, options);
     for (std::size_t i = 0; i < running.size(); ++i) running[i]->seconds = std::move(seconds[i]);
@@ -123,7 +137,7 @@ Json run_task(const PeerTask& task, const measure::ContestOptions& options,
     const BodyMeasures start = measures_at_start(scene.scene);
     std::vector<Entrant> entrants = enter(scene, progress);
     progress(joined(task.scene, ", ", measure::grouped(task.bodies), " bodies: all take turns"));
-    take_turns(entrants, options);
+    take_turns(entrants, scene, options);
 
     Json json{{"scene", task.scene},
               {"bodies", task.bodies},

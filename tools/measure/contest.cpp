@@ -11,6 +11,7 @@ double now(const Contestant& contestant) {
 
 /// Seconds a step of one turn.
 double take_turn(const Contestant& contestant, const ContestOptions& options) {
+    if (contestant.before_turn) contestant.before_turn();
     const double start = now(contestant);
     double seconds = 0;
     int steps = 0;

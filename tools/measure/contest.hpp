@@ -11,6 +11,7 @@ struct Contestant {
     std::string name;
     std::function<void()> step;
     bool threaded = false;  ///< uses other threads: timed on the wall instead of by processor time
+    std::function<void()> before_turn{};  ///< if any: called before each turn, not timed
 };
 
 struct ContestOptions {
