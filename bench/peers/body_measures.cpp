@@ -1,9 +1,12 @@
 #include "peers/body_measures.hpp"
 
+#include <carom/carom.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>
+#include <utility>
 
 #include "peers/peer.hpp"
 
@@ -61,6 +64,24 @@ void add_overlaps(const Scene& scene, const std::vector<BodyState>& bodies, Body
     if (measures.touching > 0) measures.overlap_mean = sum / static_cast<double>(measures.touching);
 }
 
+/// The world's own measure, from positions and angles in double precision. Bodies whose position is no number
+/// are left out.
+void add_overlaps_of_shapes(const Scene& scene, const std::vector<BodyState>& bodies,
+                            BodyMeasures& measures) {
+    Scene still = scene;
+    still.bodies.clear();
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        if (!CellList::is_finite(bodies[i].position)) continue;
+        Body body = scene.bodies[i];
+        body.position = bodies[i].position, body.angle = bodies[i].angle;
+        body.velocity = {}, body.angular_velocity = 0;
+        still.bodies.push_back(std::move(body));
+    }
+    const OverlapReport overlaps = World64(still, {.threads = 1}).overlaps();
+    measures.touching = overlaps.touching;
+    measures.overlap_mean = overlaps.mean, measures.overlap_max = overlaps.max;
+}
+
 bool is_outside(const std::optional<Walls>& walls, Vec2 at) {
     if (!CellList::is_finite(at)) return true;
     return walls && ((walls->left && at.x < walls->min.x) || (walls->right && at.x > walls->max.x) ||
@@ -74,11 +95,10 @@ BodyMeasures measure_bodies(const Scene& scene, const std::vector<BodyState>& bo
     double squares = 0;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         const BodyState& state = bodies[i];
-        const double mass = mass_of(scene.bodies[i]), radius = radius_of(scene.bodies[i]);
+        const double mass = mass_of(scene.bodies[i]), inertia = inertia_of(scene.bodies[i]);
         const double speed = std::hypot(state.velocity.x, state.velocity.y);
         squares += speed * speed;
         measures.speed_max = std::max(measures.speed_max, speed);
-        const double inertia = mass * radius * radius / 2;
         measures.kinetic +=
             mass * speed * speed / 2 + inertia * state.angular_velocity * state.angular_velocity / 2;
         measures.potential -=
@@ -86,7 +106,10 @@ BodyMeasures measure_bodies(const Scene& scene, const std::vector<BodyState>& bo
         if (is_outside(scene.walls, state.position)) ++measures.outside;
     }
     if (!bodies.empty()) measures.speed_rms = std::sqrt(squares / static_cast<double>(bodies.size()));
-    add_overlaps(scene, bodies, measures);
+    if (std::all_of(scene.bodies.begin(), scene.bodies.end(), is_disc))
+        add_overlaps(scene, bodies, measures);
+    else
+        add_overlaps_of_shapes(scene, bodies, measures);
     return measures;
 }
 

@@ -1,5 +1,7 @@
 #include <box2d/box2d.h>
 
+#include <variant>
+
 #include "measure/text.hpp"
 #include "peers/peer.hpp"
 
@@ -35,7 +37,7 @@ class Box2d3Peer : public Peer {
             add_blocks(b2CreateBody(world_, &container), container_tiles(*bench.container),
                        bench.scene.bodies.at(0).material);
         }
-        for (const Body& body : bench.scene.bodies) add_disc(body, bench.scene.drag);
+        for (const Body& body : bench.scene.bodies) add_body(body, bench.scene.drag);
     }
     ~Box2d3Peer() override { b2DestroyWorld(world_); }
     Box2d3Peer(const Box2d3Peer&) = delete;
@@ -49,7 +51,7 @@ class Box2d3Peer : public Peer {
 
     void read(std::vector<BodyState>& bodies) const override {
         bodies.clear();
-        for (const b2BodyId body : discs_) {
+        for (const b2BodyId body : bodies_) {
             const auto position = b2Body_GetPosition(body);
             const b2Vec2 velocity = b2Body_GetLinearVelocity(body);
             bodies.push_back({{position.x, position.y},
@@ -77,7 +79,7 @@ class Box2d3Peer : public Peer {
             b2CreatePolygonShape(body, &definition, &polygon);
         }
     }
-    void add_disc(const Body& description, const Drag& drag) {
+    void add_body(const Body& description, const Drag& drag) {
         b2BodyDef definition = b2DefaultBodyDef();
         definition.type = b2_dynamicBody;
         definition.position = as_b2(description.position);
@@ -89,14 +91,35 @@ class Box2d3Peer : public Peer {
         const b2BodyId body = b2CreateBody(world_, &definition);
         b2ShapeDef shape = shape_of(description.material);
         shape.density = static_cast<float>(density_of(description));
-        const b2Circle circle{{0, 0}, static_cast<float>(radius_of(description))};
-        b2CreateCircleShape(body, &shape, &circle);
+        add_shape(body, shape, description.shape);
         if (description.fixed_rotation) {  // every 3.x has this; how a rotation is locked changed in 3.2
             b2MassData mass = b2Body_GetMassData(body);
             mass.rotationalInertia = 0;
             b2Body_SetMassData(body, mass);
         }
-        discs_.push_back(body);
+        bodies_.push_back(body);
+    }
+    static void add_shape(b2BodyId body, const b2ShapeDef& definition, const Shape& shape) {
+        if (const auto* disc = std::get_if<Disc>(&shape)) {
+            const b2Circle circle{{0, 0}, static_cast<float>(disc->radius)};
+            b2CreateCircleShape(body, &definition, &circle);
+        } else if (const auto* capsule = std::get_if<Capsule>(&shape)) {
+            const auto half = static_cast<float>(capsule->length / 2);
+            const b2Capsule same{{-half, 0}, {half, 0}, static_cast<float>(capsule->radius)};
+            b2CreateCapsuleShape(body, &definition, &same);
+        } else {
+            const b2Polygon polygon = polygon_of(shape);
+            b2CreatePolygonShape(body, &definition, &polygon);
+        }
+    }
+    static b2Polygon polygon_of(const Shape& shape) {
+        if (const auto* box = std::get_if<Box>(&shape))
+            return b2MakeBox(static_cast<float>(box->width / 2), static_cast<float>(box->height / 2));
+        const Polygon polygon = recentred(std::get<Polygon>(shape));
+        std::vector<b2Vec2> points;
+        for (const Vec2 vertex : polygon.vertices) points.push_back(as_b2(vertex));
+        const b2Hull hull = b2ComputeHull(points.data(), static_cast<int>(points.size()));
+        return b2MakePolygon(&hull, static_cast<float>(polygon.radius));
     }
     /// Contacts that began in the last step, and what the walls gave in it.
     void count() {
@@ -125,11 +148,11 @@ class Box2d3Peer : public Peer {
     std::vector<b2ContactData> contacts_;
     b2BodyId walls_{};
     b2WorldId world_{};
-    std::vector<b2BodyId> discs_;
+    std::vector<b2BodyId> bodies_;
 };
 
 std::unique_ptr<Peer> make(const BenchScene& scene, const PeerSettings& settings) {
-    require_dynamic_discs(scene.scene);
+    require_dynamic_solids(scene.scene);
     return std::make_unique<Box2d3Peer>(scene, settings);
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <variant>
 
 namespace carom::bench {
@@ -96,20 +95,34 @@ double radius_of(const Body& body) {
 }
 
 double mass_of(const Body& body) {
-    const double radius = radius_of(body);
-    return body.mass.value_or(body.material.density * std::numbers::pi * radius * radius);
+    return body.mass.value_or(body.material.density * mass_properties_of(body.shape).area);
+}
+
+double inertia_of(const Body& body) {
+    const MassProperties shape = mass_properties_of(body.shape);
+    return mass_of(body) * shape.second_moment / shape.area;
 }
 
 double density_of(const Body& body) {
-    const double radius = radius_of(body);
-    return mass_of(body) / (std::numbers::pi * radius * radius);
+    return mass_of(body) / mass_properties_of(body.shape).area;
+}
+
+bool is_disc(const Body& body) {
+    return std::holds_alternative<Disc>(body.shape);
 }
 
 void require_dynamic_discs(const Scene& scene) {
     for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-        if (scene.bodies[i].type != BodyType::dynamic_body ||
-            !std::holds_alternative<Disc>(scene.bodies[i].shape))
+        if (scene.bodies[i].type != BodyType::dynamic_body || !is_disc(scene.bodies[i]))
             throw Error(ErrorCode::not_built_yet, "the adapter of this engine makes moving discs; body " +
+                                                      std::to_string(i) + " is none");
+}
+
+void require_dynamic_solids(const Scene& scene) {
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+        if (scene.bodies[i].type != BodyType::dynamic_body ||
+            mass_properties_of(scene.bodies[i].shape).area == 0)
+            throw Error(ErrorCode::not_built_yet, "the adapter of this engine makes moving solids; body " +
                                                       std::to_string(i) + " is none");
 }
 

@@ -84,11 +84,17 @@ std::vector<WallBlock> wall_blocks(const Scene& scene);
 /// The tiles of a container in its own frame.
 std::vector<WallBlock> container_tiles(const Container& container);
 
-double radius_of(const Body& body);   ///< m
+double radius_of(const Body& body);   ///< m, of a disc
 double mass_of(const Body& body);     ///< kg
+double inertia_of(const Body& body);  ///< kg m², about the centre of mass
 double density_of(const Body& body);  ///< kg/m², that gives the body's mass
+
+bool is_disc(const Body& body);
 
 /// @throws carom::Error if there is a body that is no disc, or that its own rules move
 void require_dynamic_discs(const Scene& scene);
+
+/// @throws carom::Error if there is a body without area, or that its own rules move
+void require_dynamic_solids(const Scene& scene);
 
 }  // namespace carom::bench
