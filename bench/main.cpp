@@ -33,7 +33,7 @@ constexpr const char* kUsage =
 
 parts: kernels stages scenes scaling peers (default: all)
   --quick        fewer and smaller cases: all parts in less than five minutes
-  --scene NAME   peers: only this scene (gas, pile, packed, tumbler)
+  --scene NAME   peers: only this scene (gas, pile, pyramid, box-pile, ...)
   --bodies N     peers: with so many bodies
   --out DIR      folder of the result files (default: out/bench)
   --keep         the folder is bench/results/<date>-<machine>, for docs/performance.md

@@ -8,6 +8,7 @@
 
 #include "measure/gas.hpp"
 #include "measure/text.hpp"
+#include "scenes/shape_scenes.hpp"
 
 namespace carom::bench {
 namespace {
@@ -100,7 +101,9 @@ BenchScene tumbler(std::int64_t bodies) {
 }  // namespace
 
 const std::vector<std::string>& scene_names() {
-    static const std::vector<std::string> names{"gas", "rough-gas", "pile", "packed", "tumbler"};
+    static const std::vector<std::string> names{"gas",        "rough-gas", "pile",          "packed",
+                                                "tumbler",    "pyramid",   "pyramid-start", "box-pile",
+                                                "mixed-pile", "smash",     "planks"};
     return names;
 }
 
@@ -110,6 +113,12 @@ BenchScene make_scene(const std::string& name, std::int64_t bodies) {
     if (name == "pile") return pile(bodies);
     if (name == "packed") return packed(bodies);
     if (name == "tumbler") return tumbler(bodies);
+    if (name == "pyramid") return pyramid(bodies);
+    if (name == "pyramid-start") return pyramid_start(bodies);
+    if (name == "box-pile") return box_pile(bodies);
+    if (name == "mixed-pile") return mixed_pile(bodies);
+    if (name == "smash") return smash(bodies);
+    if (name == "planks") return planks(bodies);
     throw std::invalid_argument(measure::joined("no benchmark scene is called ", name));
 }
 

@@ -26,7 +26,8 @@ struct BenchScene {
     int restart_steps = 0;  ///< timed steps after which it starts over, as it would change; 0: never
 };
 
-/// The kinds there are: "gas", "rough-gas", "pile", "packed", "tumbler".
+/// The kinds there are: "gas", "rough-gas", "pile", "packed", "tumbler" of discs, then "pyramid",
+/// "pyramid-start", "box-pile", "mixed-pile", "smash", "planks" of other shapes.
 const std::vector<std::string>& scene_names();
 
 /// @param name    one of `scene_names`
