@@ -140,7 +140,7 @@ void ContactGraph<Real>::for_each_piece(const Candidates<Real>& candidates, cons
         for (std::size_t p = piece * piece_size; p < last; ++p) {
             const std::int32_t a = std::min(pair_a[p], pair_b[p]), b = std::max(pair_a[p], pair_b[p]);
             if (!bodies.are_discs(a, b)) continue;
-            if (!crowd_.empty() && is_left_out(a, b, bodies)) continue;
+            if (is_forbidden(a, b) || (!crowd_.empty() && is_left_out(a, b, bodies))) continue;
             if (bodies.has_flags && bodies.is_immovable(static_cast<std::size_t>(a)))
                 pair(piece, groups.count(), b, a);
             else if (bodies.has_flags && bodies.is_immovable(static_cast<std::size_t>(b)))
@@ -368,7 +368,7 @@ void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const EdgeCan
         if (bodies.are_discs(pair.row, pair.row))
             listed_a_.push_back(pair.row), listed_b_.push_back(Partner::edge(pair.edge).stored());
     for (const SleeperPair pair : sleepers)
-        if (bodies.are_discs(pair.row, pair.sleeper) &&
+        if (bodies.are_discs(pair.row, pair.sleeper) && !is_forbidden(pair.row, pair.sleeper) &&
             !bodies.is_immovable(static_cast<std::size_t>(pair.row)))
             listed_a_.push_back(pair.row), listed_b_.push_back(pair.sleeper);
     group_supports();
@@ -440,7 +440,7 @@ void ContactGraph<Real>::add(const Candidates<Real>& candidates, const EdgeCandi
     new_pairs_.clear(), new_supports_.clear();
     const Enclosure<Real> enclosure(walls);
     for (const auto& [a, b] : candidates.new_pairs()) {
-        if (!bodies.are_discs(a, b)) continue;
+        if (!bodies.are_discs(a, b) || is_forbidden(a, b)) continue;
         if (bodies.is_immovable(static_cast<std::size_t>(a)))
             new_supports_.push_back({b, a, 0, 0, 0});
         else if (bodies.is_immovable(static_cast<std::size_t>(b)))

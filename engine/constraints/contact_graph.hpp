@@ -14,6 +14,7 @@
 #include "constraints/task_groups.hpp"
 #include "parallel/executor.hpp"
 #include "state/bodies.hpp"
+#include "state/world_state.hpp"
 
 namespace carom {
 
@@ -52,14 +53,15 @@ class ContactGraph {
     /// Edges were removed; later ones moved up. Cost: O(supports).
     void follow_removed_edges(EdgeStore::Removed gone);
 
-    bool keeps_rolling = false;             ///< rolling impulses, too
-    std::int64_t renewals = 0;              ///< so many times pairs were found anew
-    std::int64_t version = 0;               ///< counts renewals and additions
-    std::span<const SleeperPair> sleepers;  ///< supports besides those that `renew` finds
-    RowRenaming trail;                      ///< to be told of rows that change between renewals
-    std::vector<LostContact> lost;          ///< that pushed, until they are dealt with
-    TaskGroups groups;                      ///< of the last renewal
-    ContactRows<Real> pairs;                ///< of two discs that move, a < b
+    bool keeps_rolling = false;                ///< rolling impulses, too
+    const WorldState<Real>* filter = nullptr;  ///< pairs that it forbids are left out; null: none
+    std::int64_t renewals = 0;                 ///< so many times pairs were found anew
+    std::int64_t version = 0;                  ///< counts renewals and additions
+    std::span<const SleeperPair> sleepers;     ///< supports besides those that `renew` finds
+    RowRenaming trail;                         ///< to be told of rows that change between renewals
+    std::vector<LostContact> lost;             ///< that pushed, until they are dealt with
+    TaskGroups groups;                         ///< of the last renewal
+    ContactRows<Real> pairs;                   ///< of two discs that move, a < b
     /// Of a disc that moves and what nothing moves: walls, edges, immovable discs.
     ContactRows<Real> supports;
 
@@ -107,6 +109,9 @@ class ContactGraph {
     double far_share(const Candidates<Real>& candidates, const TaskGroups& tried) const;
     void choose_groups(const Candidates<Real>& candidates, std::size_t rows);
     void find_crowds(const Candidates<Real>& candidates, const Bodies<Real>& bodies);
+    bool is_forbidden(std::int32_t a, std::int32_t b) const {
+        return filter && !filter->may_collide(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
+    }
     bool is_left_out(std::int32_t a, std::int32_t b, const Bodies<Real>& bodies) const;
     void group_pairs(const Candidates<Real>& candidates, const Bodies<Real>& bodies,
                      const Executor& executor);

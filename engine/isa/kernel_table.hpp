@@ -4,6 +4,7 @@
 #include "kernels/broadphase_arguments.hpp"
 #include "kernels/contact_arguments.hpp"
 #include "kernels/flight_arguments.hpp"
+#include "kernels/joint_arguments.hpp"
 
 #include <array>
 #include <string_view>
@@ -20,6 +21,14 @@ struct ContactKernels {
     Solve sum_loads_pairs, sum_loads_supports;
     Solve scale_loads_pairs, scale_loads_supports;
     Solve keep_loads_pairs, keep_loads_supports;
+};
+
+/// The sweeps over one kind of joints: one that gives impulses at the start of a step, the first of a
+/// substep, and the others.
+template <class Real>
+struct JointKernels {
+    using Sweep = void (*)(const SweepJoints<Real>&, std::size_t first, std::size_t last);
+    Sweep give, first, next;
 };
 
 /// The kernels of one instruction set in one precision. A new kernel: an argument struct in kernels/, a line
@@ -47,9 +56,10 @@ struct KernelTable {
     std::size_t (*find_contacts)(const FindContacts<Real>&, std::size_t first, std::size_t last);
     // smooth; rough; rough, and some bodies do not turn; the last two with rolling resistance
     std::array<ContactKernels<Real>, 5> contacts;
-    // The last three: without and with rotation.
+    std::array<JointKernels<Real>, 3> joints;  // rods between centres, between anchors; hinges
+    // The last three: without and with rotation; then the same where some bodies have joints.
     std::array<void (*)(const BeginSubsteps<Real>&, std::size_t first, std::size_t last), 2> begin_substeps;
-    std::array<void (*)(const AdvanceBodies<Real>&, std::size_t first, std::size_t last), 2> advance_bodies;
+    std::array<void (*)(const AdvanceBodies<Real>&, std::size_t first, std::size_t last), 4> advance_bodies;
     std::array<std::size_t (*)(const EndSubsteps<Real>&, std::size_t first, std::size_t last), 2>
         end_substeps;
     void (*advance_rotation)(const AdvanceRotation<Real>&, std::size_t first, std::size_t last);

@@ -28,8 +28,8 @@ struct FreeFlight {
 /// where the velocity changed by no more than free flight would change it - bodies in flight, sliding,
 /// rolling, at rest - it is h (v0 + v1) / 2, which is exact under constant acceleration. The turn likewise,
 /// where the rim speed changes by no more than that and angular drag together: in flight, and where a disc
-/// rolls.
-template <bool kTurns, class Real, class Isa>
+/// rolls. Bodies that have joints go by h v1 always: their rows ask where that takes them.
+template <bool kTurns, bool kJoined, class Real, class Isa>
 void advance_bodies(const AdvanceBodies<Real>& k, std::size_t first, std::size_t last) {
     using Lanes = simd::Lanes<Real, Isa>;
     using F = typename Lanes::Batch;
@@ -44,7 +44,8 @@ void advance_bodies(const AdvanceBodies<Real>& k, std::size_t first, std::size_t
         const F change_x = v[0] - start_x, change_y = v[1] - start_y;
         const F fall_x = free_x - start_x, fall_y = free_y - start_y;
         const F fall = fall_x * fall_x + fall_y * fall_y, margin(Real(1.0001));
-        const auto is_smooth = change_x * change_x + change_y * change_y <= fall * margin;
+        auto is_smooth = change_x * change_x + change_y * change_y <= fall * margin;
+        if constexpr (kJoined) is_smooth = is_smooth & !(Lanes::load(k.joined + row) > F(0));
         moved[0] += h * (v[0] - simd::select(is_smooth, half * change_x, F(0)));
         moved[1] += h * (v[1] - simd::select(is_smooth, half * change_y, F(0)));
         Lanes::store_rows2(k.displacement + 2 * row, kConsecutive, moved);
@@ -52,7 +53,8 @@ void advance_bodies(const AdvanceBodies<Real>& k, std::size_t first, std::size_t
         if constexpr (kTurns) {
             start_rim = Lanes::load(k.start.rim + row), free_rim = free.spin(start_rim, inverse_mass);
             const F change = v[2] - start_rim, drag = free_rim - start_rim;
-            const auto turns_smoothly = change * change <= (fall + drag * drag) * margin;
+            auto turns_smoothly = change * change <= (fall + drag * drag) * margin;
+            if constexpr (kJoined) turns_smoothly = turns_smoothly & !(Lanes::load(k.joined + row) > F(0));
             const F mean = v[2] - simd::select(turns_smoothly, half * change, F(0));
             Lanes::store(k.turn + row, Lanes::load(k.turn + row) + h * mean);
         }

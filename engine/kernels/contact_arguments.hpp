@@ -118,6 +118,7 @@ struct AdvanceBodies {
     Real decay;                // velocity kept under drag in a substep
     Real spin_decay;           // rim speed kept under angular drag
     bool is_last;              // no next substep
+    const Real* joined;        // [rows], above zero for bodies that have joints; null where there are none
 };
 
 /// Velocity and displacement records at the start of a step.

@@ -43,6 +43,13 @@ std::string number(double value) {
 
 }  // namespace
 
+bool turns_bodies(const Joint& joint) {
+    if (const auto* target = std::get_if<TargetJoint>(&joint.kind)) return target->anchor != Vec2{};
+    const auto* rod = std::get_if<DistanceJoint>(&joint.kind);
+    if (!rod) return true;
+    return (joint.a && rod->anchor_a != Vec2{}) || (joint.b && rod->anchor_b != Vec2{});
+}
+
 CalledEffects call_effects(const Scene& scene, const EffectOverrides& overrides) {
     CalledEffects called;
     Effects& on = called.effects;
@@ -85,6 +92,8 @@ CalledEffects call_effects(const Scene& scene, const EffectOverrides& overrides)
         " has an angle or a spin");
     if (turns.empty() && on.friction) turns = "friction turns bodies";
     if (turns.empty()) turns = first_body(scene, is_turned_by_contacts, " is no disc: contacts turn it");
+    for (const Joint& joint : scene.joints)
+        if (turns.empty() && turns_bodies(joint)) turns = "a joint turns bodies";
     on.rotation = decide(reports, "rotation", either(overrides.rotation, own.rotation), turns,
                          "no body has an angle or a spin, and nothing can give one");
     on.angular_drag = decide(reports, "angular drag", {},
@@ -94,7 +103,10 @@ CalledEffects call_effects(const Scene& scene, const EffectOverrides& overrides)
                              scene.drag.angular > 0 ? "nothing turns" : "angular drag is zero");
     decide(reports, "continuous collision", {}, "every solver looks ahead over the whole step", "");
     on.ledger = decide(reports, "ledger", either(overrides.ledger, own.ledger), "", "not asked for");
-    decide(reports, "joints", {}, "", "the scene has no joints");
+    on.joints =
+        decide(reports, "joints", {},
+               scene.joints.empty() ? "" : "the scene has " + std::to_string(scene.joints.size()) + " joints",
+               "the scene has no joints");
     on.sleeping = decide(reports, "sleeping", either(overrides.sleep, own.sleep), "", "not asked for");
     return called;
 }

@@ -17,6 +17,9 @@ struct CalledEffects {
     std::string solver_reason;  ///< why the world has its solver
 };
 
+/// Whether a joint can turn its bodies: all but those at centres.
+bool turns_bodies(const Joint& joint);
+
 /// The only place that asks a scene which effects are on.
 /// @param overrides  over the scene's own
 CalledEffects call_effects(const Scene& scene, const EffectOverrides& overrides);

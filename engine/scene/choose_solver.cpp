@@ -36,7 +36,7 @@ std::optional<Problem> find_roughness_problem(const Item& item, const Material& 
 
 bool SolverFacts::would_change(const Body& body) const {
     return (no_disc.empty() && !is_disc(body.shape)) || (rough.empty() && body.material.friction > 0) ||
-           (resists.empty() && body.material.rolling_resistance > 0) ||
+           (resists.empty() && body.material.rolling_resistance > 0) || (joined.empty() && body.group < 0) ||
            (inelastic.empty() && is_inelastic(body));
 }
 
@@ -46,6 +46,7 @@ void SolverFacts::add(const Body& body, std::string_view label) {
     if (rough.empty() && body.material.friction > 0) rough = join(label, " has friction");
     if (resists.empty() && body.material.rolling_resistance > 0)
         resists = join(label, " has rolling resistance");
+    if (joined.empty() && body.group < 0) joined = join(label, " is of a group that does not touch");
     if (inelastic.empty() && is_inelastic(body))
         inelastic = join(label, " has restitution ", body.material.restitution, ", below 1");
 }
@@ -66,6 +67,7 @@ SolverFacts facts_of(const Scene& scene, std::optional<int> iterations) {
         facts.forced = "sleeping is asked for";
     else if (iterations.value_or(1) > 1)
         facts.forced = join(*iterations, " iterations are asked for");
+    if (!scene.joints.empty()) facts.joined = "the scene has joints";
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
         const bool is_news = facts.would_change(scene.bodies[i]);
         facts.add(scene.bodies[i], is_news ? join("body ", i) : "");
@@ -74,7 +76,7 @@ SolverFacts facts_of(const Scene& scene, std::optional<int> iterations) {
 }
 
 SolverChoice choose_solver(const SolverFacts& facts) {
-    for (const std::string* reason : {&facts.no_disc, &facts.resists, &facts.forced})
+    for (const std::string* reason : {&facts.no_disc, &facts.joined, &facts.resists, &facts.forced})
         if (!reason->empty()) return {Solver::soft, *reason};
     if (facts.has_gravity && !facts.rough.empty()) return {Solver::soft, facts.rough};
     if (facts.bodies <= 1 && !facts.has_walls)
@@ -118,11 +120,22 @@ std::optional<Problem> find_solver_problem(const Item& item, const Body& body, V
         return problem(ErrorCode::inconsistent, item, join("/shape/", name_of(body.shape)), "the shape ",
                        quoted(name_of(body.shape)), ", but the solver ", quoted(name_of(solver)),
                        " knows discs only. Use \"soft\" or \"auto\".");
+    if (body.group < 0 && solver != Solver::soft)
+        return problem(ErrorCode::inconsistent, item, "/group", "group ", body.group, ", but the solver ",
+                       quoted(name_of(solver)), " knows no groups. Use \"soft\" or \"auto\".");
     return find_roughness_problem(item, body.material, gravity, solver);
+}
+
+std::optional<Problem> find_joint_solver_problem(std::size_t joints, Solver solver) {
+    if (joints == 0 || solver == Solver::soft) return std::nullopt;
+    return problem(ErrorCode::inconsistent, {"the scene has", "/joints", -1, ""}, "", joints,
+                   joints == 1 ? " joint" : " joints", ", but the solver ", quoted(name_of(solver)),
+                   " knows none. Use \"soft\" or \"auto\", or take the joints out.");
 }
 
 std::optional<Problem> find_solver_problem(const Scene& scene, Solver solver) {
     if (auto found = find_solver_problem(scene.effects, solver)) return found;
+    if (auto found = find_joint_solver_problem(scene.joints.size(), solver)) return found;
     if (solver == Solver::event)
         if (auto found = find_event_problem(scene)) return found;
     if (scene.walls)

@@ -24,12 +24,13 @@ struct SolverFacts {
     std::string rough;      ///< of what has friction, or that it is forced on
     std::string resists;    ///< of what has rolling resistance
     std::string forced;     ///< of another effect, or of sweeps, that were asked for
+    std::string joined;     ///< of a joint, or of a group of bodies that do not touch
     std::string inelastic;  ///< of a body that bounces with less than its speed
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
         archive(self.bodies, self.has_walls, self.has_gravity, self.no_disc, self.rough, self.resists,
-                self.forced, self.inelastic);
+                self.forced, self.joined, self.inelastic);
     }
 
     /// Whether a body brings a reason that there is not yet.
@@ -50,6 +51,8 @@ SolverChoice choose_solver(const Scene& scene, const Accuracy& asked_for);
 std::optional<Problem> find_solver_problem(const Scene& scene, Solver solver);
 /// The first effect that is forced on and that `solver` does not have.
 std::optional<Problem> find_solver_problem(const EffectOverrides& effects, Solver solver);
+/// Joints under a solver that has none.
+std::optional<Problem> find_joint_solver_problem(std::size_t joints, Solver solver);
 /// Sweeps that `solver`, as chosen, does not do.
 std::optional<Problem> find_iterations_problem(std::optional<int> iterations, Solver solver);
 /// The first thing about one body that `solver` cannot do, for a body that is added to a running world.

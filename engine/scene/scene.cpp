@@ -54,6 +54,15 @@ BodyId Scene::add(Body body) {
     return {static_cast<std::uint32_t>(bodies.size() - 1), 0};
 }
 
+JointId Scene::add(Joint joint) {
+    if (joints.size() >= kLargestJointCount)
+        raise("Scene::add",
+              problem(ErrorCode::too_large, {"the scene has", "/joints", -1, ""}, "", joints.size() + 1,
+                      " joints; expected at most ", kLargestJointCount, ". Split the scene."));
+    joints.push_back(std::move(joint));
+    return JointId::of(static_cast<std::uint32_t>(joints.size() - 1));
+}
+
 std::optional<Problem> Scene::find_problem() const {
     if (bodies.size() > kLargestBodyCount) return too_many_bodies(bodies.size());
     if (auto found = find_settings_problem(*this)) return found;
@@ -67,6 +76,11 @@ std::optional<Problem> Scene::find_problem() const {
     }
     if (auto found = find_spread_problem(spread)) return found;
     if (auto found = find_duplicate_name(bodies)) return found;
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+        const Item item{"joint", "/joints", static_cast<std::ptrdiff_t>(i), ""};
+        if (auto found = find_joint_problem(item, joints[i])) return found;
+        if (auto found = find_joint_bodies_problem(item, joints[i], *this)) return found;
+    }
     if (auto found = find_effects_problem(*this, effects)) return found;
     const Solver solver = choose_solver(*this, accuracy).solver;
     if (auto found = find_iterations_problem(accuracy.iterations, solver)) return found;

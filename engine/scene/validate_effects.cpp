@@ -1,3 +1,4 @@
+#include "scene/call_effects.hpp"
 #include "scene/mass.hpp"
 #include "scene/validation.hpp"
 
@@ -91,6 +92,10 @@ std::optional<Problem> find_effects_problem(const Scene& scene, const EffectOver
                           " 1/s (angular)");
     if (effects.rotation == false)
         if (auto found = find_rotation_problem(scene.bodies)) return found;
+    if (effects.rotation == false)
+        for (std::size_t i = 0; i < scene.joints.size(); ++i)
+            if (turns_bodies(scene.joints[i]))
+                return forced_off("rotation", "joint ", i, ", which turns bodies");
     if (effects.restitution == false)
         if (auto found = find_restitution_problem(scene)) return found;
     if (auto found = find_friction_problem(scene, effects)) return found;

@@ -42,6 +42,13 @@ enum class Mobility : std::uint8_t { all, no_rotation, none, quarantined };
 std::optional<Problem> find_velocity_problem(const Item& item, Mobility mobility, Vec2 velocity);
 std::optional<Problem> find_angular_velocity_problem(const Item& item, Mobility mobility, double spin);
 std::optional<Problem> find_inside_problem(const Item& item, const Body& body, const Walls& walls);
+/// Everything of a joint but which bodies there are.
+std::optional<Problem> find_joint_problem(const Item& item, const Joint& joint);
+/// The bodies of a scene's joint, and where they stand.
+std::optional<Problem> find_joint_bodies_problem(const Item& item, const Joint& joint, const Scene& scene);
+/// The same of two bodies in numbers. @param moves_a, moves_b  whether they are bodies that move freely
+/// @param a, b  place of the joint's anchor on each [m], where that is fixed by the joint
+std::optional<Problem> find_joint_mobility_problem(const Item& item, bool moves_a, bool moves_b);
 std::optional<Problem> find_material_problem(const Item& item, std::string_view tail,
                                              const Material& material);
 /// Looks at gravity, drag, walls, step, record and accuracy.

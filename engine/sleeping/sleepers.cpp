@@ -69,6 +69,14 @@ void Sleepers<Real>::connect(const WorldState<Real>& world, const ContactGraph<R
     };
     for (const LoadedContact& contact : others)
         if (is_pair(contact)) islands_.join(contact.a, contact.b.row());
+    const auto row_of = [&](BodyId id) {
+        return id == BodyId{} ? SIZE_MAX : std::size_t{world.handles.row_of_slot(id.index)};
+    };
+    const auto moves = [&](std::size_t row) { return row < bodies.count && !bodies.is_immovable(row); };
+    world.joints.for_each([&](std::size_t, const StoredJoint& joint) {
+        const std::size_t a = row_of(joint.a), b = row_of(joint.b);
+        if (moves(a) && moves(b)) islands_.join(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
+    });
     const auto keep_awake = [&](std::int32_t row) {
         stays_awake_[static_cast<std::size_t>(islands_.island_of(row))] = 1;
     };
@@ -82,6 +90,13 @@ void Sleepers<Real>::connect(const WorldState<Real>& world, const ContactGraph<R
                     [&](std::size_t i) { lean(graph.supports.a[i], graph.supports.partner(i)); });
     for (const LoadedContact& contact : others)
         if (!is_pair(contact)) lean(contact.a, contact.b);
+    world.joints.for_each([&](std::size_t, const StoredJoint& joint) {
+        const std::size_t a = row_of(joint.a), b = row_of(joint.b);
+        for (const auto& [row, other] : {std::pair{a, b}, std::pair{b, a}})
+            if (moves(row) && other < bodies.count && !moves(other) &&
+                !is_steady(world, Partner::body(static_cast<std::int32_t>(other))))
+                keep_awake(static_cast<std::int32_t>(row));
+    });
     for (std::size_t row = 0; row < bodies.count; ++row)
         if (bodies.is_immovable(row) || bodies.still[row] < static_cast<float>(kTimeToSleep))
             keep_awake(static_cast<std::int32_t>(row));

@@ -67,6 +67,7 @@ struct Bodies {
     Column<Real> angle, angular_velocity;  // rad, rad/s; only with rotation
     Column<std::uint8_t> flags;            // BodyFlag bits; only if some row has one
     Column<BodyId> id;                     // handle of each row
+    Column<std::int32_t> group;            // bodies of one below zero do not touch; only if some have one
     Column<float> still;                   // s, for how long slow enough to sleep; only with sleeping
     Column<std::int32_t> island;           // of rows that sleep; only with sleeping
     Property<Real> mass;                   // kg
@@ -82,6 +83,8 @@ struct Bodies {
     bool has_sleep = false;
     bool has_flags = false;
     bool has_shapes = false;  ///< some body is, or was, neither a disc nor edges
+    bool has_groups = false;
+    std::int32_t common_group = 0;  // below zero: all bodies there ever were are in it, and none may touch
 
     std::uint8_t flags_of(std::size_t row) const { return has_flags ? flags[row] : std::uint8_t{0}; }
     bool is_immovable(std::size_t row) const { return (flags_of(row) & (kImmovable | kDisabled)) != 0; }
@@ -132,6 +135,16 @@ struct Bodies {
         flags[row] = value;
     }
 
+    void set_group(std::size_t row, std::int32_t value) {
+        common_group = rows() == 1 ? value : common_group == value ? value : 0;
+        if (!has_groups) {
+            if (value == 0) return;
+            group.resize(rows());
+            has_groups = true;
+        }
+        group[row] = value;
+    }
+
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
         archive(self.count, self.asleep, self.has_rotation, self.has_sleep, self.has_flags, self.has_shapes);
@@ -139,6 +152,7 @@ struct Bodies {
         archive(self.position_x, self.position_y, self.velocity_x, self.velocity_y, self.id);
         archive(self.angle, self.angular_velocity, self.flags, self.still, self.island);
         archive(self.shape, self.rims, self.inradii);
+        archive(self.has_groups, self.common_group, self.group);
     }
 
   private:
@@ -160,6 +174,7 @@ struct Bodies {
             if (!b.inradii.is_uniform()) fn("inradius", "m", b.inradii.column());
         }
         if (b.has_flags) fn("flags", "bits", b.flags);
+        if (b.has_groups) fn("group", "1", b.group);
         if (b.has_sleep) fn("still", "s", b.still), fn("island", "1", b.island);
     }
 };

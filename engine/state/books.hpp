@@ -15,6 +15,7 @@ struct Books {
     double restitution = 0;  // J
     double friction = 0;     // J
     double correction = 0;   // J
+    double joints = 0;       // J
     double drive = 0;        // J
     double sleep = 0;        // J
     Vec2 gravity_momentum;   // kg m/s, and below

@@ -110,6 +110,7 @@ BodyId WorldState<Real>::append(const Body& body) {
     bodies.position_x[row] = real(body.position.x), bodies.position_y[row] = real(body.position.y);
     bodies.velocity_x[row] = real(body.velocity.x), bodies.velocity_y[row] = real(body.velocity.y);
     bodies.id[row] = id;
+    bodies.set_group(row, body.group);
     if (bodies.has_rotation)
         bodies.angle[row] = real(body.angle), bodies.angular_velocity[row] = real(body.angular_velocity);
     set_shape(row, body, id);
@@ -133,6 +134,7 @@ template <class Real>
 EdgeStore::Removed WorldState<Real>::remove(std::size_t row) {
     const EdgeStore::Removed gone = edges.remove(bodies.id[row]);
     if (bodies.has_shapes && bodies.shape[row] >= 0) shapes.remove(bodies.shape[row]);
+    if (!joints.empty()) joints.remove_of(bodies.id[row]);
     outside = outside - sums_of(row);
     if (!bodies.is_immovable(row)) dynamic_mass -= static_cast<double>(bodies.mass[row]);
     handles.remove(bodies.id[row]);
@@ -195,7 +197,7 @@ void WorldState<Real>::reorder(const std::int32_t* order) {
 
 template <class Real>
 std::size_t WorldState<Real>::bytes() const {
-    std::size_t bytes = handles.bytes() + edges.bytes() + shapes.bytes() + spare_.bytes() +
+    std::size_t bytes = handles.bytes() + edges.bytes() + shapes.bytes() + joints.bytes() + spare_.bytes() +
                         immovable_rows.capacity() * sizeof(std::int32_t);
     bodies.for_each_column([&](auto, auto, const auto& column) { bytes += column.bytes(); });
     return bytes;

@@ -11,6 +11,7 @@
 #include "state/books.hpp"
 #include "state/edges.hpp"
 #include "state/handles.hpp"
+#include "state/joints.hpp"
 #include "state/shapes.hpp"
 
 namespace carom {
@@ -27,6 +28,7 @@ struct Effects {
     bool rolling_resistance = false;
     bool ledger = false;
     bool sleeping = false;
+    bool joints = false;
 };
 
 /// Sums over the dynamic bodies, in double precision.
@@ -47,7 +49,8 @@ struct WorldState {
     Handles handles;
     EdgeStore edges;          ///< of segments and chains
     ShapeStore<Real> shapes;  ///< of the other bodies; empty where these are all discs
-    Vec2 gravity;             ///< m/s²
+    JointStore joints;
+    Vec2 gravity;  ///< m/s²
     Drag drag;
     std::optional<Walls> walls;
     Effects effects;
@@ -65,7 +68,7 @@ struct WorldState {
         archive(self.bodies, self.handles, self.edges, self.shapes, self.gravity, self.drag, self.walls);
         archive(self.effects);
         archive(self.time, self.falls, self.books, self.initial, self.outside, self.dynamic_mass);
-        archive(self.immovable_rows, self.quarantined_count);
+        archive(self.immovable_rows, self.quarantined_count, self.joints);
     }
 
     std::size_t bytes() const;
@@ -88,6 +91,14 @@ struct WorldState {
     /// @param taken  what the books say it had by then; if that is no number, what its columns say is booked
     void quarantine(std::size_t row, const Sums& taken);
     void quarantine(std::size_t row) { quarantine(row, sums_of(row)); }
+    /// Whether two bodies can touch: a joint may say that they do not, or a group.
+    bool may_collide(std::size_t row_a, std::size_t row_b) const {
+        if (bodies.has_groups && bodies.group[row_a] < 0 && bodies.group[row_a] == bodies.group[row_b])
+            return false;
+        return joints.empty() || !joints.excludes(bodies.id[row_a], bodies.id[row_b]);
+    }
+    /// Whether there are bodies for which may_collide may say no.
+    bool has_filters() const { return bodies.has_groups || !joints.empty(); }
     /// Exchanges two rows. `list_immovable_rows` is to be called after it.
     void swap_rows(std::size_t a, std::size_t b);
     void list_immovable_rows();

@@ -2,6 +2,7 @@
 
 #include <carom/accuracy.hpp>
 
+#include <algorithm>
 #include <string>
 
 namespace carom {
@@ -35,11 +36,13 @@ Plan describe_plan(Simulation<Real>& sim, const CalledEffects& called) {
     Plan plan;
     plan.solver = std::string(name_of(sim.solver()));
     plan.solver_reason = called.solver_reason;
-    plan.substeps = sim.substeps_asked_for, plan.iterations = sim.iterations();
+    plan.substeps = std::max(sim.substeps_asked_for, sim.substeps_for_joints()),
+    plan.iterations = sim.iterations();
     plan.precision = sizeof(Real) == sizeof(float) ? "float" : "double";
     plan.isa = std::string(sim.kernels->isa);
     plan.threads = sim.executor.threads();
     plan.effects = called.reports;
+    plan.joints = sim.describe_joints();
     sim.report_stages([&](const StageState& stage) {
         if (stage.is_called_for)
             plan.stages.push_back({std::string(stage.name), name_of(stage.kernel, sim),

@@ -44,6 +44,10 @@ class SoftStep final : public SoftSimulation<Real> {
     static constexpr auto shapes_bounce = [](const Sim& sim) {
         return sim.world.bodies.has_shapes && sim.world.effects.restitution;
     };
+    static constexpr auto has_joints = [](const Sim& sim) { return !sim.world.joints.empty(); };
+    static constexpr auto has_joints_in_contact = [](const Sim& sim) {
+        return !sim.world.joints.empty() && sim.soft.joints.touches() && sim.can_meet();
+    };
     static constexpr auto has_lost_bodies = [](const Sim& sim) { return !sim.lost.empty(); };
 
     static constexpr Stage<Sim> kBegin[] = {
@@ -77,8 +81,12 @@ class SoftStep final : public SoftSimulation<Real> {
          "contacts, impulses", "velocity records"},
         {"warm_start_paths", [](Sim& sim) { sim.soft.warm_start_paths(); }, has_shapes, KernelChoice::isa,
          "paths of contacts", "velocity records"},
+        {"begin_joints", [](Sim& sim) { sim.soft.begin_joints(sim.world, sim.flight_dt); }, has_joints,
+         KernelChoice::scalar_f64, "joints, position, angle, contacts", "joints, velocity records"},
     };
     static constexpr Stage<Sim> kSubstep[] = {
+        {"solve_joints", [](Sim& sim) { sim.soft.solve_joints(sim.world, sim.substep); }, has_joints,
+         KernelChoice::isa, "joints, velocity records, displacements", "velocity records, displacements"},
         {"bounce_shapes", [](Sim& sim) { sim.soft.carry_out_shape_impacts(sim.world.books); }, shapes_bounce,
          KernelChoice::scalar_f64, "paths of contacts, velocity records, displacements",
          "velocity records, books"},
@@ -94,16 +102,26 @@ class SoftStep final : public SoftSimulation<Real> {
          KernelChoice::contacts, "motion, contacts, velocity records", "impulses, velocity records"},
         {"solve_uneven_contacts", [](Sim& sim) { sim.soft.solve_uneven_contacts(); }, has_masses,
          KernelChoice::scalar_f64, "contacts, velocity records", "impulses, velocity records"},
+        {"solve_joints_and_contacts", [](Sim& sim) { sim.soft.solve_joints_and_contacts(sim.world); },
+         has_joints_in_contact, KernelChoice::contacts, "joints, contacts, velocity records",
+         "impulses, velocity records"},
+        {"book_joints", [](Sim& sim) { sim.soft.end_joints_of_substep(sim.world, sim.world.books); },
+         has_joints, KernelChoice::none, "joints, velocity records", "joints, books"},
         {"book_substep", [](Sim& sim) { sim.soft.book_substep(sim.world, sim.world.books); }, has_books,
          KernelChoice::none, "contacts, velocity records", "books"},
         {"carry_out_impacts",
          [](Sim& sim) { sim.soft.carry_out_impacts(sim.motion, sim.world.books, sim.interruption); }, bounces,
          KernelChoice::scalar_f64, "impacts, velocity records, displacements",
          "velocity records, displacements, contacts, books"},
-        {"advance_bodies", [](Sim& sim) { sim.soft.advance_bodies(sim.substep + 1 == sim.substep_count); },
+        {"advance_bodies",
+         [](Sim& sim) {
+             sim.soft.advance_bodies(sim.substep + 1 == sim.substep_count, !sim.world.joints.empty());
+         },
          always, KernelChoice::isa, "velocity records", "velocity records, displacements"},
     };
     static constexpr Stage<Sim> kEnd[] = {
+        {"end_joints", [](Sim& sim) { end_joints(sim); }, has_joints, KernelChoice::scalar_f64,
+         "joints, velocity records, displacements", "joints, velocity records, displacements, books"},
         {"end_contacts", [](Sim& sim) { sim.soft.end_contacts(); }, can_meet, KernelChoice::none, "contacts",
          "impulses"},
         {"project_positions", [](Sim& sim) { sim.soft.project_positions(sim.world, sim.flight()); }, can_meet,
@@ -142,7 +160,8 @@ class SoftStep final : public SoftSimulation<Real> {
     void step(double dt) override {
         if (this->has_anything_to_move()) {
             this->flight_dt = dt;
-            this->substep_count = std::max(this->substeps_for_drag(dt), substeps_against_gravity(dt));
+            this->substep_count = std::max(
+                {this->substeps_for_drag(dt), substeps_against_gravity(dt), this->substeps_for_joints()});
             this->substep_dt = dt / this->substep_count;
             Sim& sim = *this;
             StageTimes& watch = this->times;

@@ -89,12 +89,14 @@ void add_edges(const WorldState<Real>& world, const Candidates<Real>& discs, Sha
 
 /// @param shapes  null in a world of discs; gets pairs with what is no disc
 template <class Real>
-void add_pairs(const Bodies<Real>& bodies, const Candidates<Real>& discs, ShapeSeparations<Real>* shapes,
+void add_pairs(const WorldState<Real>& world, const Candidates<Real>& discs, ShapeSeparations<Real>* shapes,
                Overlaps& overlaps) {
+    const Bodies<Real>& bodies = world.bodies;
     overlaps.report.candidates += static_cast<std::int64_t>(discs.pair_count());
     for (std::size_t p = 0; p < discs.pair_count(); ++p) {
         const auto a = static_cast<std::size_t>(discs.pair_a()[p]);
         const auto b = static_cast<std::size_t>(discs.pair_b()[p]);
+        if (!world.may_collide(a, b)) continue;
         if (!bodies.are_discs(discs.pair_a()[p], discs.pair_b()[p])) {
             shapes->add(discs.pair_a()[p], discs.pair_b()[p]);
             continue;
@@ -138,7 +140,7 @@ OverlapReport measure_overlaps(Simulation<Real>& sim) {
     std::optional<ShapeSeparations<Real>> shapes;
     if (world.bodies.has_shapes) shapes.emplace(world);
     ShapeSeparations<Real>* const of_shapes = shapes ? &*shapes : nullptr;
-    add_pairs(world.bodies, discs, of_shapes, overlaps);
+    add_pairs(world, discs, of_shapes, overlaps);
     if (world.walls) add_walls(world, overlaps);
     if (!world.edges.empty()) add_edges(world, discs, of_shapes, overlaps);
     if (shapes)

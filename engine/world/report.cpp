@@ -19,6 +19,7 @@ Ledger ledger_of(const WorldState<Real>& world) {
     EnergyByCause& energy = ledger.energy_by_cause;
     energy.gravity = start.energy.potential - now.energy.potential;
     energy.drag = books.drag, energy.restitution = books.restitution, energy.friction = books.friction;
+    energy.joints = books.joints;
     energy.correction = books.correction, energy.drive = books.drive, energy.sleep = books.sleep;
     energy.outside = outside.energy.total();
     energy.unexplained = (now.energy.kinetic + now.energy.rotational) -

@@ -23,6 +23,7 @@ void set_up(Simulation<Real>& sim, const Scene& scene, const WorldOptions& optio
     sim.kernels = &select_kernels(options.isa).template of<Real>();
     sim.executor = Executor(options.threads, options.parallel_for);
     sim.substeps_asked_for = accuracy.substeps.value_or(default_substeps(sim.solver()));
+    sim.has_asked_for_substeps = accuracy.substeps.has_value();
     sim.set_iterations(accuracy.iterations);
     WorldState<Real>& world = sim.world;
     world.effects = effects;
@@ -33,9 +34,24 @@ void set_up(Simulation<Real>& sim, const Scene& scene, const WorldOptions& optio
     world.bodies.has_rotation = effects.rotation;
     world.bodies.has_sleep = effects.sleeping;
     for (const Body& body : scene.bodies) world.append(body);
+    for (const Joint& joint : scene.joints) world.joints.add(joint_of(world, joint));
     world.initial = world.sums();
 }
 
+template <class Real>
+StoredJoint joint_of(const WorldState<Real>& world, const Joint& joint) {
+    const auto state_of = [&](const std::optional<BodyId>& id) -> JointBody {
+        if (!id) return {};
+        const std::size_t row = world.handles.row_of_slot(id->index);
+        const Bodies<Real>& b = world.bodies;
+        return {{b.position_x[row], b.position_y[row]},
+                b.has_rotation ? static_cast<double>(b.angle[row]) : 0};
+    };
+    return stored_joint(joint, state_of(joint.a), state_of(joint.b));
+}
+
+template StoredJoint joint_of(const WorldState<float>&, const Joint&);
+template StoredJoint joint_of(const WorldState<double>&, const Joint&);
 template void set_up(Simulation<float>&, const Scene&, const WorldOptions&, const Effects&);
 template void set_up(Simulation<double>&, const Scene&, const WorldOptions&, const Effects&);
 

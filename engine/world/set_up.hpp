@@ -17,6 +17,12 @@ Accuracy accuracy_of(const Scene& scene, const WorldOptions& options);
 template <class Real>
 void set_up(Simulation<Real>& sim, const Scene& scene, const WorldOptions& options, const Effects& effects);
 
+/// A joint of bodies of this world where they stand now. @param joint  that has been validated
+template <class Real>
+StoredJoint joint_of(const WorldState<Real>& world, const Joint& joint);
+
+extern template StoredJoint joint_of(const WorldState<float>&, const Joint&);
+extern template StoredJoint joint_of(const WorldState<double>&, const Joint&);
 extern template void set_up(Simulation<float>&, const Scene&, const WorldOptions&, const Effects&);
 extern template void set_up(Simulation<double>&, const Scene&, const WorldOptions&, const Effects&);
 

@@ -58,7 +58,7 @@ void visit_settings(Settings& settings, Archive& archive) {
 
 template <class Sim, class Settings, class Archive>
 void visit_all(Sim& sim, Settings& settings, Archive& archive) {
-    archive(sim.substeps_asked_for);
+    archive(sim.substeps_asked_for, sim.has_asked_for_substeps);
     visit_settings(settings, archive);
     sim.visit_state(archive);
 }

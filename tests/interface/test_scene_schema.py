@@ -81,7 +81,7 @@ def mutated(document, choose):
 
 
 def joint(kind, **keys):
-    return scene(bodies=[BODY, {**BODY, "position": [7, 5]}], joints=[{kind: {"a": 0, "b": 1, **keys}}])
+    return scene(bodies=[BODY, {**BODY, "name": "arm", "position": [7, 5]}], joints=[{kind: {"a": 0, "b": 1, **keys}}])
 
 
 VALID = [
@@ -145,6 +145,18 @@ VALID = [
     generate("pyramid", {"base": 5, "origin": [5, 1], "gap": 0, "shape": {"box": {"width": 1, "height": 1}}}),
     generate("stack", {"count": 3, "shape": {"capsule": {"length": 1, "radius": 0.2}}}),
     generate("lattice", {"count": [2, 2], "spacing": [9, 9], "shape": {"box": {"width": 1, "height": 1}}}),
+    generate("chain", {"count": 5, "direction": [1, 0], "spacing": 2, "origin": [2, 2], "joint": "revolute", "shape": DISC}),
+    generate("chain", {"count": 5, "spacing": 2, "origin": [2, 2], "pinned": False, "shape": DISC}),
+    generate("net", {"count": [5, 5], "origin": [1, 1], "spacing": 1, "pinned": "top", "shape": DISC}),
+    scene(generate=[{"kind": "net", "count": [5, 5], "spacing": [1, 1], "pinned": "corners", "shape": DISC}]),
+    joint("distance", anchor_a=[0, 0], anchor_b=[0, 0], length=1.5, min=0, max=2, frequency=0, damping_ratio=0),
+    joint("revolute", a=None, b="arm", anchor=[1, 2], lower=-1, upper=1, motor_speed=3, max_motor_torque=50),
+    joint("prismatic", axis=[1, 0], anchor=[0, 0], lower=0, upper=2, motor_speed=1, max_motor_force=10),
+    joint("weld", anchor=[0, 0], frequency=0, damping_ratio=0, collide=True),
+    joint("wheel", anchor=[0, 0], axis=[0, 1], frequency=4, damping_ratio=0.7, motor_speed=9, max_motor_torque=5),
+    joint("target", a=None, anchor=[0, 0], target=[1, 1], max_force=100, frequency=5, damping_ratio=0.7),
+    joint("revolute", frequency=2, damping_ratio=0.5, break_force=10, break_torque=5),
+    body(filter={"group": -3}),
     scene(joints=[]),
     scene(step={}),
     scene(step={"dt": 0.016, "count": 500}),
@@ -167,16 +179,6 @@ VALID = [
 
 # Valid for the schema; the reader says that the part is not built yet.
 NOT_BUILT_YET = [
-    generate("chain", {"count": 5, "direction": [1, 0], "spacing": 1, "joint": "revolute", "shape": DISC}),
-    generate("chain", {"count": 5, "spacing": 1, "pinned": False, "shape": DISC}),
-    generate("net", {"count": [5, 5], "origin": [1, 1], "spacing": 1, "pinned": "top", "shape": DISC}),
-    scene(generate=[{"kind": "net", "count": [5, 5], "spacing": [1, 1], "pinned": "corners", "shape": DISC}]),
-    joint("distance", anchor_a=[0, 0], anchor_b=[0, 0], length=1.5, min=0, max=2, frequency=0, damping_ratio=0),
-    joint("revolute", a=None, b="arm", anchor=[1, 2], lower=-1, upper=1, motor_speed=3, max_motor_torque=50),
-    joint("prismatic", axis=[1, 0], anchor=[0, 0], lower=0, upper=2, motor_speed=1, max_motor_force=10),
-    joint("weld", anchor=[0, 0], frequency=0, damping_ratio=0, collide=True),
-    joint("wheel", anchor=[0, 0], axis=[0, 1], frequency=4, damping_ratio=0.7, motor_speed=9, max_motor_torque=5),
-    joint("target", anchor=[0, 0], target=[1, 1], max_force=100, frequency=5, damping_ratio=0.7),
     scene(accuracy={"solver": "rigid"}),
     scene(accuracy={"solver": "rattle"}),
 ]

@@ -38,6 +38,7 @@ std::string to_text(const Plan& plan, const std::string& scene, std::size_t bodi
         "%s\nthreads    %d\n",
         printable(scene).c_str(), bodies, plan.solver.c_str(), plan.solver_reason.c_str(), plan.substeps,
         plan.iterations, plan.precision.c_str(), plan.isa.c_str(), plan.threads);
+    if (!plan.joints.empty()) text += format("joints     %s\n", plan.joints.c_str());
     text += "\neffects\n";
     for (const EffectReport& effect : plan.effects)
         text += format("  %-3s  %-20s  %s\n", effect.on ? "on" : "off", effect.name.c_str(),

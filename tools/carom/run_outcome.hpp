@@ -31,6 +31,7 @@ struct RunOutcome {
     std::optional<Ledger> first_step;  ///< after the first one; as the books started, if no step was taken
     bool keeps_ledger = false;
     OverlapReport overlaps;
+    JointErrors joints;                           ///< at the end
     std::vector<ContactCourse::Moment> contacts;  ///< during the run
     std::vector<std::size_t> quarantined;
     std::uint64_t state_hash = 0;

@@ -46,6 +46,36 @@ nlohmann::ordered_json walls_json(const std::optional<Walls>& walls) {
     return {{"min", {walls->min.x, walls->min.y}}, {"max", {walls->max.x, walls->max.y}}, {"sides", sides}};
 }
 
+/// The lines by which joints are drawn: [a, x, y, b, x, y], points in the frames of bodies, -1: of the world.
+/// Rods go from anchor to anchor, other joints from the centre of one body to that of the other.
+nlohmann::ordered_json joints_json(const Scene& scene) {
+    nlohmann::ordered_json joints = nlohmann::ordered_json::array();
+    for (const Joint& joint : scene.joints) {
+        Vec2 from{}, to{};
+        if (const auto* rod = std::get_if<DistanceJoint>(&joint.kind))
+            from = rod->anchor_a, to = rod->anchor_b;
+        if (const auto* target = std::get_if<TargetJoint>(&joint.kind))
+            from = target->target, to = target->anchor;
+        const auto anchor = std::visit(
+            [](const auto& kind) -> std::optional<Vec2> {
+                if constexpr (requires { kind.anchor.has_value(); }) return kind.anchor;
+                return std::nullopt;
+            },
+            joint.kind);
+        const auto place = [&](const std::optional<BodyId>& other) {
+            return anchor ? *anchor : other ? scene.bodies[other->index].position : Vec2{};
+        };
+        const bool is_between_centres = joint.kind.index() != 0 && joint.kind.index() != 5;
+        if (is_between_centres && !joint.a) from = place(joint.b);
+        if (is_between_centres && !joint.b) to = place(joint.a);
+        const auto number = [](const std::optional<BodyId>& id) {
+            return id ? static_cast<std::int64_t>(id->index) : std::int64_t{-1};
+        };
+        joints.push_back({number(joint.a), from.x, from.y, number(joint.b), to.x, to.y});
+    }
+    return joints;
+}
+
 /// The bodies that are lines, which have no radius: their points, in the body's frame [m].
 nlohmann::ordered_json edges_json(const std::vector<Body>& bodies) {
     nlohmann::ordered_json edges = nlohmann::ordered_json::array();
@@ -85,6 +115,7 @@ std::string settings_text(const Scene& scene, const Plan& plan, const Outlines& 
                                 {"walls", walls_json(scene.walls)},
                                 {"edges", edges_json(scene.bodies)},
                                 {"shapes", shapes_json(outlines.shapes)},
+                                {"joints", joints_json(scene)},
                                 {"solver", plan.solver},
                                 {"substeps", plan.substeps},
                                 {"iterations", plan.iterations},
@@ -195,6 +226,7 @@ void describe_end(const Scene& scene, const Simulation& simulation, RunOutcome& 
     run.ledger = simulation.ledger();
     run.keeps_ledger = simulation.keeps_ledger();
     run.overlaps = simulation.overlaps();
+    run.joints = simulation.joint_errors();
     run.quarantined = simulation.quarantined();
     run.state_hash = simulation.state_hash();
     if (run.interrupted)

@@ -27,25 +27,28 @@ std::string joined(std::string_view file, std::string_view pointer, std::string_
     return printable(text.append(": ").append(statement));
 }
 
-/// Where the bodies of the file's generators begin.
+/// Where the bodies and joints of the file's generators begin.
 struct Origins {
-    std::size_t listed = 0;         // bodies of "bodies"
-    std::vector<std::size_t> ends;  // one after the last body of each generator
+    std::size_t listed = 0, listed_joints = 0;  // bodies of "bodies", joints of "joints"
+    std::vector<std::size_t> ends, joint_ends;  // one after the last of each generator
 };
 
-/// The problem of a scene as one of its file: bodies made by a generator are the generator's.
+/// The problem of a scene as one of its file: what is made by a generator is the generator's.
 [[noreturn]] void fail_scene(const Node& root, const Origins& origins, const Problem& found) {
-    constexpr std::string_view kBodies = "/bodies/";
-    std::size_t body = 0;
-    if (found.pointer.starts_with(kBodies))
-        std::from_chars(found.pointer.data() + kBodies.size(), found.pointer.data() + found.pointer.size(),
-                        body);
-    if (!found.pointer.starts_with(kBodies) || body < origins.listed)
-        root.fail_at(found.pointer, found.code, found.statement);
-    const auto generator =
-        std::upper_bound(origins.ends.begin(), origins.ends.end(), body) - origins.ends.begin();
-    root.fail_at("/generate/" + std::to_string(generator), found.code,
-                 "of the bodies made here, " + found.statement);
+    for (const bool of_joints : {false, true}) {
+        const std::string_view items = of_joints ? "/joints/" : "/bodies/";
+        if (!found.pointer.starts_with(items)) continue;
+        const std::vector<std::size_t>& ends = of_joints ? origins.joint_ends : origins.ends;
+        std::size_t item = 0;
+        std::from_chars(found.pointer.data() + items.size(), found.pointer.data() + found.pointer.size(),
+                        item);
+        if (item < (of_joints ? origins.listed_joints : origins.listed)) break;
+        const auto generator = std::upper_bound(ends.begin(), ends.end(), item) - ends.begin();
+        root.fail_at(
+            "/generate/" + std::to_string(generator), found.code,
+            std::string(of_joints ? "of the joints" : "of the bodies") + " made here, " + found.statement);
+    }
+    root.fail_at(found.pointer, found.code, found.statement);
 }
 
 void check(const Node& root, const Origins& origins, const Scene& scene) {
@@ -57,16 +60,21 @@ Scene read_document(const Node& root, const SceneFileLimits& limits) {
     Scene scene;
     const Materials materials = read_settings(root, scene);
     read_bodies(root, materials, scene);
-    refuse_joints(root);
-    Origins origins{scene.bodies.size(), {}};
+    Origins origins;
+    origins.listed = scene.bodies.size();
     check(root, origins, scene);
-    const auto generators = root.find("generate");
-    if (!generators) return scene;
-    generators->expect_array("generators");
-    for (std::size_t i = 0; i < generators->size(); ++i) {
-        read_generator((*generators)[i], materials, limits, scene);
-        origins.ends.push_back(scene.bodies.size());
+    if (const auto generators = root.find("generate")) {
+        generators->expect_array("generators");
+        for (std::size_t i = 0; i < generators->size(); ++i) {
+            read_generator((*generators)[i], materials, limits, scene);
+            origins.ends.push_back(scene.bodies.size());
+            origins.joint_ends.push_back(scene.joints.size());
+        }
     }
+    const std::size_t made = scene.joints.size();
+    read_joints(root, scene);
+    origins.listed_joints = scene.joints.size() - made;
+    for (std::size_t& end : origins.joint_ends) end += origins.listed_joints;
     check(root, origins, scene);
     return scene;
 }

@@ -20,4 +20,12 @@ std::vector<EdgeBody> edge_bodies(const Json& settings) {
     return bodies;
 }
 
+std::vector<JointLine> joint_lines(const Json& settings) {
+    std::vector<JointLine> lines;
+    if (!settings.is_object() || !settings.contains("joints")) return lines;
+    for (const Json& each : settings["joints"])
+        lines.push_back({each[0], each[3], each[1], each[2], each[4], each[5]});
+    return lines;
+}
+
 }  // namespace carom::report

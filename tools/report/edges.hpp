@@ -17,4 +17,14 @@ struct EdgeBody {
 /// Those that a trajectory's settings name.
 std::vector<EdgeBody> edge_bodies(const Json& settings);
 
+/// A joint as it is drawn: a line between two points, each in the frame of its body or, where that is below
+/// zero, of the world.
+struct JointLine {
+    std::ptrdiff_t a, b;
+    double ax, ay, bx, by;  // m
+};
+
+/// Those that a trajectory's settings name.
+std::vector<JointLine> joint_lines(const Json& settings);
+
 }  // namespace carom::report

@@ -54,6 +54,7 @@ Picture::Picture(const std::filesystem::path& trajectory_h5, int width)
       edges_(edge_bodies(settings_)),
       shapes_(drawn_shapes(settings_)),
       shape_(shape_of_bodies(trajectory_)),
+      joints_(joint_lines(settings_)),
       trail_(settings_.is_object() ? settings_.value("trail", std::size_t{0}) : 0),
       width_(width) {
     if (time_.empty()) throw ResultError(trajectory_h5.string() + ": has no frames to draw");
@@ -164,6 +165,7 @@ void Picture::draw(std::size_t frame) {
     draw_rotation_marks(frame);
     draw_walls();
     draw_edges(frame);
+    draw_joints(frame);
     draw_time(frame);
     cairo_surface_flush(surface_->image);
 }
@@ -268,6 +270,29 @@ void Picture::draw_edges(std::size_t frame) {
         }
         cairo_stroke(pen);
     }
+}
+
+void Picture::draw_joints(std::size_t frame) {
+    if (joints_.empty()) return;
+    const std::vector<float> angle = angles(frame);
+    const std::vector<float>& position = positions(frame);
+    cairo_t* const pen = surface_->pen;
+    cairo_set_source_rgba(pen, 0.11, 0.13, 0.15, 0.6);
+    cairo_set_line_width(pen, 1.25);
+    const auto place = [&](std::ptrdiff_t number, double px, double py) -> std::array<double, 2> {
+        if (number < 0) return {x(px), y(py)};
+        const auto body = static_cast<std::size_t>(number);
+        const double turn = angle.empty() ? 0 : static_cast<double>(angle[body]);
+        const double cos = std::cos(turn), sin = std::sin(turn);
+        return {x(static_cast<double>(position[2 * body]) + cos * px - sin * py),
+                y(static_cast<double>(position[2 * body + 1]) + sin * px + cos * py)};
+    };
+    for (const JointLine& line : joints_) {
+        const auto from = place(line.a, line.ax, line.ay), to = place(line.b, line.bx, line.by);
+        cairo_move_to(pen, from[0], from[1]);
+        cairo_line_to(pen, to[0], to[1]);
+    }
+    cairo_stroke(pen);
 }
 
 void Picture::draw_walls() {

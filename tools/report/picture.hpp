@@ -63,6 +63,7 @@ class Picture {
     void draw_rotation_marks(std::size_t frame);
     void draw_walls();
     void draw_edges(std::size_t frame);
+    void draw_joints(std::size_t frame);
     std::vector<float> angles(std::size_t frame) const;
     void draw_time(std::size_t frame);
 
@@ -73,6 +74,7 @@ class Picture {
     std::vector<EdgeBody> edges_;
     std::vector<DrawnShape> shapes_;
     std::vector<double> shape_;  // of each body: number in shapes_, or -1; empty if there are none
+    std::vector<JointLine> joints_;
     std::size_t trail_;
     Box box_;
     int width_, height_;

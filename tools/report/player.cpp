@@ -168,6 +168,22 @@ Json shapes(const H5Reader& trajectory, const Json& settings, const FrameChoice&
     return {{"outlines", outlines}, {"index", base64_of<std::uint32_t>(index)}};
 }
 
+/// Joints whose bodies are both among the chosen: [a, x, y, b, x, y], bodies by their place among the chosen.
+Json joints(const Json& settings, const FrameChoice& choice) {
+    Json list = Json::array();
+    const auto place_of = [&](std::ptrdiff_t body) -> std::ptrdiff_t {
+        if (body < 0) return -1;
+        const auto wanted = static_cast<std::size_t>(body);
+        const auto found = std::lower_bound(choice.bodies.begin(), choice.bodies.end(), wanted);
+        return found == choice.bodies.end() || *found != wanted ? -2 : found - choice.bodies.begin();
+    };
+    for (const JointLine& line : joint_lines(settings)) {
+        const std::ptrdiff_t a = place_of(line.a), b = place_of(line.b);
+        if (a > -2 && b > -2) list.push_back({a, line.ax, line.ay, b, line.bx, line.by});
+    }
+    return list;
+}
+
 Json description(const H5Reader& trajectory, const RunFiles& files, const FrameChoice& choice) {
     Json json{{"bodies", choice.bodies.size()},
               {"all_bodies", trajectory.body_count()},
@@ -183,6 +199,7 @@ Json description(const H5Reader& trajectory, const RunFiles& files, const FrameC
         json[key] = settings.is_object() && settings.contains(key) ? settings[key] : Json();
     json["edges"] = edges(settings, choice);
     json["shapes"] = shapes(trajectory, settings, choice);
+    json["joints"] = joints(settings, choice);
     return json;
 }
 

@@ -7,6 +7,8 @@
 #include <carom/effects.hpp>
 #include <carom/errors.hpp>
 #include <carom/generators.hpp>
+#include <carom/ids.hpp>
+#include <carom/joints.hpp>
 #include <carom/ledger.hpp>
 #include <carom/materials.hpp>
 #include <carom/profile.hpp>

@@ -57,6 +57,32 @@ struct Gas {
     Body body{};  ///< what every disc is like; it has no name, its position and radius are not used
 };
 
+/// Bodies in a row, each joined to the next: a chain.
+struct BodyChain {
+    std::int64_t count = 1;            ///< >= 1
+    Vec2 origin{};                     ///< m, centre of the first body
+    Vec2 direction{1, 0};              ///< from each to the next, of any length but 0
+    double spacing = 1;                ///< m, from centre to centre, > 0
+    JointKind link = RevoluteJoint{};  ///< hinges and welds are midway between two bodies
+    bool pinned = true;  ///< whether the first hangs on the world: by such a link half a spacing before it,
+                         ///< by a hinge at its centre if links are rods
+    Body body{};         ///< what every body is like; it has no name, its position is not used
+};
+
+/// Bodies on a square lattice, joined to their neighbours, that do not touch each other: a net or a cloth.
+/// Row by row from the bottom.
+struct Net {
+    enum class Pinned : std::uint8_t { none, corners, top };
+
+    std::int64_t count_x = 2;  ///< bodies a row, >= 1
+    std::int64_t count_y = 2;  ///< rows, >= 1
+    Vec2 origin{};             ///< m, centre of the first body
+    Vec2 spacing{1, 1};        ///< m, > 0
+    JointKind link = DistanceJoint{};
+    Pinned pinned = Pinned::corners;  ///< which bodies are static: the two upper corners, or the top row
+    Body body{};  ///< what every body is like; it has no name, its position and group are not used
+};
+
 /// Appends the bodies of a generator to a scene. The same description gives the same bits on every machine:
 /// numbers come from a generator of our own, and from +, -, *, / and square roots alone.
 ///
@@ -71,6 +97,8 @@ BodyId add_lattice(Scene& scene, const Lattice& lattice);
 BodyId add_stack(Scene& scene, const Stack& stack);
 BodyId add_pyramid(Scene& scene, const Pyramid& pyramid);
 BodyId add_gas(Scene& scene, const Gas& gas);
+BodyId add_chain(Scene& scene, const BodyChain& chain);
+BodyId add_net(Scene& scene, const Net& net);
 
 /// What is wrong with a generator, with pointers as in the scene file ("/spacing/0"); nothing if all is well.
 /// A gas that does not fit its box is found by `add_gas`.
@@ -78,5 +106,7 @@ std::optional<Problem> find_problem(const Lattice& lattice);
 std::optional<Problem> find_problem(const Stack& stack);
 std::optional<Problem> find_problem(const Pyramid& pyramid);
 std::optional<Problem> find_problem(const Gas& gas, const Scene& scene);
+std::optional<Problem> find_problem(const BodyChain& chain);
+std::optional<Problem> find_problem(const Net& net);
 
 }  // namespace carom

@@ -21,7 +21,7 @@ struct EnergyByCause {
     double restitution = 0;  ///< lost where bodies or walls meet with restitution < 1
     double friction = 0;     ///< lost where surfaces slide on each other
     double correction = 0;   ///< spent on pushing overlapping bodies apart against gravity
-    double joints = 0;       ///< zero in this version
+    double joints = 0;       ///< by springs, motors and targets; what rigid joints take: their error
     double drive = 0;        ///< by kinematic bodies
     double sleep = 0;        ///< what bodies still had when they were put to sleep
     /// What came and went with bodies that calls added, changed or removed, or that were quarantined:

@@ -70,6 +70,7 @@ struct Plan {
     std::string solver_reason;
     int substeps = 1;
     int iterations = 1;  ///< sweeps over the contacts a substep (solver `soft`); 1: the solver does none
+    std::string joints;  ///< how they are solved, and how many in which way; empty without joints
     std::string precision;
     std::string isa;
     int threads = 1;

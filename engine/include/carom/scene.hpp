@@ -3,6 +3,8 @@
 #include <carom/accuracy.hpp>
 #include <carom/effects.hpp>
 #include <carom/errors.hpp>
+#include <carom/ids.hpp>
+#include <carom/joints.hpp>
 #include <carom/materials.hpp>
 #include <carom/shapes.hpp>
 #include <carom/vec2.hpp>
@@ -13,14 +15,6 @@
 #include <vector>
 
 namespace carom {
-
-/// Names a body for good: rows of the columns move, handles do not. A removed body's handle goes stale.
-struct BodyId {
-    std::uint32_t index = UINT32_MAX;
-    std::uint32_t generation = 0;
-
-    friend bool operator==(BodyId, BodyId) = default;
-};
 
 enum class BodyType : std::uint8_t {
     dynamic_body,    ///< moved by gravity, drag and impulses
@@ -41,6 +35,8 @@ struct Body {
     Material material{};
     bool fixed_rotation = false;
     std::string color{};  ///< empty, or "#rrggbb"; for pictures only
+    /// Bodies of the same group below zero do not touch each other; 0: none.
+    std::int32_t group = 0;
 };
 
 /// A closed axis-aligned box around the bodies; each side can be left open.
@@ -71,20 +67,21 @@ struct Record {
 };
 
 /// Limits of what a scene may hold; beyond them single precision itself fails.
-inline constexpr double kLargestPosition = 1e8;             // m
-inline constexpr double kLargestSpeed = 1e7;                // m/s; its fourth power must stay finite in float
-inline constexpr double kSmallestRadius = 1e-9;             // m
-inline constexpr double kLargestRadius = 1e7;               // m
-inline constexpr double kSmallestEdge = 1e-9;               // m, of a segment and of each edge of a chain
-inline constexpr double kLargestRadiusRatio = 1e7;          // largest / smallest in one scene
-inline constexpr double kSmallestMass = 1e-30;              // kg, and kg/m² for densities
-inline constexpr double kLargestMass = 1e30;                // kg, and kg/m² for densities
-inline constexpr double kLargestAngle = 1e8;                // rad
-inline constexpr double kLargestAngularVelocity = 1e7;      // rad/s
-inline constexpr double kLargestDrag = 1e9;                 // 1/s
-inline constexpr double kSmallestStep = 1e-12;              // s; 1/dt must stay finite in float
-inline constexpr double kLargestStep = 10;                  // s
-inline constexpr double kLargestAcceleration = 1e7;         // m/s²
+inline constexpr double kLargestPosition = 1e8;         // m
+inline constexpr double kLargestSpeed = 1e7;            // m/s; its fourth power must stay finite in float
+inline constexpr double kSmallestRadius = 1e-9;         // m
+inline constexpr double kLargestRadius = 1e7;           // m
+inline constexpr double kSmallestEdge = 1e-9;           // m, of a segment and of each edge of a chain
+inline constexpr double kLargestRadiusRatio = 1e7;      // largest / smallest in one scene
+inline constexpr double kSmallestMass = 1e-30;          // kg, and kg/m² for densities
+inline constexpr double kLargestMass = 1e30;            // kg, and kg/m² for densities
+inline constexpr double kLargestAngle = 1e8;            // rad
+inline constexpr double kLargestAngularVelocity = 1e7;  // rad/s
+inline constexpr double kLargestDrag = 1e9;             // 1/s
+inline constexpr double kSmallestStep = 1e-12;          // s; 1/dt must stay finite in float
+inline constexpr double kLargestStep = 10;              // s
+inline constexpr double kLargestAcceleration = 1e7;     // m/s²
+inline constexpr std::size_t kLargestJointCount = 1u << 26;
 inline constexpr std::size_t kLargestBodyCount = 1u << 26;  // rows are 32-bit; 64 Mi bodies need about 12 GiB
 
 /// What is wrong with a material, with pointers as in the scene file ("/restitution"); nothing if all is
@@ -98,6 +95,7 @@ struct Scene {
     Drag drag{};
     std::optional<Walls> walls{};
     std::vector<Body> bodies{};
+    std::vector<Joint> joints{};
     StepSettings step{};
     Accuracy accuracy{};
     EffectOverrides effects{};
@@ -107,9 +105,13 @@ struct Scene {
     /// @return the handle that body has in every world made of this scene.
     /// @throws Error (too_large) if the scene already holds kLargestBodyCount bodies.
     BodyId add(Body body);
+    /// Appends a joint of bodies of this scene; it is checked likewise.
+    /// @return the handle that joint has in every world made of this scene.
+    /// @throws Error (too_large) if the scene already holds kLargestJointCount joints.
+    JointId add(Joint joint);
 
     /// Checks every value: finite, within its limits, consistent, built in this version.
-    /// Cost: O(bodies).
+    /// Cost: O(bodies + joints).
     /// @throws Error naming the first item that is wrong, its value, the limit and the remedy.
     void validate() const;
 

@@ -4,6 +4,7 @@
 #include <carom/profile.hpp>
 #include <carom/scene.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -134,6 +135,36 @@ class BasicWorld {
     /// @throws Error (inconsistent) if that solver cannot do what the world has, or steps no World; the world
     /// is then unchanged, but for bodies that woke.
     void set_solver(Solver solver);
+
+    /// Adds a joint between bodies where they stand now; they wake.
+    /// @throws Error as `Scene::validate`; (stale_handle) if a body is not there; (inconsistent) if the world
+    /// has a solver that knows no joints and was asked for it. Cost: O(joints) in the next step.
+    JointId add(const Joint& joint);
+    /// Removes a joint; its handle goes stale. A removed body takes its joints along. @throws Error
+    /// (stale_handle)
+    void remove(JointId joint);
+    std::size_t joint_count() const noexcept;
+    /// Whether a handle names a joint of this world: it goes stale when the joint breaks, too.
+    bool is_alive(JointId joint) const noexcept;
+    /// Changes a motor of a revolute, prismatic or wheel joint.
+    /// @param speed  rad/s or m/s  @param most  N m or N, >= 0; 0 turns it off
+    /// @throws Error (stale_handle, not_finite, out_of_range, inconsistent)
+    void set_motor(JointId joint, double speed, double most);
+    /// Changes the limits of a distance, revolute or prismatic joint [m or rad]. @throws Error as set_motor
+    void set_limits(JointId joint, double lower, double upper);
+    /// Moves the target of a target joint [m]. @throws Error as set_motor
+    void set_target(JointId joint, Vec2 target);
+    /// Mean force on b in the last step [N]; of solver `soft` where joints are iterated, that of its last
+    /// substep. @throws Error (stale_handle)
+    Vec2 joint_force(JointId joint) const;
+    /// Mean torque on b in the last step, about its anchor [N m]. @throws Error (stale_handle)
+    double joint_torque(JointId joint) const;
+    /// How far joints are from what they hold, from positions. Cost: O(joints).
+    JointErrors joint_errors() const;
+    /// The joints that broke in the last step, by the handles they had.
+    std::vector<JointId> broken_joints() const;
+    /// Where a joint holds a and b now [m], for pictures. @throws Error (stale_handle)
+    std::array<Vec2, 2> joint_anchors(JointId joint) const;
 
     double time() const noexcept;  ///< s, sum of all steps
     /// Energy and momentum now; by cause if the ledger effect is on. Cost: O(bodies).

@@ -20,6 +20,8 @@ constexpr std::size_t kContactsPerTask = 256;
 
 template <class Real>
 void Manifolds<Real>::add_pair(const WorldState<Real>& world, std::int32_t a, std::int32_t b, bool boxes) {
+    if (world.has_filters() && !world.may_collide(static_cast<std::size_t>(a), static_cast<std::size_t>(b)))
+        return;
     const Bodies<Real>& bodies = world.bodies;
     if (a > b) std::swap(a, b);
     const auto i = static_cast<std::size_t>(a), k = static_cast<std::size_t>(b);

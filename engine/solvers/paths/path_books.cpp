@@ -49,6 +49,7 @@ struct BookedContact {
 
 template <class Real>
 void book_paths(const PathSolver<Real>& paths, const BodyRecords<Real>& records, Books& books) {
+    if (!books.is_open && !paths.has_walls()) return;
     const auto is_moved = [&](std::int32_t row) { return static_cast<std::size_t>(row) < records.count(); };
     paths.for_each([&](const PathContact<Real>& contact) {
         const BookedContact<Real> booked(contact);

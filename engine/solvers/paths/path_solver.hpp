@@ -57,6 +57,8 @@ class PathSolver {
                int passes, bool sweeps);
     /// Moves the surfaces of kinematic bodies on by a substep.
     void advance(const SubstepTerms& terms, BodyRecords<Real>& records);
+    /// Whether some contact of the step may be with a wall.
+    bool has_walls() const { return !manifolds.live().empty() && manifolds.live().back() < 0; }
     /// Calls fn(contact) for each PathContact of the step.
     template <class Fn>
     void for_each(const Fn& fn) const {

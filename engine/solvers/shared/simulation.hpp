@@ -67,6 +67,9 @@ class Simulation {
 
     // Reports.
 
+    /// Substeps of a step that joints call for, and how they are solved, in words; empty without joints.
+    virtual int substeps_for_joints() const { return 1; }
+    virtual std::string describe_joints() const { return {}; }
     /// Those sweeps; 1 for a solver that does none.
     virtual int iterations() const { return 1; }
     /// Adds what the solver has counted.
@@ -87,7 +90,8 @@ class Simulation {
     Executor executor;
     Interruption interruption;
     const KernelTable<Real>* kernels = nullptr;
-    int substeps_asked_for = 1;  ///< strong drag can make a step take more
+    int substeps_asked_for = 1;           ///< strong drag can make a step take more
+    bool has_asked_for_substeps = false;  ///< else they are the solver's own number
     StageTimes times;
     std::int64_t step_count = 0;
 
@@ -105,7 +109,9 @@ class Simulation {
     /// Whether anything can move, on its own or because something else does.
     bool has_anything_to_move() const;
     /// Whether two things are there that can touch.
-    bool can_meet() const { return world.bodies.rows() > 1 || world.effects.walls; }
+    bool can_meet() const {
+        return (world.bodies.rows() > 1 && !(world.bodies.common_group < 0)) || world.effects.walls;
+    }
 
   protected:
     /// What is of every solver.

@@ -305,7 +305,8 @@ void Impacts<Real>::find_strangers(std::int32_t row, double from) {
     for (std::size_t k = 0; k < found; ++k) {
         const std::int32_t other = near_rows_[k];
         if (other == row || world_->bodies.is_immovable(static_cast<std::size_t>(other)) ||
-            !world_->bodies.is_disc(static_cast<std::size_t>(other)) || is_known(row, other))
+            !world_->bodies.is_disc(static_cast<std::size_t>(other)) || is_known(row, other) ||
+            !world_->may_collide(static_cast<std::size_t>(row), static_cast<std::size_t>(other)))
             continue;
         const auto number = static_cast<std::int32_t>(strangers_.size());
         const std::int32_t a = std::min(row, other), b = std::max(row, other);

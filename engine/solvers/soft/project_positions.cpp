@@ -140,6 +140,7 @@ void EndProjection<Real>::list_pair(const Inputs& in, std::int32_t row_a, std::i
     const Bodies<Real>& bodies = in.world.bodies;
     const Column<Real>& motion = in.flight.motion;
     const auto a = static_cast<std::size_t>(row_a), b = static_cast<std::size_t>(row_b);
+    if (in.world.has_filters() && !in.world.may_collide(a, b)) return;
     const double of_a = bodies.radius[a], of_b = bodies.radius[b], smaller = std::min(of_a, of_b);
     const double near = of_a + of_b + smaller;
     if (length_squared(projection_.place[b] - projection_.place[a]) > near * near) return;
@@ -273,7 +274,9 @@ double EndProjection<Real>::free_share(const Inputs& in, std::int32_t row, Vec2 
     double free = 1;
     const auto stop_at = [&](std::int32_t other) {
         const auto j = static_cast<std::size_t>(other);
-        if (other == row || !in.world.bodies.is_disc(j)) return;
+        if (other == row || !in.world.bodies.is_disc(j) ||
+            (in.world.has_filters() && !in.world.may_collide(i, j)))
+            return;
         const double reach = (radius + static_cast<double>(in.world.bodies.radius[j])) * (1 - kLeftOver);
         const Vec2 apart = from - projection_.place[j];
         const DiscApproach<double> discs(apart.x, apart.y, way.x, way.y, reach);

@@ -16,7 +16,9 @@ class SoftSimulation : public Simulation<Real> {
     SoftSimulation() : Simulation<Real>(MarginRule::own) {}
 
     Solver solver() const override { return Solver::soft; }
-    bool has_long_loops() const override { return soft.graph.groups.chunks > 1; }
+    bool has_long_loops() const override {
+        return soft.graph.groups.chunks > 1 || soft.joints.has_long_loops();
+    }
     void forget_derived_state() override;
     void remove(std::size_t row) override;
     void wake_at(Vec2 place, double reach) override;
@@ -29,6 +31,20 @@ class SoftSimulation : public Simulation<Real> {
     void visit_state(StateSize& archive) const override { visit_all(*this, archive); }
     void visit_state(StateWriter& archive) const override { visit_all(*this, archive); }
     void visit_state(StateReader& archive) override { visit_all(*this, archive); }
+
+    /// Substeps that joints call for where nobody asked for a number: nets of rods and hinges are swept, and
+    /// stretch less the more there are (docs/decisions/0026-joints.md).
+    int substeps_for_joints() const override {
+        if (this->has_asked_for_substeps || this->world.joints.empty()) return 1;
+        soft.joints.find_groups(this->world);
+        return soft.joints.has_swept() ? SweptJoints<Real>::kSubsteps : 1;
+    }
+
+    std::string describe_joints() const override {
+        if (this->world.joints.empty()) return {};
+        soft.joints.find_groups(this->world);
+        return soft.joints.describe();
+    }
 
     /// Keeps what a step writes before its end, if it may be interrupted: the books alone.
     void keep_start_of_step() {
@@ -43,7 +59,7 @@ class SoftSimulation : public Simulation<Real> {
     }
 
     EdgeCandidates<Real> edge_candidates;
-    SoftSolver<Real> soft;
+    mutable SoftSolver<Real> soft;  // finds groups of joints when asked for a plan
     Tunnelling<Real> tunnelling;
     Sleepers<Real> sleepers;
     std::int64_t graph_of_rebuild = -1;  ///< which candidate pairs the contact graph was made of

@@ -13,6 +13,8 @@ namespace {
 constexpr int kFirstSweeps = 32;
 /// Likewise along paths of contacts, which take loads farther.
 constexpr int kFirstPasses = 8;
+/// Turns of joints and contacts a substep where they bear on each other.
+constexpr int kTurns = 4;
 constexpr std::size_t kRowsPerTask = 1024;  // where there is but one group
 
 static_assert(kContactBlock == kRowPadding);
@@ -37,8 +39,11 @@ void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Colum
     terms_.substep_dt = h, terms_.elapsed = 0;
     terms_.gravity_change = clock.s * gravity, terms_.decay = clock.u;
     terms_.spin_decay = flight_clock_at(h, world.drag.angular).u;
+    if (world.effects.joints) joints.find_groups(world);
     // A record for the padding of each group, so that no two tasks write to the same.
-    records_.begin(world, motion, masses_, ContactGraph<Real>::padding_rows(graph.groups), terms_, loops_);
+    records_.begin(world, motion, masses_,
+                   std::max(ContactGraph<Real>::padding_rows(graph.groups), joints.rows_beyond()), terms_,
+                   loops_);
 }
 
 template <class Real>
@@ -101,6 +106,16 @@ void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
 }
 
 template <class Real>
+void SoftSolver<Real>::solve_joints_and_contacts(WorldState<Real>& world) {
+    const auto next = Sweeps::next(view(), Sweeps::Blocks::all, 1);
+    for (int turn = 0; turn < kTurns; ++turn) {
+        joints.solve_again(joint_step(world), loops_);
+        if (world.bodies.has_shapes) paths.solve(terms_, records_, loops_, 1, true);
+        sweeps_.run(view(), {next.data(), next.size()});
+    }
+}
+
+template <class Real>
 void SoftSolver<Real>::solve_uneven_contacts() {
     if (masses_.are_uneven())
         uneven_.solve(Sweeps::arguments(view(), graph.pairs), Sweeps::arguments(view(), supports_),
@@ -147,9 +162,9 @@ void SoftSolver<Real>::end_contacts() {
 
 template <class Real>
 std::size_t SoftSolver<Real>::bytes() const {
-    return graph.bytes() + paths.bytes() + impacts.bytes() + masses_.bytes() + records_.bytes() +
-           supports_.bytes() + support_finder_.bytes() + warm_start_.bytes() + sweeps_.bytes() +
-           loads_.bytes() + uneven_.bytes() + projection_.bytes();
+    return graph.bytes() + paths.bytes() + impacts.bytes() + joints.bytes() + masses_.bytes() +
+           records_.bytes() + supports_.bytes() + support_finder_.bytes() + warm_start_.bytes() +
+           sweeps_.bytes() + loads_.bytes() + uneven_.bytes() + projection_.bytes();
 }
 
 template class SoftSolver<float>;

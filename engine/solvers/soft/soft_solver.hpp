@@ -14,6 +14,7 @@
 #include "solvers/soft/contact_settings.hpp"
 #include "solvers/soft/contact_sweeps.hpp"
 #include "solvers/soft/impacts.hpp"
+#include "solvers/soft/joints/soft_joints.hpp"
 #include "solvers/soft/load_correction.hpp"
 #include "solvers/soft/pair_finder.hpp"
 #include "solvers/soft/project_positions.hpp"
@@ -58,6 +59,7 @@ class SoftSolver {
     ContactGraph<Real> graph;
     Impacts<Real> impacts;
     PathSolver<Real> paths;  ///< contacts of shapes that are no discs
+    SoftJoints<Real> joints;
     SoftCounters counters;
     /// Sweeps over the contacts a substep, >= 1: a first one and next ones. With 1 the first is not
     /// over-relaxed and loads are not corrected on the coarse grid; with more than 2 no contact is left out.
@@ -110,9 +112,27 @@ class SoftSolver {
     /// Carries out the impacts of a substep.
     void carry_out_impacts(const Column<Real>& motion, Books& books, Interruption& interruption);
     /// Moves the bodies through the substep that was solved.
-    void advance_bodies(bool is_last) {
+    void advance_bodies(bool is_last, bool has_joints) {
         paths.advance(terms_, records_);
-        records_.advance(is_last, terms_, loops_);
+        records_.advance(is_last, terms_, loops_, has_joints ? joints.joined() : nullptr);
+    }
+
+    // Joints: solvers/soft/joints/.
+
+    void begin_joints(WorldState<Real>& world, double dt) {
+        joints.begin_step(joint_step(world), view(), paths, dt);
+    }
+    void solve_joints(WorldState<Real>& world, int number) {
+        joints.solve(joint_step(world), loops_, number);
+    }
+    /// Contacts and joints in turns, where they bear on each other.
+    void solve_joints_and_contacts(WorldState<Real>& world);
+    void end_joints_of_substep(WorldState<Real>& world, Books& books) {
+        joints.end_substep(joint_step(world), books);
+    }
+    /// @return whether a joint broke
+    bool end_joints(WorldState<Real>& world, Books& books, double dt) {
+        return joints.end_step(joint_step(world), books, dt);
     }
 
     /// The impulses back to the candidates.
@@ -136,7 +156,7 @@ class SoftSolver {
     void drop_books() { books_.gravity_work = 0; }
 
     /// Masses, shapes or rows have changed: what was derived from them is made anew.
-    void forget_rows() { masses_.forget(); }
+    void forget_rows() { masses_.forget(), joints.forget(); }
 
     const BodyRecords<Real>& records() const { return records_; }
     /// How well the last step's contacts were solved. Cost: O(contacts).
@@ -157,6 +177,9 @@ class SoftSolver {
   private:
     using Sweeps = ContactSweeps<Real>;
 
+    JointStep<Real> joint_step(WorldState<Real>& world) {
+        return {world, records_, terms_, books_.gravity_work};
+    }
     StepView<Real> view() { return {graph, supports_, records_, settings_, terms_, loops_}; }
 
     // What holds for the present step.

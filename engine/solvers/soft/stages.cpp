@@ -22,6 +22,7 @@ void update_candidates(SoftSimulation<Real>& sim) {
 template <class Real>
 void update_contacts(SoftSimulation<Real>& sim) {
     sim.soft.graph.keeps_rolling = sim.world.effects.rolling_resistance;
+    sim.soft.graph.filter = sim.world.has_filters() ? &sim.world : nullptr;
     const Walls* walls = sim.world.walls ? &*sim.world.walls : nullptr;
     sim.soft.graph.sleepers = sim.sleepers.pairs();
     if (sim.graph_of_rebuild != sim.candidates.rebuild_count() && sim.world.effects.sleeping)
@@ -40,6 +41,11 @@ void update_contacts(SoftSimulation<Real>& sim) {
 }
 
 template <class Real>
+void end_joints(SoftSimulation<Real>& sim) {
+    if (sim.soft.end_joints(sim.world, sim.world.books, sim.flight_dt)) sim.forget_derived_state();
+}
+
+template <class Real>
 void quarantine_bodies(SoftSimulation<Real>& sim) {
     for (const std::int32_t lost : sim.lost) {
         const auto row = static_cast<std::size_t>(lost);
@@ -55,6 +61,8 @@ template void update_candidates(SoftSimulation<float>&);
 template void update_candidates(SoftSimulation<double>&);
 template void update_contacts(SoftSimulation<float>&);
 template void update_contacts(SoftSimulation<double>&);
+template void end_joints(SoftSimulation<float>&);
+template void end_joints(SoftSimulation<double>&);
 template void quarantine_bodies(SoftSimulation<float>&);
 template void quarantine_bodies(SoftSimulation<double>&);
 

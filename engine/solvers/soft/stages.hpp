@@ -31,6 +31,10 @@ void update_contacts(SoftSimulation<Real>& sim);
 template <class Real>
 bool wake_marked(SoftSimulation<Real>& sim);
 
+/// Brings velocities of groups of joints to whole times; removes joints that break.
+template <class Real>
+void end_joints(SoftSimulation<Real>& sim);
+
 /// Puts back what was thrown through a wall within the step.
 template <class Real>
 void clamp_to_walls(SoftSimulation<Real>& sim);

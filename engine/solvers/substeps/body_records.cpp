@@ -69,7 +69,8 @@ void BodyRecords<Real>::add_velocity(std::int32_t row, Vec2 dv, double du) {
 }
 
 template <class Real>
-void BodyRecords<Real>::advance(bool is_last, const SubstepTerms& terms, const StepLoops<Real>& loops) {
+void BodyRecords<Real>::advance(bool is_last, const SubstepTerms& terms, const StepLoops<Real>& loops,
+                                const Real* joined) {
     const auto real = [](double value) { return static_cast<Real>(value); };
     AdvanceBodies<Real> k{};
     k.velocity = velocity.data(), k.start = start_columns();
@@ -77,7 +78,8 @@ void BodyRecords<Real>::advance(bool is_last, const SubstepTerms& terms, const S
     k.h = real(terms.substep_dt);
     k.gain_x = real(terms.gravity_change.x), k.gain_y = real(terms.gravity_change.y);
     k.decay = real(terms.decay), k.spin_decay = real(terms.spin_decay), k.is_last = is_last;
-    const auto kernel = loops.kernels->advance_bodies[has_rotation_ ? 1 : 0];
+    k.joined = joined;
+    const auto kernel = loops.kernels->advance_bodies[(has_rotation_ ? 1 : 0) + (joined ? 2 : 0)];
     loops.executor->for_each_chunk(
         count_, loops.rows_per_task, kNanosecondsToAdvance,
         [&](std::size_t, std::size_t first, std::size_t last) { kernel(k, first, padded(last)); });

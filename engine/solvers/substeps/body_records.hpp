@@ -28,7 +28,8 @@ class BodyRecords {
     void begin(const WorldState<Real>& world, const Column<Real>& motion, const BodyMasses<Real>& masses,
                std::size_t padding_rows, const SubstepTerms& terms, const StepLoops<Real>& loops);
     /// Moves the bodies through the substep that was solved; foresees the next, unless it was the last.
-    void advance(bool is_last, const SubstepTerms& terms, const StepLoops<Real>& loops);
+    /// @param joined  [rows], above zero for bodies that have joints; null where there are none
+    void advance(bool is_last, const SubstepTerms& terms, const StepLoops<Real>& loops, const Real* joined);
     /// Columns of bodies from records.
     /// @param lost_rows  room for `lost` by chunk
     /// @param lost  out: rows whose state left the limits; they stand still where they were

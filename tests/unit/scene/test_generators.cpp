@@ -200,7 +200,7 @@ TEST_SUITE("scene/generators") {
 
     TEST_CASE("a lattice goes row by row from the bottom, staggered rows half a spacing to the right") {
         Scene scene;
-        scene.add({});
+        scene.add(Body{});
         const BodyId first = add_lattice(scene, {.count_x = 3,
                                                  .count_y = 2,
                                                  .origin = {10, 20},

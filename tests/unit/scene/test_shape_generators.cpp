@@ -23,7 +23,7 @@ void check_refused(const Generator& generator, ErrorCode code, const std::string
 
 TEST_CASE("a pyramid of base n has n (n + 1) / 2 boxes, each centred over the gap of the two below it") {
     Scene scene;
-    scene.add({});
+    scene.add(Body{});
     const BodyId first =
         add_pyramid(scene, {.base = 7, .origin = {2, 1}, .gap = 0.25, .body = {.shape = Box{2, 1}}});
     CHECK(first.index == 1);

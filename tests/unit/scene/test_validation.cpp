@@ -345,8 +345,8 @@ TEST_SUITE("scene/validation") {
 
     TEST_CASE("a body's handle is its index, and bodies without a name do not share one") {
         Scene scene;
-        CHECK(scene.add({}) == BodyId{0, 0});
-        CHECK(scene.add({}) == BodyId{1, 0});
+        CHECK(scene.add(Body{}) == BodyId{0, 0});
+        CHECK(scene.add(Body{}) == BodyId{1, 0});
         CHECK_FALSE(scene.find_problem().has_value());
     }
 

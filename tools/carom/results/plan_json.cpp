@@ -10,6 +10,7 @@ Json plan_json(const Plan& plan) {
     Json json{{"solver", {{"name", plan.solver}, {"reason", plan.solver_reason}}},
               {"substeps", plan.substeps},
               {"iterations", plan.iterations},
+              {"joints", plan.joints},
               {"precision", plan.precision},
               {"isa", plan.isa},
               {"threads", plan.threads},

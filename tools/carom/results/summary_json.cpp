@@ -136,7 +136,7 @@ Json summary_of(const RunOutcome& run) {
               {"scene", run.scene_name},
               {"version", kVersion},
               {"bodies", run.bodies},
-              {"joints", 0},
+              {"joints", run.joints.joints},
               {"steps", run.steps},
               {"steps_asked", run.steps_asked},
               {"interrupted", run.interrupted},
@@ -165,7 +165,7 @@ Json summary_of(const RunOutcome& run) {
                         {"overlap_mean", run.overlaps.mean},
                         {"overlap_max", run.overlaps.max}};
     json["contacts_over_time"] = contacts_over_time(run);
-    json["joints_error"] = {{"mean", 0.0}, {"max", 0.0}};
+    json["joints_error"] = {{"mean", run.joints.mean}, {"max", run.joints.max}};
     json["counters"] = counters_of(run.profile);
     json["quarantined"] = run.quarantined;
     json["state_hash"] = hash_text(run.state_hash);

@@ -26,10 +26,12 @@ Materials read_settings(const Node& root, Scene& scene);
 Shape read_shape(const Node& node);
 BodyType read_body_type(const Node& node);
 void read_bodies(const Node& root, const Materials& materials, Scene& scene);
-/// Makes the bodies of one generator.
+/// Makes the bodies and the joints of one generator.
 void read_generator(const Node& node, const Materials& materials, const SceneFileLimits& limits,
                     Scene& scene);
-/// No kind of joint is built yet: says so if there is one.
-void refuse_joints(const Node& root);
+/// The kind of the joints of a generator: its name, or an object as in "joints", without bodies.
+JointKind read_link(const Node& node);
+/// Puts the listed joints before those that generators made. To be called when all bodies are there.
+void read_joints(const Node& root, Scene& scene);
 
 }  // namespace carom::tool

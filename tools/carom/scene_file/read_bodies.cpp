@@ -5,9 +5,23 @@
 namespace carom::tool {
 namespace {
 
-constexpr std::array<std::string_view, 11> kBodyKeys{
+constexpr std::array<std::string_view, 12> kBodyKeys{
     "name", "type",     "shape",          "position", "angle", "velocity", "angular_velocity",
-    "mass", "material", "fixed_rotation", "color"};
+    "mass", "material", "fixed_rotation", "color",    "filter"};
+
+/// {"group": -1}: bodies of one group below zero do not touch each other.
+std::int32_t read_group(const Node& filter) {
+    static constexpr std::array<std::string_view, 1> kKeys{"group"};
+    filter.expect_keys(kKeys);
+    const Node group = filter.at("group");
+    const std::int64_t value = group.integer();
+    if (value < INT32_MIN || value > 0)
+        group.fail(ErrorCode::out_of_range,
+                   "group " + std::to_string(value) +
+                       "; expected 0, for none, or a number below it. Bodies of one group "
+                       "below zero do not touch each other.");
+    return static_cast<std::int32_t>(value);
+}
 
 Body read_body(const Node& node, const Materials& materials) {
     node.expect_keys(kBodyKeys);
@@ -24,6 +38,7 @@ Body read_body(const Node& node, const Materials& materials) {
     body.material = material ? read_material(*material, materials) : materials.standard;
     node.read("fixed_rotation", body.fixed_rotation);
     node.read("color", body.color);
+    if (const auto filter = node.find("filter")) body.group = read_group(*filter);
     return body;
 }
 
@@ -100,20 +115,6 @@ void read_bodies(const Node& root, const Materials& materials, Scene& scene) {
     bodies->expect_array("bodies");
     scene.bodies.reserve(bodies->size());
     for (std::size_t i = 0; i < bodies->size(); ++i) scene.add(read_body((*bodies)[i], materials));
-}
-
-void refuse_joints(const Node& root) {
-    static constexpr std::array<std::string_view, 6> kJoints{"distance", "revolute", "prismatic",
-                                                             "weld",     "wheel",    "target"};
-    const auto joints = root.find("joints");
-    if (!joints) return;
-    joints->expect_array("joints");
-    if (joints->size() == 0) return;
-    const Node first = (*joints)[0];
-    const Node joint = first.only_member(kJoints, "kind of joint");
-    joint.fail(ErrorCode::not_built_yet,
-               "the joint \"" + std::string(joint.key()) +
-                   "\" is not built yet; this version has no joints. Take \"joints\" out.");
 }
 
 }  // namespace carom::tool

@@ -165,6 +165,56 @@ void make_gas(const Request& request, Scene& scene) {
     add_gas(scene, gas);
 }
 
+void make_chain(const Request& request, Scene& scene) {
+    const Node& node = request.node;
+    static constexpr std::array<std::string_view, 12> kKeys{
+        "count", "origin",   "direction", "spacing",        "joint", "pinned",
+        "shape", "material", "type",      "fixed_rotation", "color", "kind"};
+    expect_keys(request, kKeys);
+    BodyChain chain;
+    chain.count = node.at("count").integer();
+    node.read("origin", chain.origin);
+    node.read("direction", chain.direction);
+    chain.spacing = node.at("spacing").number();
+    if (const auto joint = node.find("joint")) chain.link = read_link(*joint);
+    node.read("pinned", chain.pinned);
+    node.at("shape");
+    chain.body = read_pattern(node, request.materials).body;
+    fail_if(node, find_problem(chain));
+    check_memory(request, static_cast<double>(chain.count), scene);
+    add_chain(scene, chain);
+}
+
+void make_net(const Request& request, Scene& scene) {
+    const Node& node = request.node;
+    static constexpr std::array<std::string_view, 11> kKeys{"count",          "origin", "spacing",  "joint",
+                                                            "pinned",         "shape",  "material", "type",
+                                                            "fixed_rotation", "color",  "kind"};
+    expect_keys(request, kKeys);
+    Net net;
+    const Node count = node.at("count");
+    if (!count.json().is_array() || count.size() != 2) count.fail_type("two whole numbers, [nx, ny]");
+    net.count_x = count[0].integer();
+    net.count_y = count[1].integer();
+    node.read("origin", net.origin);
+    const Node spacing = node.at("spacing");
+    const bool is_one = spacing.json().is_number();
+    net.spacing = is_one ? Vec2{spacing.number(), spacing.number()} : spacing.vec2();
+    if (const auto joint = node.find("joint")) net.link = read_link(*joint);
+    if (const auto pinned = node.find("pinned")) {
+        static constexpr std::array<std::string_view, 2> kPinned{"corners", "top"};
+        net.pinned = pinned->one_of(kPinned, "way to pin") == 0 ? Net::Pinned::corners : Net::Pinned::top;
+    }
+    node.at("shape");
+    net.body = read_pattern(node, request.materials).body;
+    const auto found = find_problem(net);
+    fail_if(node, found,
+            is_one ? std::pair<std::string_view, std::string_view>{"/spacing", "/spacing"}
+                   : std::pair<std::string_view, std::string_view>{});
+    check_memory(request, static_cast<double>(net.count_x) * static_cast<double>(net.count_y), scene);
+    add_net(scene, net);
+}
+
 }  // namespace
 
 void read_generator(const Node& node, const Materials& materials, const SceneFileLimits& limits,
@@ -177,10 +227,8 @@ void read_generator(const Node& node, const Materials& materials, const SceneFil
     if (name == "gas") return make_gas(request, scene);
     if (name == "stack") return make_stack(request, scene);
     if (name == "pyramid") return make_pyramid(request, scene);
-    inner.fail(ErrorCode::not_built_yet,
-               "the generator \"" + std::string(name) +
-                   "\" is not built yet: it makes joints, and joints are not built yet. Use \"lattice\", "
-                   "\"stack\", \"pyramid\" or \"gas\".");
+    if (name == "chain") return make_chain(request, scene);
+    make_net(request, scene);
 }
 
 }  // namespace carom::tool

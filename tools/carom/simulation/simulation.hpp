@@ -41,6 +41,7 @@ class Simulation {
     virtual Profile profile() const = 0;
     virtual Plan plan() const = 0;
     virtual OverlapReport overlaps() const = 0;
+    virtual JointErrors joint_errors() const { return {}; }
     virtual std::vector<std::size_t> quarantined() const = 0;
     virtual std::uint64_t state_hash() const = 0;
 };

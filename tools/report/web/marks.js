@@ -47,6 +47,31 @@ carom.marks = (() => {
     pen.stroke();
   };
 
+  /** Joints as lines between their anchors. */
+  const joints = (pen, frame) => {
+    const list = carom.frames.data.joints || [];
+    if (list.length === 0) return;
+    const place = carom.view.ofFrame(frame), scale = carom.view.scale();
+    const ends = (body, x, y) => {
+      if (body < 0) return [carom.view.x(x), carom.view.y(y)];
+      if (frame.x[body] === carom.frames.nowhere) return null;
+      const angle = frame.angle ? frame.angle[body] * carom.frames.turn : 0, cos = Math.cos(angle) * scale, sin = Math.sin(angle) * scale;
+      return [place.x0 + place.dx * frame.x[body] + cos * x - sin * y, place.y0 + place.dy * frame.y[body] - sin * x - cos * y];
+    };
+    pen.strokeStyle = carom.theme.named("--text");
+    pen.globalAlpha = 0.6;
+    pen.lineWidth = 1.25 * carom.view.sharpness();
+    pen.beginPath();
+    for (const [a, ax, ay, b, bx, by] of list) {
+      const from = ends(a, ax, ay), to = ends(b, bx, by);
+      if (!from || !to) continue;
+      pen.moveTo(...from);
+      pen.lineTo(...to);
+    }
+    pen.stroke();
+    pen.globalAlpha = 1;
+  };
+
   /** Calls `draw` with the place of every body of the frame that is on the canvas. */
   const each = (frame, draw) => {
     const place = carom.view.ofFrame(frame), { width, height } = carom.view.canvas, scale = carom.view.scale();
@@ -132,5 +157,5 @@ carom.marks = (() => {
     pen.globalAlpha = 1;
   };
 
-  return { walls, edges, rotation, arrows, impacts, smallest: smallestMark };
+  return { walls, edges, joints, rotation, arrows, impacts, smallest: smallestMark };
 })();

@@ -102,6 +102,7 @@ carom.painter = carom.frames && (() => {
     shapes(frame, ground);
     carom.marks.walls(pen);
     carom.marks.edges(pen, frame);
+    carom.marks.joints(pen, frame);
     if (wishes.marks) carom.marks.rotation(pen, frame);
     if (wishes.arrows) carom.marks.arrows(pen, frame);
     if (wishes.impacts) carom.marks.impacts(pen, index);

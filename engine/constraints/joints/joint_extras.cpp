@@ -1,0 +1,168 @@
+#include "constraints/joints/joint_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+// Rows of a system of joints that are no part of its tree: loops, motors and limits.
+
+namespace carom {
+namespace {
+
+constexpr double kUnbounded = 1e301;
+/// Share of the diagonal that keeps the complement of loops regular where their rows say the same twice.
+constexpr double kLoopSoftness = 1e-9;
+
+}  // namespace
+
+/// Motors and limits that may act in this substep; rows of loops always.
+void JointSystem::list_extras() {
+    extras_.clear();
+    for (const std::int32_t joint : loops_)
+        for (int row = 0; row < rows_[static_cast<std::size_t>(joint)].firm; ++row)
+            extras_.push_back({joint, row, -kUnbounded, kUnbounded});
+    for (std::size_t j = 0; j < joints.size(); ++j)
+        for (int k = rows_[j].firm; k < rows_[j].count; ++k) {
+            const JointRow& row = rows_[j].row[static_cast<std::size_t>(k)];
+            const double most = joints[j].joint->max_motor * (part_ == Part::half ? h_ / 2 : h_);
+            if (row.law == RowLaw::motor) {
+                extras_.push_back({static_cast<std::int32_t>(j), k, -most, most});
+                continue;
+            }
+            // A stop that is far from being reached in this substep is left out.
+            const double speed = std::fabs(row_velocity(j, k));
+            const double range = joints[j].joint->has_lower && joints[j].joint->has_upper
+                                     ? joints[j].joint->upper - joints[j].joint->lower
+                                     : 0;
+            if (row.value > 2 * h_ * speed + 0.02 * range) continue;
+            extras_.push_back({static_cast<std::int32_t>(j), k, 0, kUnbounded});
+        }
+    const std::size_t count = extras_.size();
+    if (count == 0) return;
+    extra_rhs_.assign(count, 0), low_.assign(count, 0), high_.assign(count, 0);
+    state_.assign(count, End::none);
+    matrix_.assign(count * count, 0);
+    if (columns_.size() < count) columns_.resize(count);
+    for (Vector& rhs : rhs_) rhs = {};
+    for (std::size_t i = 0; i < count; ++i) add_column(i);
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t k = 0; k < count; ++k)
+            matrix_[i * count + k] = change_of_row(extras_[i], columns_[k]);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Extra& extra = extras_[i];
+        const auto j = static_cast<std::size_t>(extra.joint);
+        const JointRow& row = rows_[j].row[static_cast<std::size_t>(extra.row)];
+        const SystemBody &a = bodies[static_cast<std::size_t>(joints[j].a)],
+                         &b = bodies[static_cast<std::size_t>(joints[j].b)];
+        const double alone = length_squared(row.n) * (a.inverse_mass + b.inverse_mass) +
+                             a.inverse_inertia * row.ja * row.ja + b.inverse_inertia * row.jb * row.jb;
+        matrix_[i * count + i] += kLoopSoftness * alone + softness_[j][static_cast<std::size_t>(extra.row)];
+        if (!(alone > 0)) matrix_[i * count + i] = 1;
+    }
+}
+
+void JointSystem::push_row(const Extra& extra, double impulse) {
+    const auto j = static_cast<std::size_t>(extra.joint);
+    const Vector of_a = row_of_body(j, extra.row, false), of_b = row_of_body(j, extra.row, true);
+    for (std::size_t c = 0; c < 3; ++c) {
+        pushed_[static_cast<std::size_t>(joints[j].a)][c] += impulse * of_a[c];
+        pushed_[static_cast<std::size_t>(joints[j].b)][c] += impulse * of_b[c];
+    }
+}
+
+void JointSystem::add_column(std::size_t extra) {
+    std::fill(pushed_.begin(), pushed_.end(), Vector{});
+    push_row(extras_[extra], 1);
+    solve_tree();
+    columns_[extra] = change_;
+}
+
+/// change holds nothing for bodies that do not move.
+double JointSystem::change_of_row(const Extra& extra, const std::vector<Vector>& change) const {
+    const auto j = static_cast<std::size_t>(extra.joint);
+    double sum = 0;
+    for (const bool of_b : {false, true}) {
+        const auto body = static_cast<std::size_t>(of_b ? joints[j].b : joints[j].a);
+        if (bodies[body].inverse_mass > 0) sum += dot3(row_of_body(j, extra.row, of_b), change[body]);
+    }
+    return sum;
+}
+
+/// The impulses x of the extra rows, low <= x <= high, where their residual A x - b is zero between the ends,
+/// >= 0 at the low and <= 0 at the high one: block principal pivoting (Júdice & Pires 1994), one row at a
+/// time once blocks have not come to an end. Projected sweeps over this matrix do not converge.
+void JointSystem::solve_bounded() {
+    constexpr int kMostRounds = 64, kBlockRounds = 12;
+    const std::size_t count = extras_.size();
+    solution_.assign(count, 0);
+    for (int round = 0; round < kMostRounds; ++round) {
+        solve_free();
+        bool any = false;
+        for (std::size_t i = 0; i < count && !(any && round >= kBlockRounds); ++i) {
+            End next = state_[i];
+            if (state_[i] == End::none) {
+                if (solution_[i] < low_[i]) next = End::low;
+                if (solution_[i] > high_[i]) next = End::high;
+            } else {
+                double off = -extra_rhs_[i];
+                for (std::size_t k = 0; k < count; ++k) off += matrix_[i * count + k] * solution_[k];
+                if (state_[i] == End::low ? off < 0 : off > 0) next = End::none;
+                if (low_[i] == high_[i]) next = End::low;
+            }
+            any = any || next != state_[i];
+            state_[i] = next;
+        }
+        if (!any) return;
+    }
+    for (std::size_t i = 0; i < count; ++i)  // a cycle: what is there, within its ends
+        solution_[i] = std::clamp(solution_[i], low_[i], high_[i]);
+}
+
+/// Those that are at no end, by L D L^T.
+void JointSystem::solve_free() {
+    const std::size_t count = extras_.size();
+    free_.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+        if (state_[i] == End::none)
+            free_.push_back(i);
+        else
+            solution_[i] = state_[i] == End::low ? low_[i] : high_[i];
+    }
+    const std::size_t m = free_.size();
+    factor_.resize(m * m), residual_.resize(m);
+    for (std::size_t i = 0; i < m; ++i) {
+        double rest = extra_rhs_[free_[i]];
+        for (std::size_t k = 0; k < count; ++k)
+            if (state_[k] != End::none) rest -= matrix_[free_[i] * count + k] * solution_[k];
+        residual_[i] = rest;
+        for (std::size_t k = 0; k < m; ++k) factor_[i * m + k] = matrix_[free_[i] * count + free_[k]];
+    }
+    for (std::size_t c = 0; c < m; ++c) {
+        for (std::size_t k = 0; k < c; ++k) {
+            const double f = factor_[c * m + k] * factor_[k * m + k];
+            for (std::size_t r = c; r < m; ++r) factor_[r * m + c] -= factor_[r * m + k] * f;
+        }
+        for (std::size_t r = c + 1; r < m; ++r) factor_[r * m + c] /= factor_[c * m + c];
+    }
+    for (std::size_t i = 0; i < m; ++i)
+        for (std::size_t k = 0; k < i; ++k) residual_[i] -= factor_[i * m + k] * residual_[k];
+    for (std::size_t i = 0; i < m; ++i) residual_[i] /= factor_[i * m + i];
+    for (std::size_t i = m; i-- > 0;) {
+        for (std::size_t k = i + 1; k < m; ++k) residual_[i] -= factor_[k * m + i] * residual_[k];
+        solution_[free_[i]] = residual_[i];
+    }
+}
+
+/// change_, answer_ and solution_ of the whole system from rhs_, extra_rhs_, low_ and high_: of the tree
+/// alone first, then with what the extra rows push.
+void JointSystem::solve_all() {
+    std::fill(pushed_.begin(), pushed_.end(), Vector{});
+    solve_tree();
+    if (extras_.empty()) return;
+    for (std::size_t i = 0; i < extras_.size(); ++i) extra_rhs_[i] -= change_of_row(extras_[i], change_);
+    solve_bounded();
+    std::fill(pushed_.begin(), pushed_.end(), Vector{});
+    for (std::size_t i = 0; i < extras_.size(); ++i) push_row(extras_[i], solution_[i]);
+    solve_tree();
+}
+
+}  // namespace carom

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "constraints/joints/distance_joint.hpp"
+#include "constraints/joints/prismatic_joint.hpp"
+#include "constraints/joints/revolute_joint.hpp"
+#include "constraints/joints/target_joint.hpp"
+#include "constraints/joints/weld_joint.hpp"
+#include "constraints/joints/wheel_joint.hpp"
+
+namespace carom {
+
+/// The rows of a joint of any kind; a target has none.
+inline JointRows rows_of(const StoredJoint& joint, const JointPose& a, const JointPose& b) {
+    const JointArms arms = arms_of(joint, a, b);
+    JointRows rows;
+    switch (joint.type) {
+        case JointType::distance:
+            add_distance_rows(joint, arms, rows);
+            break;
+        case JointType::revolute:
+            add_revolute_rows(joint, arms, rows);
+            break;
+        case JointType::prismatic:
+            add_prismatic_rows(joint, a, arms, rows);
+            break;
+        case JointType::weld:
+            add_weld_rows(joint, arms, rows);
+            break;
+        case JointType::wheel:
+            add_wheel_rows(joint, a, arms, rows);
+            break;
+        case JointType::target:
+            break;
+    }
+    return rows;
+}
+
+/// The values of the firm rows alone, in their order: quicker for the kinds that most systems consist of.
+inline void values_of(const StoredJoint& joint, const JointPose& a, const JointPose& b, int firm,
+                      std::array<double, 3>& values) {
+    if (firm == 0) return;
+    if (joint.type == JointType::revolute || joint.type == JointType::distance ||
+        joint.type == JointType::weld) {
+        const JointArms arms = arms_of(joint, a, b);
+        if (joint.type == JointType::distance)
+            values[0] = std::sqrt(length_squared(arms.between)) - joint.length;
+        else
+            values = {arms.between.x, arms.between.y, arms.angle};
+        return;
+    }
+    const JointRows rows = rows_of(joint, a, b);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(firm); ++k) values[k] = rows.row[k].value;
+}
+
+}  // namespace carom

@@ -1,0 +1,429 @@
+#include "constraints/joints/joint_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "constraints/joints/joint_laws.hpp"
+
+namespace carom {
+namespace {
+
+constexpr double kUnbounded = 1e301;
+/// Turn of a body in a substep up to which paths are bent as they are [rad].
+constexpr double kLargestTurn = 0.3;
+/// Share of what the rows lack that a round of Newton's method must not leave.
+constexpr double kLeastProgress = 0.5;
+/// Springs without damping have no compliance; this takes its place.
+constexpr double kLeastGamma = 1e-12;
+
+}  // namespace
+
+void JointSystem::plan() {
+    std::vector<std::vector<std::int32_t>> joints_of(bodies.size());
+    const auto has_rows = [&](std::size_t j) {
+        const StoredJoint& joint = *joints[j].joint;
+        return joint.type != JointType::target && (joint.type != JointType::distance || joint.is_held);
+    };
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        joints_of[static_cast<std::size_t>(joints[j].a)].push_back(static_cast<std::int32_t>(j));
+        joints_of[static_cast<std::size_t>(joints[j].b)].push_back(static_cast<std::int32_t>(j));
+    }
+    links_.clear(), loops_.clear();
+    std::vector<std::uint8_t> is_seen(bodies.size(), 0), is_used(joints.size(), 0);
+    const auto moves = [&](std::size_t body) { return bodies[body].inverse_mass > 0; };
+    std::size_t next = 0;
+    const auto visit = [&](std::int32_t parent) {
+        for (const std::int32_t j : joints_of[static_cast<std::size_t>(parent)]) {
+            const auto joint = static_cast<std::size_t>(j);
+            const std::int32_t child = joints[joint].a == parent ? joints[joint].b : joints[joint].a;
+            const auto body = static_cast<std::size_t>(child);
+            if (is_used[joint] || !has_rows(joint) || !moves(body) || is_seen[body]) continue;
+            is_used[joint] = is_seen[body] = 1;
+            Link link;
+            link.body = child, link.joint = j, link.parent = parent;
+            link.is_b = joints[joint].b == child;
+            link.parent_moves = moves(static_cast<std::size_t>(parent));
+            links_.push_back(link);
+        }
+    };
+    const auto drain = [&] {
+        for (; next < links_.size(); ++next) visit(links_[next].body);
+    };
+    for (std::size_t body = 0; body < bodies.size(); ++body)
+        if (!moves(body)) is_seen[body] = 1, visit(static_cast<std::int32_t>(body));
+    drain();
+    for (std::size_t body = 0; body < bodies.size(); ++body) {
+        if (is_seen[body]) continue;
+        is_seen[body] = 1;
+        Link root;
+        root.body = static_cast<std::int32_t>(body);
+        links_.push_back(root);
+        drain();
+    }
+    loop_rows_ = drive_rows_ = 0;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        const StoredJoint& joint = *joints[j].joint;
+        if (has_rows(j) && !is_used[j]) {
+            loops_.push_back(static_cast<std::int32_t>(j));
+            const JointRows rows = rows_of(joint, bodies[static_cast<std::size_t>(joints[j].a)].pose,
+                                           bodies[static_cast<std::size_t>(joints[j].b)].pose);
+            loop_rows_ += static_cast<std::size_t>(rows.firm);
+        }
+        drive_rows_ += std::size_t{joint.has_motor} + (joint.has_lower || joint.has_upper);
+    }
+    rows_.resize(joints.size()), softness_.resize(joints.size()), pull_.resize(joints.size());
+    rhs_.resize(joints.size()), answer_.resize(joints.size());
+    stiffness_.resize(bodies.size());
+    moved_.resize(bodies.size()), inertia_.resize(bodies.size());
+    pushed_.resize(bodies.size()), change_.resize(bodies.size());
+}
+
+void JointSystem::set_substep(double h) {
+    h_ = h;
+    extras_.clear();
+    for (Member& member : joints) {
+        if (!member.joint->is_spring()) continue;
+        member.whole = spring_terms(member.joint->frequency, member.joint->damping_ratio, h);
+        member.half = half_of(member.whole);
+    }
+}
+
+JointSystem::Vector JointSystem::row_of_body(std::size_t joint, int number, bool of_b) const {
+    const JointRow& row = rows_[joint].row[static_cast<std::size_t>(number)];
+    return of_b ? Vector{row.n.x, row.n.y, row.jb} : Vector{-row.n.x, -row.n.y, -row.ja};
+}
+
+void JointSystem::measure_rows() {
+    largest_error_ = 0;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        Member& member = joints[j];
+        const SystemBody &a = bodies[static_cast<std::size_t>(member.a)],
+                         &b = bodies[static_cast<std::size_t>(member.b)];
+        rows_[j] = rows_of(*member.joint, a.pose, b.pose);
+        const SpringTerms& terms = part_ == Part::half ? member.half : member.whole;
+        for (int k = 0; k < rows_[j].count; ++k) {
+            const auto i = static_cast<std::size_t>(k);
+            const JointRow& row = rows_[j].row[i];
+            softness_[j][i] = pull_[j][i] = 0;
+            const bool is_angle = row.n == Vec2{};
+            if (row.law == RowLaw::hold) {
+                const double arm =
+                    is_angle ? std::sqrt(length_squared(b.pose.position - a.pose.position)) : 1;
+                largest_error_ = std::fmax(largest_error_, arm * std::fabs(row.value));
+            }
+            if (row.law != RowLaw::spring) continue;
+            const double of_row = length_squared(row.n) * (a.inverse_mass + b.inverse_mass) +
+                                  a.inverse_inertia * row.ja * row.ja + b.inverse_inertia * row.jb * row.jb;
+            if (!(of_row > 0)) continue;
+            softness_[j][i] = of_row / std::fmax(terms.gamma, kLeastGamma);
+            pull_[j][i] = terms.alpha * row.value / of_row;
+        }
+    }
+}
+
+void JointSystem::prepare(Part part, bool keeps) {
+    const double share_before = part_ == Part::half ? 0.5 : 1;
+    part_ = part;
+    measure_rows();
+    stiffen(share_before);
+    if (!keeps)
+        for (Member& member : joints) member.impulse = {};
+    factor_tree();
+    if (keeps) kept_extras_ = extras_;
+    list_extras();
+    for (Extra& extra : extras_)
+        for (const Extra& old : kept_extras_)
+            if (keeps && old.joint == extra.joint && old.row == extra.row) extra.impulse = old.impulse;
+}
+
+void JointSystem::give_impulses() {
+    for (std::size_t j = 0; j < joints.size(); ++j)
+        for (int k = 0; k < rows_[j].firm; ++k) {
+            const double impulse = joints[j].impulse[static_cast<std::size_t>(k)];
+            for (const bool of_b : {false, true}) {
+                SystemBody& body = bodies[static_cast<std::size_t>(of_b ? joints[j].b : joints[j].a)];
+                const Vector row = row_of_body(j, k, of_b);
+                body.velocity += (impulse * body.inverse_mass) * Vec2{row[0], row[1]};
+                body.spin += impulse * body.seen_inverse_inertia * row[2];
+            }
+        }
+}
+
+double JointSystem::row_velocity(std::size_t joint, int number) const {
+    const JointRow& row = rows_[joint].row[static_cast<std::size_t>(number)];
+    const SystemBody &a = bodies[static_cast<std::size_t>(joints[joint].a)],
+                     &b = bodies[static_cast<std::size_t>(joints[joint].b)];
+    return dot(row.n, b.velocity - a.velocity) + row.jb * b.spin - row.ja * a.spin;
+}
+
+/// Poses after h at the present velocities. A body that is stiffened, or turns too fast for the substep, goes
+/// on a path that is less bent, which takes energy.
+void JointSystem::move_poses() {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const SystemBody& body = bodies[i];
+        JointPose& pose = moved_[i];
+        pose.position = body.pose.position + h_ * body.velocity;
+        const double angle = h_ * body.spin;
+        Rotation turned = turn_by(angle);
+        double share = 1;
+        if (body.seen_inverse_inertia < body.inverse_inertia)
+            share = body.seen_inverse_inertia / body.inverse_inertia;
+        if (angle * angle > kLargestTurn * kLargestTurn)
+            share *= kLargestTurn * kLargestTurn / (angle * angle);
+        if (share < 1) {
+            turned = {1 + share * (turned.cos - 1), angle + share * (turned.sin - angle)};
+        }
+        pose.turn = after(body.pose.turn, turned), pose.angle = body.pose.angle + angle;
+    }
+}
+
+/// What the rows lack: of a path that ends where it should, or of a velocity along them.
+void JointSystem::find_right_sides(bool is_curved) {
+    if (is_curved) move_poses();
+    const double per_h = 1 / h_;
+    const auto pose_of = [&](std::int32_t body) -> const JointPose& {
+        return moved_[static_cast<std::size_t>(body)];
+    };
+    std::array<double, 3> values;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        const Member& member = joints[j];
+        const JointRows& rows = rows_[j];
+        if (is_curved) values_of(*member.joint, pose_of(member.a), pose_of(member.b), rows.firm, values);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(rows.firm); ++i) {
+            const double speed =
+                is_curved ? per_h * (values[i] - rows.row[i].value) : row_velocity(j, static_cast<int>(i));
+            rhs_[j][i] = -speed - softness_[j][i] * (pull_[j][i] + member.impulse[i]);
+        }
+    }
+    for (std::size_t e = 0; e < extras_.size(); ++e) {
+        const Extra& extra = extras_[e];
+        const auto j = static_cast<std::size_t>(extra.joint), i = static_cast<std::size_t>(extra.row);
+        const Member& member = joints[j];
+        const JointRow& row = rows_[j].row[i];
+        low_[e] = extra.low - extra.impulse, high_[e] = extra.high - extra.impulse;
+        if (row.law == RowLaw::motor) {
+            extra_rhs_[e] = member.joint->motor_speed - row_velocity(j, extra.row);
+        } else if (row.law != RowLaw::stop) {
+            extra_rhs_[e] = rhs_[j][i];
+        } else {
+            const double speed =
+                is_curved
+                    ? per_h * (rows_of(*member.joint, pose_of(member.a), pose_of(member.b)).row[i].value -
+                               row.value)
+                    : row_velocity(j, extra.row);
+            extra_rhs_[e] = -speed - per_h * std::fmax(row.value, 0);
+        }
+    }
+}
+
+void JointSystem::take_velocities() {
+    for (const Link& link : links_) {
+        SystemBody& body = bodies[static_cast<std::size_t>(link.body)];
+        const Vector& change = change_[static_cast<std::size_t>(link.body)];
+        body.velocity += Vec2{change[0], change[1]};
+        body.spin += change[2];
+        if (link.joint < 0) continue;
+        std::array<double, 3>& impulse = joints[static_cast<std::size_t>(link.joint)].impulse;
+        for (std::size_t i = 0; i < static_cast<std::size_t>(link.rows); ++i)
+            impulse[i] += answer_[static_cast<std::size_t>(link.joint)][i];
+    }
+    for (std::size_t e = 0; e < extras_.size(); ++e) {
+        Extra& extra = extras_[e];
+        extra.impulse += solution_[e];
+        const JointRow& row =
+            rows_[static_cast<std::size_t>(extra.joint)].row[static_cast<std::size_t>(extra.row)];
+        if (row.slot != kNoSlot)
+            joints[static_cast<std::size_t>(extra.joint)].impulse[row.slot] += solution_[e];
+    }
+}
+
+double JointSystem::largest_right_side() const {
+    double largest = 0;
+    for (std::size_t j = 0; j < joints.size(); ++j)
+        for (int k = 0; k < rows_[j].firm; ++k) {
+            const auto i = static_cast<std::size_t>(k);
+            if (rows_[j].row[i].law == RowLaw::hold) largest = std::fmax(largest, std::fabs(rhs_[j][i]));
+        }
+    return largest;
+}
+
+void JointSystem::keep_velocities() {
+    kept_velocities_.resize(bodies.size()), kept_impulses_.resize(joints.size());
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        kept_velocities_[i] = {bodies[i].velocity.x, bodies[i].velocity.y, bodies[i].spin};
+    for (std::size_t j = 0; j < joints.size(); ++j) kept_impulses_[j] = joints[j].impulse;
+    kept_extras_ = extras_;
+}
+
+void JointSystem::restore_velocities() {
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        bodies[i].velocity = {kept_velocities_[i][0], kept_velocities_[i][1]},
+        bodies[i].spin = kept_velocities_[i][2];
+    for (std::size_t j = 0; j < joints.size(); ++j) joints[j].impulse = kept_impulses_[j];
+    extras_ = kept_extras_;
+}
+
+/// Where paths bend so much that the method does not come nearer, rows along the tangents do: they take
+/// energy.
+void JointSystem::solve_curved(int rounds) {
+    double before = 0;
+    if (rounds > 1) keep_velocities();
+    for (int round = 0; round < rounds; ++round) {
+        find_right_sides(true);
+        const double now = largest_right_side();
+        if (round > 0 && now > kLeastProgress * before) {
+            restore_velocities();
+            return solve_flat();
+        }
+        before = now;
+        solve_all();
+        take_velocities();
+    }
+}
+
+void JointSystem::solve_flat() {
+    find_right_sides(false);
+    solve_all();
+    take_velocities();
+}
+
+void JointSystem::pull() {
+    for (Member& member : joints) {
+        if (member.joint->type != JointType::target) continue;
+        SystemBody& body = bodies[static_cast<std::size_t>(member.b)];
+        const Vec2 arm = rotate(body.pose.turn, member.joint->anchor_b);
+        const Vec2 off = body.pose.position + arm - member.joint->target;
+        const bool is_half = part_ == Part::half;
+        const Vec2 impulse =
+            target_impulse(*member.joint, {body.velocity, body.spin, body.inverse_mass, body.inverse_inertia},
+                           arm, off, is_half ? member.half : member.whole, is_half ? h_ / 2 : h_);
+        body.velocity += body.inverse_mass * impulse;
+        body.spin += body.inverse_inertia * cross(arm, impulse);
+        member.impulse = {impulse.x, impulse.y, 0};
+        member.force += impulse;
+    }
+}
+
+/// @param share  of a whole substep's impulses that the joints have
+void JointSystem::stiffen(double share) {
+    std::fill(stiffness_.begin(), stiffness_.end(), 0);
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        const Member& member = joints[j];
+        if (member.joint->type == JointType::target) continue;
+        const Vec2 pull = impulse_on_b(rows_[j], member.impulse);
+        const Vec2 arm_a =
+                       rotate(bodies[static_cast<std::size_t>(member.a)].pose.turn, member.joint->anchor_a),
+                   arm_b =
+                       rotate(bodies[static_cast<std::size_t>(member.b)].pose.turn, member.joint->anchor_b);
+        stiffness_[static_cast<std::size_t>(member.b)] += dot(arm_b, pull);
+        stiffness_[static_cast<std::size_t>(member.a)] -= dot(arm_a, pull);
+    }
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        SystemBody& body = bodies[i];
+        body.seen_inverse_inertia = body.inverse_inertia;
+        const double least = h_ * stiffness_[i] / share;  // h² k, as k = stiffness / h
+        if (least * body.inverse_inertia > 1) body.seen_inverse_inertia = 1 / least;
+    }
+}
+
+Vec2 JointSystem::impulse_on_b(const JointRows& rows, const std::array<double, 3>& impulse) {
+    Vec2 sum;
+    for (int k = 0; k < rows.firm; ++k)
+        sum += impulse[static_cast<std::size_t>(k)] * rows.row[static_cast<std::size_t>(k)].n;
+    return sum;
+}
+
+void JointSystem::note_forces() {
+    const auto add = [](Member& member, const JointRow& row, Vec2 arm, double impulse) {
+        member.force += impulse * row.n;
+        member.torque += impulse * (row.jb - cross(arm, row.n));
+    };
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        Member& member = joints[j];
+        const Vec2 arm = rotate(bodies[static_cast<std::size_t>(member.b)].pose.turn, member.joint->anchor_b);
+        for (int k = 0; k < rows_[j].firm; ++k)
+            add(member, rows_[j].row[static_cast<std::size_t>(k)], arm,
+                member.impulse[static_cast<std::size_t>(k)]);
+    }
+    for (const Extra& extra : extras_) {
+        Member& member = joints[static_cast<std::size_t>(extra.joint)];
+        const JointRow& row =
+            rows_[static_cast<std::size_t>(extra.joint)].row[static_cast<std::size_t>(extra.row)];
+        if (row.slot != kNoSlot) continue;
+        add(member, row, rotate(bodies[static_cast<std::size_t>(member.b)].pose.turn, member.joint->anchor_b),
+            extra.impulse);
+    }
+}
+
+bool JointSystem::correct_positions(double least, double most) {
+    double worst = largest_error_;
+    for (const Extra& extra : extras_) {
+        const JointRow& row =
+            rows_[static_cast<std::size_t>(extra.joint)].row[static_cast<std::size_t>(extra.row)];
+        if (row.law == RowLaw::stop) worst = std::fmax(worst, -row.value);
+    }
+    if (!(worst > least)) return false;
+    const double share = std::fmin(1, most / worst);
+    for (std::size_t j = 0; j < joints.size(); ++j)
+        for (int k = 0; k < rows_[j].firm; ++k) {
+            const JointRow& row = rows_[j].row[static_cast<std::size_t>(k)];
+            rhs_[j][static_cast<std::size_t>(k)] = row.law == RowLaw::hold ? -share * row.value : 0;
+        }
+    for (std::size_t e = 0; e < extras_.size(); ++e) {
+        const JointRow& row =
+            rows_[static_cast<std::size_t>(extras_[e].joint)].row[static_cast<std::size_t>(extras_[e].row)];
+        const bool is_firm = row.law == RowLaw::hold || row.law == RowLaw::spring;
+        const bool acts = is_firm || (row.law == RowLaw::stop && row.value < 0);
+        low_[e] = is_firm ? -kUnbounded : 0, high_[e] = acts ? kUnbounded : 0;
+        extra_rhs_[e] = acts && row.law != RowLaw::spring ? -share * row.value : 0;
+        state_[e] = acts ? End::none : End::low;
+    }
+    solve_all();
+    // Rods that cannot all have their length, stretched out in a line, ask for displacements without bound.
+    double farthest = 0;
+    for (const Link& link : links_)
+        for (const double part : change_[static_cast<std::size_t>(link.body)])
+            farthest = std::fmax(farthest, std::fabs(part));
+    const double kept = farthest > most ? most / farthest : 1;
+    for (const Link& link : links_) {
+        SystemBody& body = bodies[static_cast<std::size_t>(link.body)];
+        const Vector& change = change_[static_cast<std::size_t>(link.body)];
+        body.pose.position += kept * Vec2{change[0], change[1]};
+        turn_pose(body.pose, kept * change[2]);
+    }
+    std::fill(state_.begin(), state_.end(), End::none);
+    // Paths begin where the bodies are now: else velocities would take the correction back.
+    std::array<double, 3> values;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        const JointPose &a = bodies[static_cast<std::size_t>(joints[j].a)].pose,
+                        &b = bodies[static_cast<std::size_t>(joints[j].b)].pose;
+        JointRows& rows = rows_[j];
+        values_of(*joints[j].joint, a, b, rows.firm, values);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(rows.firm); ++k) rows.row[k].value = values[k];
+        if (rows.count == rows.firm) continue;
+        const JointRows now = rows_of(*joints[j].joint, a, b);
+        for (std::size_t k = static_cast<std::size_t>(rows.firm); k < static_cast<std::size_t>(rows.count);
+             ++k)
+            rows.row[k].value = now.row[k].value;
+    }
+    return true;
+}
+
+void JointSystem::advance() {
+    for (SystemBody& body : bodies) {
+        body.pose.position += h_ * body.velocity;
+        turn_pose(body.pose, h_ * body.spin);
+    }
+}
+
+std::size_t JointSystem::bytes() const {
+    std::size_t bytes =
+        links_.capacity() * sizeof(Link) + joints.capacity() * sizeof(Member) +
+        rows_.capacity() * (sizeof(JointRows) + 2 * sizeof(softness_[0]) + 2 * sizeof(Vector)) +
+        bodies.capacity() * (sizeof(SystemBody) + sizeof(JointPose) + sizeof(Symmetric) + 2 * sizeof(Vector) +
+                             sizeof(double));
+    for (const std::vector<Vector>& column : columns_) bytes += column.capacity() * sizeof(Vector);
+    return bytes + (matrix_.capacity() + factor_.capacity()) * sizeof(double);
+}
+
+}  // namespace carom

@@ -1,0 +1,200 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "constraints/joints/joint_rows.hpp"
+#include "constraints/joints/spring_law.hpp"
+
+namespace carom {
+
+/// A body of a system of joints.
+struct SystemBody {
+    JointPose pose;
+    Vec2 velocity;                    // m/s
+    double spin = 0;                  // rad/s
+    double inverse_mass = 0;          // 1/kg; 0: nothing moves it
+    double inverse_inertia = 0;       // 1/(kg m²); 0: nothing turns it
+    double seen_inverse_inertia = 0;  // with the stiffness of taut joints: JointSystem::stiffen
+};
+
+/// Bodies and the joints between them, solved exactly: a tree of joints by elimination, leaves first, in the
+/// time of O(joints) whatever the masses; joints that close loops, motors and limits by a Schur complement
+/// over the tree.
+///
+/// The system of velocities is M dv = J^T l, J dv + S l = e, with the compliance S of springs. Seen from a
+/// leaf, a body with the inertia matrix I and its joint to the parent, with rows J_b of the body and J_p of
+/// the parent: eliminating the body leaves (J_b I^-1 J_b^T + S) l = e - J_p dv_p, and eliminating l adds
+/// J_p^T (J_b I^-1 J_b^T + S)^-1 J_p to the inertia matrix of the parent. So one goes from the leaves to the
+/// roots, which are the world, bodies that nothing moves, or one body of each free group, and back.
+/// Nothing is subtracted on the way in, so a chain with 50,000 times the mass of a link at its end is as
+/// exact as one without.
+/// Source: Baraff 1996, Linear-time dynamics using Lagrange multipliers.
+///
+/// The rows are curved: what is asked for is not J v = 0 but that the path ends where it should,
+/// c(q + h v) = c(q), found by Newton's method with the Jacobian of the start. A tangent path keeps no
+/// energy: it loses w² h of the kinetic energy a second. How far c(q) is off is corrected by displacement
+/// alone and feeds no velocity. docs/decisions/0026-joints.md.
+class JointSystem {
+  public:
+    /// Rows that close loops, beyond which the complement is dearer than sweeps.
+    static constexpr std::size_t kMostLoopRows = 48;
+    /// Such rows, motors and limits.
+    static constexpr std::size_t kMostExtraRows = 128;
+
+    /// Body 0 is the world: at rest in the origin.
+    std::vector<SystemBody> bodies;
+
+    /// A joint of bodies by their numbers.
+    struct Member {
+        const StoredJoint* joint = nullptr;
+        std::int32_t a = 0, b = 0;
+        SpringTerms whole, half;          // of the springs, for the length of a substep
+        std::array<double, 3> impulse{};  // N s, of this substep, by slot; what it has given so far
+        Vec2 force;                       // N s, on b: sum of all impulses of this step
+        double torque = 0;                // N m s, on b, about its anchor
+    };
+    std::vector<Member> joints;
+
+    /// Finds the order of elimination. To be called when bodies or joints have changed.
+    void plan();
+    std::size_t loop_count() const { return loops_.size(); }
+    std::size_t loop_rows() const { return loop_rows_; }
+    /// Rows that motors and limits can have.
+    std::size_t drive_rows() const { return drive_rows_; }
+    bool is_small_enough() const {
+        return loop_rows_ <= kMostLoopRows && loop_rows_ + drive_rows_ <= kMostExtraRows;
+    }
+
+    /// Which share of a substep's impulses is asked for.
+    enum class Part : std::uint8_t { whole, half };
+
+    /// Terms of springs for substeps of h.
+    void set_substep(double h);
+    /// Rows at the present positions, and their factors. Begins impulses anew, once the inertias that bodies
+    /// seem to have are known from those of the substep before (stiffen).
+    /// @param keeps  whether impulses go on from the substep before, of which velocities tell already
+    void prepare(Part part, bool keeps = false);
+    /// Gives bodies the impulses that joints have.
+    void give_impulses();
+    /// Displaces bodies so that what is held is where it should be, as far as the rows of `prepare` tell.
+    /// @param least, most  m: errors below the one are left; no joint is corrected by more than the other
+    /// @return whether anything moved
+    bool correct_positions(double least, double most);
+    /// Draws bodies to targets.
+    void pull();
+    /// Velocities that end on what is held after h; adds to the impulses.
+    /// @param rounds  of Newton's method, >= 1
+    void solve_curved(int rounds);
+    /// Velocities along what is held now: J v = 0.
+    void solve_flat();
+    /// Adds what the joints have given since `prepare` to their forces.
+    void note_forces();
+    /// Moves bodies through h; for tests and for systems that nothing else moves.
+    void advance();
+
+    /// Largest error of what is held, by the rows of `prepare` [m]: an angle counts with the larger arm.
+    double largest_error() const { return largest_error_; }
+    /// Impulses and shares of a step before are those of whole substeps: for the first `prepare` of a step.
+    void begin_step() { part_ = Part::whole; }
+    Part part() const { return part_; }
+    std::size_t bytes() const;
+
+  private:
+    using Vector = std::array<double, 3>;  // vx, vy, spin
+    struct Symmetric {                     // 3 × 3
+        double xx, xy, xz, yy, yz, zz;
+    };
+    /// A body but the roots, with the joint to its parent; or a root.
+    struct Link {
+        std::int32_t body = 0, joint = -1, parent = 0;
+        bool is_b = true;  // whether the body is b of its joint
+        bool parent_moves = false;
+        int rows = 0;
+        std::array<Vector, 3> own, others, reach;  // J_b, J_p, J_b I^-1
+        Symmetric inverse;                         // I^-1
+        // (J_b I^-1 J_b^T + S) = L D L^T
+        double l10 = 0, l20 = 0, l21 = 0;
+        Vector inverse_d{};
+        Vector half_way{};  // of a solve
+    };
+    /// A row that is no part of the tree: of a loop, a motor or a limit.
+    struct Extra {
+        std::int32_t joint;
+        std::int32_t row;
+        double low, high;    // N s, of its impulse in this substep
+        double impulse = 0;  // N s, so far
+    };
+    enum class End : std::uint8_t { none, low, high };  // where the impulse of an extra row is
+
+    /// What taut joints add to the inertia that a substep sees.
+    ///
+    /// A light body between taut joints turns about their common line with w = sqrt(T r / I), and substeps of
+    /// length h follow that up to w h = 2. An arm r under a pull of T resists turning with the stiffness
+    /// k = sum r · l / h over the joints' impulses l; the inertia seen is max(I, h² k), so that w h <= 1
+    /// always. Added always it would pump energy.
+    void stiffen(double share);
+    void measure_rows();
+    void factor_tree();
+    void factor_link(Link& link);
+    void add_to_parent(const Link& link);
+    static double dot3(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+    static Symmetric inverse_of(const Symmetric& m);
+    static Vector times(const Symmetric& m, const Vector& v) {
+        return {m.xx * v[0] + m.xy * v[1] + m.xz * v[2], m.xy * v[0] + m.yy * v[1] + m.yz * v[2],
+                m.xz * v[0] + m.yz * v[1] + m.zz * v[2]};
+    }
+    template <int kRows>
+    static void solve_block(const Link& link, Vector& e);
+    template <int kRows>
+    void go_in(Link& link);
+    template <int kRows>
+    void go_out(Link& link);
+    double row_velocity(std::size_t joint, int row) const;
+    Vector row_of_body(std::size_t joint, int row, bool of_b) const;
+
+    /// Solves the tree: right side rhs_ by row, impulses given in pushed_; changes of velocities to change_,
+    /// impulses to answer_.
+    void solve_tree();
+    void solve_all();
+    void list_extras();
+    void add_column(std::size_t extra);
+    void push_row(const Extra& extra, double impulse);
+    double change_of_row(const Extra& extra, const std::vector<Vector>& change) const;
+    void solve_bounded();
+    void solve_free();
+    void find_right_sides(bool is_curved);
+    void move_poses();
+    void take_velocities();
+    double largest_right_side() const;
+    void keep_velocities();
+    void restore_velocities();
+    static Vec2 impulse_on_b(const JointRows& rows, const std::array<double, 3>& impulse);
+
+    std::vector<Link> links_;          // parents before children
+    std::vector<std::int32_t> loops_;  // joints that are no part of the tree
+    std::size_t loop_rows_ = 0, drive_rows_ = 0;
+    double h_ = 0;  // s
+    Part part_ = Part::whole;
+    double largest_error_ = 0;
+
+    std::vector<JointRows> rows_;                                 // by joint
+    std::vector<std::array<double, JointRows::kMost>> softness_;  // by joint and row: S, and alpha C m
+    std::vector<std::array<double, JointRows::kMost>> pull_;
+    std::vector<JointPose> moved_;                         // by body: where its velocity takes it
+    std::vector<Symmetric> inertia_;                       // by body
+    std::vector<Vector> pushed_, change_;                  // by body
+    std::vector<Vector> rhs_, answer_;                     // by joint: of its firm rows
+    std::vector<Vector> kept_velocities_, kept_impulses_;  // before a solve
+    std::vector<Extra> kept_extras_;
+    std::vector<Extra> extras_;
+    std::vector<double> extra_rhs_, low_, high_;  // by extra row
+    std::vector<std::vector<Vector>> columns_;    // by extra row: changes of velocities by an impulse of 1
+    std::vector<double> matrix_, factor_, solution_, residual_;
+    std::vector<End> state_;         // by extra row
+    std::vector<double> stiffness_;  // by body: sum of arm · impulse, m N s
+    std::vector<std::size_t> free_;
+};
+
+}  // namespace carom

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+// Plain arguments of the kernels that sweep over joints (solver `soft`): rods between centres, rods between
+// anchors, hinges. Columns are padded and 64-byte aligned; `first` and `last` are multiples of kRowPadding.
+// Records of bodies are those of contact_arguments.hpp; the world is a row beyond the bodies, at rest.
+
+namespace carom {
+
+/// Joints of one kind, sorted by group and colour: a body that moves is in one joint of a colour.
+template <class Real>
+struct JointColumns {
+    std::int32_t* a;   // row
+    std::int32_t* b;   // row
+    Real* start_x;     // m, from a's centre to b's at the start of the step
+    Real* start_y;     //
+    Real* length;      // m; of rods
+    Real* impulse_x;   // N s, of a substep: along the normal; of hinges along x
+    Real* impulse_y;   // N s, along y; of hinges
+    Real* normal_x;    // no unit, in the last substep; of rods
+    Real* normal_y;    //
+    Real* per_length;  // 1/m, of the distance now; of rods
+    // Only where anchors are not the centres.
+    Real *start_arm_a_x, *start_arm_a_y;  // m, at the start of the step
+    Real *start_arm_b_x, *start_arm_b_y;  //
+    Real *arm_a_x, *arm_a_y;              // m, in the last substep
+    Real *arm_b_x, *arm_b_y;              //
+    Real *per_rim_a, *per_rim_b;          // 1/m, of the rims of the bodies
+};
+
+/// One Gauss-Seidel sweep over joints of a kind.
+template <class Real>
+struct SweepJoints {
+    JointColumns<Real> joints;
+    Real* velocity;      // [rows][4]
+    Real* displacement;  // [rows][2]
+    Real* turn;          // m, at the rim; null without rotation
+    Real h;              // s
+    Real half_h;         // s
+    Real per_h;          // 1/s
+    Real recovery;       // share of an error that the first sweep takes away, by displacement
+    Real most;           // largest correction, in lengths of the rod; of hinges, m
+    Real over_relaxation;
+};
+
+}  // namespace carom

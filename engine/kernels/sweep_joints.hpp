@@ -1,0 +1,340 @@
+#pragma once
+
+#include "kernels/joint_arguments.hpp"
+#include "simd/forget_loads.hpp"
+#include "simd/lanes.hpp"
+
+// Rods and hinges by lanes. An impulse j at an arm r turns a body by r × j / I; with the rim = sqrt(2 I / m)
+// and the rim speed u = spin * rim that is a change of u by 2 w (r / rim) × j: constraints/contact_law.hpp.
+//
+// The rows are curved, as those of constraints/joints/joint_system.hpp: a rod of length d whose ends pass
+// each other at v_t would grow to sqrt(d² + h² v_t²) in a substep along the tangent, so it asks for v_n = -h
+// v_t² / 2d; an arm that turns by f = h spin bends off its tangent by (cos f - 1) r + (sin f - f) r⊥. The
+// bend is found at each visit: one that was kept loses energy. Where a joint pulls a body harder than its
+// inertia bears in a substep the bend is divided by 1 + (16 s)², s = h |l| (w_a + w_b) / 4d, or rows that
+// converge explode. docs/decisions/0026-joints.md.
+
+namespace carom {
+namespace {
+
+template <class Lanes>
+typename Lanes::Batch constant(double value) {
+    return typename Lanes::Batch(static_cast<typename Lanes::Number>(value));
+}
+
+template <class F>
+struct Pair2 {
+    F x, y;
+};
+
+/// cos f - 1 and sin f - f over h, for what a substep turns; |f| < 1.
+template <class Lanes, class F = typename Lanes::Batch>
+Pair2<F> bend_of_turn(F spin, F h) {
+    constexpr auto number = constant<Lanes>;
+    const F f = spin * h, q = f * f, c2 = number(-0.5), c4 = number(1.0 / 24), s3 = number(-1.0 / 6),
+            s5 = number(1.0 / 120);
+    return {spin * f * (c2 + c4 * q), spin * q * (s3 + s5 * q)};
+}
+
+/// cos and sin of the turn since the start of the step, up to 3 rad: by series of half of it, doubled.
+template <class Lanes, class F = typename Lanes::Batch>
+Pair2<F> rotation_of(F angle) {
+    constexpr auto number = constant<Lanes>;
+    const F f = angle * number(0.5), q = f * f, one(1);
+    const F c = one - q * number(0.5) *
+                          (one - q * number(1.0 / 12) *
+                                     (one - q * number(1.0 / 30) *
+                                                (one - q * number(1.0 / 56) * (one - q * number(1.0 / 90)))));
+    const F s = f * (one - q * number(1.0 / 6) *
+                               (one - q * number(1.0 / 20) *
+                                          (one - q * number(1.0 / 42) * (one - q * number(1.0 / 72)))));
+    return {one - F(2) * s * s, F(2) * s * c};
+}
+
+/// A body of a batch of joints.
+template <class Lanes, bool kArms>
+struct JointSide {
+    using F = typename Lanes::Batch;
+    typename Lanes::Batch4 record;
+    Pair2<F> arm{};  // m
+    F per_rim{};     // 1/m
+
+    F inverse_mass() const { return simd::abs(record[3]); }
+    /// 1 / inertia, zero for what has a fixed angle.
+    F inverse_inertia() const {
+        const F turning = simd::max(record[3], F(0));
+        return (turning + turning) * per_rim * per_rim;
+    }
+    F spin() const { return record[2] * per_rim; }
+    Pair2<F> anchor_velocity() const {
+        if constexpr (!kArms) return {record[0], record[1]};
+        const F s = spin();
+        return {record[0] - s * arm.y, record[1] + s * arm.x};
+    }
+    /// @param sign  1 as b, -1 as a
+    void push(F jx, F jy, F sign) {
+        const F w = inverse_mass() * sign;
+        record[0] += w * jx, record[1] += w * jy;
+        if constexpr (kArms) turn(sign * (arm.x * jy - arm.y * jx));
+    }
+    void turn(F torque) {
+        const F turning = simd::max(record[3], F(0));
+        record[2] += (turning + turning) * per_rim * torque;
+    }
+};
+
+/// What the anchors of two bodies move apart by in a substep, over h, bend of their arms included.
+template <class Lanes, bool kArms>
+Pair2<typename Lanes::Batch> parting(const JointSide<Lanes, kArms>& a, const JointSide<Lanes, kArms>& b,
+                                     typename Lanes::Batch h, typename Lanes::Batch share_a,
+                                     typename Lanes::Batch share_b) {
+    using F = typename Lanes::Batch;
+    const Pair2<F> va = a.anchor_velocity(), vb = b.anchor_velocity();
+    Pair2<F> v{vb.x - va.x, vb.y - va.y};
+    if constexpr (kArms) {
+        const Pair2<F> ta = bend_of_turn<Lanes>(a.spin(), h), tb = bend_of_turn<Lanes>(b.spin(), h);
+        v.x += share_b * (tb.x * b.arm.x - tb.y * b.arm.y) - share_a * (ta.x * a.arm.x - ta.y * a.arm.y);
+        v.y += share_b * (tb.x * b.arm.y + tb.y * b.arm.x) - share_a * (ta.x * a.arm.y + ta.y * a.arm.x);
+    }
+    return v;
+}
+
+template <class Lanes, bool kArms, class Real>
+[[gnu::always_inline]] inline void load_arms(const SweepJoints<Real>& k, std::size_t c,
+                                             JointSide<Lanes, kArms>& a, JointSide<Lanes, kArms>& b) {
+    if constexpr (!kArms) return;
+    a.arm = {Lanes::load(k.joints.arm_a_x + c), Lanes::load(k.joints.arm_a_y + c)};
+    b.arm = {Lanes::load(k.joints.arm_b_x + c), Lanes::load(k.joints.arm_b_y + c)};
+    a.per_rim = Lanes::load(k.joints.per_rim_a + c), b.per_rim = Lanes::load(k.joints.per_rim_b + c);
+}
+
+/// Arms where the bodies have turned to by now.
+template <class Lanes, class Real>
+[[gnu::always_inline]] inline void turn_arms(const SweepJoints<Real>& k, std::size_t c,
+                                             JointSide<Lanes, true>& a, JointSide<Lanes, true>& b) {
+    using F = typename Lanes::Batch;
+    const auto turned = [&](const std::int32_t* rows, F per_rim, const Real* x, const Real* y) {
+        const Pair2<F> by = rotation_of<Lanes>(Lanes::gather_at(k.turn, rows) * per_rim);
+        const F ax = Lanes::load(x + c), ay = Lanes::load(y + c);
+        return Pair2<F>{by.x * ax - by.y * ay, by.y * ax + by.x * ay};
+    };
+    a.arm = turned(k.joints.a + c, a.per_rim, k.joints.start_arm_a_x, k.joints.start_arm_a_y);
+    b.arm = turned(k.joints.b + c, b.per_rim, k.joints.start_arm_b_x, k.joints.start_arm_b_y);
+    Lanes::store(k.joints.arm_a_x + c, a.arm.x), Lanes::store(k.joints.arm_a_y + c, a.arm.y);
+    Lanes::store(k.joints.arm_b_x + c, b.arm.x), Lanes::store(k.joints.arm_b_y + c, b.arm.y);
+}
+
+/// From a's anchor to b's.
+template <class Lanes, bool kArms, class Real>
+[[gnu::always_inline]] inline Pair2<typename Lanes::Batch> between(const SweepJoints<Real>& k, std::size_t c,
+                                                                   const typename Lanes::Batch2& moved_a,
+                                                                   const typename Lanes::Batch2& moved_b,
+                                                                   const JointSide<Lanes, kArms>& a,
+                                                                   const JointSide<Lanes, kArms>& b) {
+    using F = typename Lanes::Batch;
+    Pair2<F> d{Lanes::load(k.joints.start_x + c) + (moved_b[0] - moved_a[0]),
+               Lanes::load(k.joints.start_y + c) + (moved_b[1] - moved_a[1])};
+    if constexpr (kArms) d.x += b.arm.x - a.arm.x, d.y += b.arm.y - a.arm.y;
+    return d;
+}
+
+/// Displaces the bodies by an impulse (px, py) [kg m] on b, and the other way on a.
+template <class Lanes, bool kArms, class Real>
+[[gnu::always_inline]] inline void displace(const SweepJoints<Real>& k, std::size_t c,
+                                            typename Lanes::Batch2& moved_a, typename Lanes::Batch2& moved_b,
+                                            const JointSide<Lanes, kArms>& a,
+                                            const JointSide<Lanes, kArms>& b,
+                                            Pair2<typename Lanes::Batch> p) {
+    using F = typename Lanes::Batch;
+    const F wa = a.inverse_mass(), wb = b.inverse_mass();
+    moved_a[0] -= wa * p.x, moved_a[1] -= wa * p.y;
+    moved_b[0] += wb * p.x, moved_b[1] += wb * p.y;
+    Lanes::store_rows2(k.displacement, k.joints.a + c, moved_a);
+    Lanes::store_rows2(k.displacement, k.joints.b + c, moved_b);
+    if constexpr (kArms) {
+        const auto turn = [&](const std::int32_t* rows, const JointSide<Lanes, kArms>& side, F sign) {
+            const F turning = simd::max(side.record[3], F(0));
+            const F by = sign * (turning + turning) * side.per_rim * (side.arm.x * p.y - side.arm.y * p.x);
+            alignas(64) Real added[Lanes::size];
+            Lanes::store(added, by);
+            for (std::size_t lane = 0; lane < Lanes::size; ++lane)
+                if (added[lane] != Real(0)) k.turn[rows[lane]] += added[lane];
+        };
+        turn(k.joints.a + c, a, F(-1)), turn(k.joints.b + c, b, F(1));
+    }
+}
+
+template <class F>
+F clamp_to(F value, F most) {
+    return simd::max(simd::min(value, most), -most);
+}
+
+/// Rods. kFirst: the first sweep of a substep, which finds directions anew and corrects lengths.
+template <bool kArms, bool kFirst, class Real, class Isa>
+void sweep_rods(const SweepJoints<Real>& arguments, std::size_t first, std::size_t last) {
+    using Lanes = simd::Lanes<Real, Isa>;
+    using F = typename Lanes::Batch;
+    const SweepJoints<Real> k = arguments;  // a copy: no store can change it
+    const F one(1), zero(0), h(k.h), half_h(k.half_h);
+    for (std::size_t c = first; c < last; c += Lanes::size) {
+        JointSide<Lanes, kArms> a{Lanes::load_rows4(k.velocity, k.joints.a + c)},
+            b{Lanes::load_rows4(k.velocity, k.joints.b + c)};
+        load_arms<Lanes, kArms>(k, c, a, b);
+        const F wa = a.inverse_mass(), wb = b.inverse_mass();
+        F l = Lanes::load(k.joints.impulse_x + c), inverse = wa + wb;
+        F nx, ny, per_length;
+        if constexpr (!kFirst) {
+            nx = Lanes::load(k.joints.normal_x + c), ny = Lanes::load(k.joints.normal_y + c);
+            per_length = Lanes::load(k.joints.per_length + c);
+        } else {
+            simd::forget_loads();
+            const F old_x = l * Lanes::load(k.joints.normal_x + c),
+                    old_y = l * Lanes::load(k.joints.normal_y + c);
+            F torque_a = zero, torque_b = zero;
+            if constexpr (kArms) {
+                torque_a = a.arm.x * old_y - a.arm.y * old_x, torque_b = b.arm.x * old_y - b.arm.y * old_x;
+                turn_arms<Lanes>(k, c, a, b);
+            }
+            auto moved_a = Lanes::load_rows2(k.displacement, k.joints.a + c);
+            auto moved_b = Lanes::load_rows2(k.displacement, k.joints.b + c);
+            const Pair2<F> d = between<Lanes, kArms>(k, c, moved_a, moved_b, a, b);
+            const F distance = simd::sqrt(d.x * d.x + d.y * d.y);
+            const auto has_length = distance > zero;
+            per_length = simd::select(has_length, one / distance, zero);
+            nx = simd::select(has_length, d.x * per_length, one), ny = d.y * per_length;
+            Lanes::store(k.joints.normal_x + c, nx), Lanes::store(k.joints.normal_y + c, ny);
+            Lanes::store(k.joints.per_length + c, per_length);
+            if constexpr (kArms) {
+                const F ca = a.arm.x * ny - a.arm.y * nx, cb = b.arm.x * ny - b.arm.y * nx;
+                inverse += a.inverse_inertia() * ca * ca + b.inverse_inertia() * cb * cb;
+            }
+            const F length = Lanes::load(k.joints.length + c);
+            const F off = clamp_to(distance - length, F(k.most) * length);
+            const F p = simd::select(inverse > zero, -F(k.recovery) * off / inverse, zero);
+            displace<Lanes, kArms>(k, c, moved_a, moved_b, a, b, {p * nx, p * ny});
+            // Velocities have the impulses of the substep before in them (advance_bodies.hpp): turned to what
+            // the rod is now.
+            a.record[0] -= wa * (l * nx - old_x), a.record[1] -= wa * (l * ny - old_y);
+            b.record[0] += wb * (l * nx - old_x), b.record[1] += wb * (l * ny - old_y);
+            if constexpr (kArms) {
+                a.turn(torque_a - (a.arm.x * (l * ny) - a.arm.y * (l * nx)));
+                b.turn((b.arm.x * (l * ny) - b.arm.y * (l * nx)) - torque_b);
+            }
+        }
+        if constexpr (kArms && !kFirst) {
+            const F ca = a.arm.x * ny - a.arm.y * nx, cb = b.arm.x * ny - b.arm.y * nx;
+            inverse += a.inverse_inertia() * ca * ca + b.inverse_inertia() * cb * cb;
+        }
+        const F strain = F(4) * h * simd::abs(l) * inverse * per_length;
+        const F share = one / (one + strain * strain);
+        const Pair2<F> v = parting<Lanes, kArms>(a, b, h, share, share);
+        const F along = v.x * nx + v.y * ny, across = v.y * nx - v.x * ny;
+        const F wanted = -half_h * across * across * per_length * share;
+        const F added = simd::select(inverse > zero, F(k.over_relaxation) * (wanted - along) / inverse, zero);
+        Lanes::store(k.joints.impulse_x + c, l + added);
+        a.push(added * nx, added * ny, F(-1)), b.push(added * nx, added * ny, one);
+        Lanes::store_rows4(k.velocity, k.joints.a + c, a.record);
+        Lanes::store_rows4(k.velocity, k.joints.b + c, b.record);
+    }
+}
+
+/// Hinges.
+template <bool kFirst, class Real, class Isa>
+void sweep_hinges(const SweepJoints<Real>& arguments, std::size_t first, std::size_t last) {
+    using Lanes = simd::Lanes<Real, Isa>;
+    using F = typename Lanes::Batch;
+    const SweepJoints<Real> k = arguments;  // a copy: no store can change it
+    const F one(1), zero(0), h(k.h);
+    for (std::size_t c = first; c < last; c += Lanes::size) {
+        JointSide<Lanes, true> a{Lanes::load_rows4(k.velocity, k.joints.a + c)},
+            b{Lanes::load_rows4(k.velocity, k.joints.b + c)};
+        load_arms<Lanes, true>(k, c, a, b);
+        F lx = Lanes::load(k.joints.impulse_x + c), ly = Lanes::load(k.joints.impulse_y + c);
+        F torque_a = zero, torque_b = zero;
+        if constexpr (kFirst) {
+            torque_a = a.arm.x * ly - a.arm.y * lx, torque_b = b.arm.x * ly - b.arm.y * lx;
+            turn_arms<Lanes>(k, c, a, b);
+        }
+        // The inverse mass at the anchor, 2 × 2, and its inverse.
+        const F ia = a.inverse_inertia(), ib = b.inverse_inertia(), w = a.inverse_mass() + b.inverse_mass();
+        const F xx = w + ia * a.arm.y * a.arm.y + ib * b.arm.y * b.arm.y,
+                xy = -(ia * a.arm.x * a.arm.y + ib * b.arm.x * b.arm.y),
+                yy = w + ia * a.arm.x * a.arm.x + ib * b.arm.x * b.arm.x;
+        const F determinant = xx * yy - xy * xy;
+        const F per = simd::select(determinant > zero, one / determinant, zero);
+        const auto solve = [&](F x, F y) {
+            return Pair2<F>{per * (yy * x - xy * y), per * (xx * y - xy * x)};
+        };
+        if constexpr (kFirst) {
+            simd::forget_loads();
+            auto moved_a = Lanes::load_rows2(k.displacement, k.joints.a + c);
+            auto moved_b = Lanes::load_rows2(k.displacement, k.joints.b + c);
+            const Pair2<F> d = between<Lanes, true>(k, c, moved_a, moved_b, a, b);
+            const F most(k.most), recovery = -F(k.recovery);
+            displace<Lanes, true>(k, c, moved_a, moved_b, a, b,
+                                  solve(recovery * clamp_to(d.x, most), recovery * clamp_to(d.y, most)));
+            a.turn(torque_a - (a.arm.x * ly - a.arm.y * lx));
+            b.turn((b.arm.x * ly - b.arm.y * lx) - torque_b);
+        }
+        const auto share_of = [&](const JointSide<Lanes, true>& side, F inverse_inertia) {
+            const F strain = F(4) * h * simd::abs(side.arm.x * lx + side.arm.y * ly) * inverse_inertia;
+            return one / (one + strain * strain);
+        };
+        const Pair2<F> v = parting<Lanes, true>(a, b, h, share_of(a, ia), share_of(b, ib));
+        const F relax = -F(k.over_relaxation);
+        const Pair2<F> added = solve(relax * v.x, relax * v.y);
+        Lanes::store(k.joints.impulse_x + c, lx + added.x),
+            Lanes::store(k.joints.impulse_y + c, ly + added.y);
+        a.push(added.x, added.y, F(-1)), b.push(added.x, added.y, one);
+        Lanes::store_rows4(k.velocity, k.joints.a + c, a.record);
+        Lanes::store_rows4(k.velocity, k.joints.b + c, b.record);
+    }
+}
+
+/// Gives the bodies of rods the impulses that these had at the end of the step before, along what they are
+/// now.
+template <bool kArms, class Real, class Isa>
+void give_rods(const SweepJoints<Real>& arguments, std::size_t first, std::size_t last) {
+    using Lanes = simd::Lanes<Real, Isa>;
+    using F = typename Lanes::Batch;
+    const SweepJoints<Real> k = arguments;  // a copy: no store can change it
+    const F one(1), zero(0);
+    for (std::size_t c = first; c < last; c += Lanes::size) {
+        JointSide<Lanes, kArms> a{Lanes::load_rows4(k.velocity, k.joints.a + c)},
+            b{Lanes::load_rows4(k.velocity, k.joints.b + c)};
+        load_arms<Lanes, kArms>(k, c, a, b);
+        if constexpr (kArms) turn_arms<Lanes>(k, c, a, b);
+        const typename Lanes::Batch2 still{{zero, zero}};
+        const Pair2<F> d = between<Lanes, kArms>(k, c, still, still, a, b);
+        const F distance = simd::sqrt(d.x * d.x + d.y * d.y);
+        const auto has_length = distance > zero;
+        const F per_length = simd::select(has_length, one / distance, zero);
+        const F nx = simd::select(has_length, d.x * per_length, one), ny = d.y * per_length;
+        Lanes::store(k.joints.normal_x + c, nx), Lanes::store(k.joints.normal_y + c, ny);
+        const F l = Lanes::load(k.joints.impulse_x + c);
+        a.push(l * nx, l * ny, F(-1)), b.push(l * nx, l * ny, one);
+        Lanes::store_rows4(k.velocity, k.joints.a + c, a.record);
+        Lanes::store_rows4(k.velocity, k.joints.b + c, b.record);
+    }
+}
+
+/// Likewise of hinges.
+template <class Real, class Isa>
+void give_hinges(const SweepJoints<Real>& arguments, std::size_t first, std::size_t last) {
+    using Lanes = simd::Lanes<Real, Isa>;
+    using F = typename Lanes::Batch;
+    const SweepJoints<Real> k = arguments;  // a copy: no store can change it
+    for (std::size_t c = first; c < last; c += Lanes::size) {
+        JointSide<Lanes, true> a{Lanes::load_rows4(k.velocity, k.joints.a + c)},
+            b{Lanes::load_rows4(k.velocity, k.joints.b + c)};
+        load_arms<Lanes, true>(k, c, a, b);
+        turn_arms<Lanes>(k, c, a, b);
+        const F lx = Lanes::load(k.joints.impulse_x + c), ly = Lanes::load(k.joints.impulse_y + c);
+        a.push(lx, ly, F(-1)), b.push(lx, ly, F(1));
+        Lanes::store_rows4(k.velocity, k.joints.a + c, a.record);
+        Lanes::store_rows4(k.velocity, k.joints.b + c, b.record);
+    }
+}
+
+}  // namespace
+}  // namespace carom

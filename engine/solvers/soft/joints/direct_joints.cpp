@@ -1,0 +1,265 @@
+#include "solvers/soft/joints/direct_joints.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace carom {
+namespace {
+
+/// Rounds of Newton's method a substep: a second one takes what the bend of the path leaves.
+constexpr int kRounds = 2;
+/// Largest correction of a joint in a substep, in lengths of the group's joints.
+constexpr double kLargestCorrection = 0.1;
+
+}  // namespace
+
+template <class Real>
+DirectJoints<Real>::DirectJoints(const WorldState<Real>& world, const std::vector<std::size_t>& slots)
+    : slots_(slots) {
+    system_.bodies.emplace_back();
+    rows_.push_back(-1), rim_.push_back(1);
+    std::vector<std::pair<std::uint32_t, std::int32_t>> known;  // slot of a handle, number of a body
+    const auto number_of = [&](BodyId id) {
+        if (id == BodyId{}) return std::int32_t{0};
+        const auto place = std::lower_bound(known.begin(), known.end(), std::pair{id.index, std::int32_t{0}});
+        if (place != known.end() && place->first == id.index) return place->second;
+        const auto number = static_cast<std::int32_t>(system_.bodies.size());
+        known.insert(place, {id.index, number});
+        const std::size_t row = world.handles.row_of_slot(id.index);
+        SystemBody& body = system_.bodies.emplace_back();
+        rows_.push_back(static_cast<std::int32_t>(row));
+        rim_.push_back(rim_of(world.bodies, row));
+        body.inverse_mass = world.bodies.inverse_mass(row);
+        const bool turns = world.bodies.has_rotation && (world.bodies.flags_of(row) & kFixedAngle) == 0;
+        body.inverse_inertia = turns ? 2 * body.inverse_mass / (rim_.back() * rim_.back()) : 0;
+        body.seen_inverse_inertia = body.inverse_inertia;
+        return number;
+    };
+    double longest = 0;
+    for (const std::size_t slot : slots_) {
+        const StoredJoint& joint = world.joints[slot];
+        JointSystem::Member member;
+        member.joint = &joint;
+        member.a = number_of(joint.a), member.b = number_of(joint.b);
+        longest = std::max({longest, joint.length, std::sqrt(length_squared(joint.anchor_b))});
+        if (!joint.is_on_world()) longest = std::max(longest, std::sqrt(length_squared(joint.anchor_a)));
+        system_.joints.push_back(member);
+    }
+    for (const double rim : rim_) longest = std::max(longest, rim);
+    most_error_ = kLargestCorrection * longest;
+    system_.plan();
+    given_.resize(rows_.size()), last_impulse_.resize(slots_.size());
+}
+
+template <class Real>
+void DirectJoints<Real>::begin_step(const JointStep<Real>& step, bool touches, bool is_beside) {
+    touches_ = touches, is_beside_ = is_beside;
+    const Bodies<Real>& bodies = step.world.bodies;
+    system_.set_substep(step.terms.substep_dt);
+    system_.begin_step();
+    double farthest = 0;
+    for (std::size_t i = 1; i < rows_.size(); ++i) {
+        const auto row = static_cast<std::size_t>(rows_[i]);
+        SystemBody& body = system_.bodies[i];
+        const double angle = bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0;
+        body.pose = {{bodies.position_x[row], bodies.position_y[row]}, rotation_by(angle), angle};
+        farthest = std::max({farthest, std::fabs(body.pose.position.x), std::fabs(body.pose.position.y)});
+        given_[i] = {};
+    }
+    // All but round-off: taut chains explode where errors of the world's own precision are let stand and then
+    // taken away at once.
+    least_error_ = 16 * std::numeric_limits<double>::epsilon() * farthest;
+    for (std::size_t j = 0; j < slots_.size(); ++j) {
+        system_.joints[j].joint = &step.world.joints[slots_[j]];  // the store may have moved
+        system_.joints[j].impulse = system_.joints[j].joint->impulse;
+        system_.joints[j].force = {}, system_.joints[j].torque = 0;
+    }
+    if (!touches_) half_kick(step, -1);
+}
+
+/// Velocities at whole times less half of what gravity adds in a substep are those between two substeps, and
+/// that again at the end (end_step): so each substep advances from the middle of one to the middle of the
+/// next. What contacts hold has no such half.
+template <class Real>
+void DirectJoints<Real>::half_kick(const JointStep<Real>& step, double sign) {
+    const Vec2 kick = 0.5 * sign * step.terms.gravity_change;
+    if (kick == Vec2{}) return;
+    const StartColumns<Real> start = step.records.start_columns();
+    for (std::size_t i = 1; i < rows_.size(); ++i) {
+        if (!(system_.bodies[i].inverse_mass > 0)) continue;
+        const auto row = static_cast<std::size_t>(rows_[i]);
+        Real* record = &step.records.velocity[4 * row];
+        // At the start of a step the record has the whole kick of its first substep in it already.
+        const Vec2 v = sign < 0 ? Vec2{start.x[row], start.y[row]} : Vec2{record[0], record[1]};
+        step.gravity_work += static_cast<double>(step.world.bodies.mass[row]) * dot(kick, v + 0.5 * kick);
+        record[0] += static_cast<Real>(kick.x), record[1] += static_cast<Real>(kick.y);
+        if (sign < 0) start.x[row] += static_cast<Real>(kick.x), start.y[row] += static_cast<Real>(kick.y);
+    }
+}
+
+template <class Real>
+void DirectJoints<Real>::read_poses(const JointStep<Real>& step) {
+    const Bodies<Real>& bodies = step.world.bodies;
+    const Column<Real>& displacement = step.records.displacement;
+    const Real* turn = step.records.turn();
+    for (std::size_t i = 1; i < rows_.size(); ++i) {
+        const auto row = static_cast<std::size_t>(rows_[i]);
+        JointPose& pose = system_.bodies[i].pose;
+        pose.position = {
+            static_cast<double>(bodies.position_x[row]) + static_cast<double>(displacement[2 * row]),
+            static_cast<double>(bodies.position_y[row]) + static_cast<double>(displacement[2 * row + 1])};
+        if (!turn) continue;
+        const double angle =
+            static_cast<double>(bodies.angle[row]) + static_cast<double>(turn[row]) / rim_[i];
+        if (angle != pose.angle) turn_pose(pose, angle - pose.angle);
+    }
+}
+
+/// Displaces bodies so that what is held is where it should be.
+template <class Real>
+void DirectJoints<Real>::correct(const JointStep<Real>& step) {
+    if (!system_.correct_positions(least_error_, most_error_)) return;
+    write_poses(step);
+}
+
+template <class Real>
+void DirectJoints<Real>::write_poses(const JointStep<Real>& step) {
+    const Bodies<Real>& bodies = step.world.bodies;
+    Column<Real>& displacement = step.records.displacement;
+    Real* turn = step.records.turn();
+    for (std::size_t i = 1; i < rows_.size(); ++i) {
+        const SystemBody& body = system_.bodies[i];
+        if (!(body.inverse_mass > 0)) continue;
+        const auto row = static_cast<std::size_t>(rows_[i]);
+        displacement[2 * row] =
+            static_cast<Real>(body.pose.position.x - static_cast<double>(bodies.position_x[row]));
+        displacement[2 * row + 1] =
+            static_cast<Real>(body.pose.position.y - static_cast<double>(bodies.position_y[row]));
+        if (turn && body.inverse_inertia > 0)
+            turn[row] =
+                static_cast<Real>(rim_[i] * (body.pose.angle - static_cast<double>(bodies.angle[row])));
+    }
+}
+
+/// Records of what was solved; what joints gave is the difference to what was read, as it is rounded.
+template <class Real>
+void DirectJoints<Real>::write_velocities(const JointStep<Real>& step) {
+    for (std::size_t i = 1; i < rows_.size(); ++i) {
+        const SystemBody& body = system_.bodies[i];
+        if (!(body.inverse_mass > 0)) continue;
+        Real* record = &step.records.velocity[4 * static_cast<std::size_t>(rows_[i])];
+        record[0] = static_cast<Real>(body.velocity.x), record[1] = static_cast<Real>(body.velocity.y);
+        given_[i].velocity += Vec2{record[0], record[1]} - before_[i].velocity;
+        if (!(body.inverse_inertia > 0)) continue;
+        record[2] = static_cast<Real>(rim_[i] * body.spin);
+        given_[i].spin += static_cast<double>(record[2]) / rim_[i] - before_[i].spin;
+    }
+}
+
+/// The velocities that a substep begins with foresee the impulses of the one before (advance_bodies.hpp),
+/// along what joints were then: those are taken out, as the system finds its own.
+template <class Real>
+void DirectJoints<Real>::solve_first(const JointStep<Real>& step, int substep) {
+    read_poses(step);
+    for (std::size_t i = 1; i < rows_.size(); ++i) {
+        const Real* record = &step.records.velocity[4 * static_cast<std::size_t>(rows_[i])];
+        SystemBody& body = system_.bodies[i];
+        body.velocity = Vec2{record[0], record[1]};
+        body.spin = static_cast<double>(record[2]) / rim_[i];
+        if (is_beside_ && substep > 0) continue;
+        if (substep > 0 && body.inverse_mass > 0) {
+            body.velocity -= given_[i].velocity;
+            body.spin -= given_[i].spin;
+        }
+        given_[i] = {};
+    }
+    before_ = system_.bodies;
+    if (is_beside_) {
+        // Impulses go on from substep to substep, as those of swept joints do.
+        system_.prepare(JointSystem::Part::whole, true);
+        correct(step);
+        if (substep == 0) system_.give_impulses();
+        system_.solve_curved(1);
+    } else {
+        system_.prepare(!touches_ && substep == 0 ? JointSystem::Part::half : JointSystem::Part::whole);
+        correct(step);
+        system_.pull();
+        system_.solve_curved(kRounds);
+    }
+    write_velocities(step);
+}
+
+template <class Real>
+void DirectJoints<Real>::solve_again(const JointStep<Real>& step) {
+    for (std::size_t i = 1; i < rows_.size(); ++i) {
+        const Real* record = &step.records.velocity[4 * static_cast<std::size_t>(rows_[i])];
+        system_.bodies[i].velocity = Vec2{record[0], record[1]};
+        system_.bodies[i].spin = static_cast<double>(record[2]) / rim_[i];
+    }
+    before_ = system_.bodies;
+    system_.solve_curved(1);
+    write_velocities(step);
+}
+
+template <class Real>
+void DirectJoints<Real>::end_step(const JointStep<Real>& step) {
+    if (touches_) return;
+    half_kick(step, 1);
+    read_poses(step);
+    for (std::size_t i = 1; i < rows_.size(); ++i) {
+        const Real* record = &step.records.velocity[4 * static_cast<std::size_t>(rows_[i])];
+        system_.bodies[i].velocity = Vec2{record[0], record[1]};
+        system_.bodies[i].spin = static_cast<double>(record[2]) / rim_[i];
+        given_[i] = {};
+    }
+    before_ = system_.bodies;
+    // What the next step starts from are those of the last substep: these bring curved paths to their
+    // tangents, too, and say little of the pull of a joint.
+    const double whole = system_.part() == JointSystem::Part::half ? 2 : 1;
+    for (std::size_t j = 0; j < slots_.size(); ++j) last_impulse_[j] = system_.joints[j].impulse;
+    system_.prepare(JointSystem::Part::half);
+    correct(step);
+    system_.pull();
+    system_.solve_flat();
+    write_velocities(step);
+    for (auto& impulse : last_impulse_)
+        for (double& part : impulse) part *= whole;
+}
+
+template <class Real>
+void DirectJoints<Real>::book(const JointStep<Real>& step, Books& books, bool is_end) const {
+    for (std::size_t i = 1; i < rows_.size(); ++i) {
+        if (!(system_.bodies[i].inverse_mass > 0)) continue;
+        const auto row = static_cast<std::size_t>(rows_[i]);
+        const Real* record = &step.records.velocity[4 * row];
+        auto [x, y, rim] = step.records.start_of_substep(rows_[i]);
+        if (is_end) x = before_[i].velocity.x, y = before_[i].velocity.y, rim = rim_[i] * before_[i].spin;
+        const double mass = step.world.bodies.mass[row];
+        const Vec2 mean = 0.5 * (Vec2{x, y} + Vec2{record[0], record[1]});
+        books.joints += mass * dot(given_[i].velocity, mean) +
+                        0.25 * mass * rim_[i] * given_[i].spin * (rim + static_cast<double>(record[2]));
+        books.immovable_momentum += mass * given_[i].velocity;
+    }
+}
+
+template <class Real>
+void DirectJoints<Real>::store(JointStore& joints, double dt) const {
+    for (std::size_t j = 0; j < slots_.size(); ++j) {
+        StoredJoint& joint = joints[slots_[j]];
+        const JointSystem::Member& member = system_.joints[j];
+        joint.impulse = touches_ ? member.impulse : last_impulse_[j];
+        joint.force = (1 / dt) * member.force, joint.torque = member.torque / dt;
+    }
+}
+
+template <class Real>
+std::size_t DirectJoints<Real>::bytes() const {
+    return system_.bytes() + slots_.capacity() * sizeof(std::size_t) +
+           rows_.capacity() * (sizeof(std::int32_t) + sizeof(double) + sizeof(Change) + sizeof(SystemBody));
+}
+
+template class DirectJoints<float>;
+template class DirectJoints<double>;
+
+}  // namespace carom

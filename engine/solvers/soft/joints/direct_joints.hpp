@@ -1,0 +1,70 @@
+#pragma once
+
+#include <vector>
+
+#include "constraints/joints/joint_system.hpp"
+#include "solvers/soft/joints/joint_step.hpp"
+
+namespace carom {
+
+/// A group of bodies and joints that is solved exactly: a system in double precision between the records of
+/// the bodies before and after.
+template <class Real>
+class DirectJoints {
+  public:
+    /// @param slots  of its joints  @param rows  of bodies, by the slot of their handle
+    DirectJoints(const WorldState<Real>& world, const std::vector<std::size_t>& slots);
+
+    std::size_t joints() const { return slots_.size(); }
+    std::size_t loops() const { return system_.loop_count(); }
+    bool is_small_enough() const { return system_.is_small_enough(); }
+    const std::vector<std::int32_t>& rows() const { return rows_; }
+    const std::vector<std::size_t>& slots() const { return slots_; }
+
+    /// @param touches  whether one of its bodies can touch something in this step
+    /// @param is_beside  whether it is solved in turns with joints that are swept
+    void begin_step(const JointStep<Real>& step, bool touches, bool is_beside);
+    /// Velocities of a substep, before contacts are solved.
+    void solve_first(const JointStep<Real>& step, int substep);
+    /// What contacts have changed since.
+    void solve_again(const JointStep<Real>& step);
+    bool touches() const { return touches_; }
+    /// The end of a step: velocities at whole times. Nothing where bodies touch others.
+    void end_step(const JointStep<Real>& step);
+    /// Adds what its joints gave since the last solve_first or end_step to their forces.
+    void note_forces() { system_.note_forces(); }
+    /// The work of its joints in this substep, or at the end of the step, and what they gave to what nothing
+    /// moves.
+    void book(const JointStep<Real>& step, Books& books, bool is_end) const;
+    /// What the store keeps of a step.
+    void store(JointStore& joints, double dt) const;
+
+    std::size_t bytes() const;
+
+  private:
+    void read_poses(const JointStep<Real>& step);
+    void write_poses(const JointStep<Real>& step);
+    void write_velocities(const JointStep<Real>& step);
+    void correct(const JointStep<Real>& step);
+    void half_kick(const JointStep<Real>& step, double sign);
+
+    struct Change {
+        Vec2 velocity;    // m/s
+        double spin = 0;  // rad/s
+    };
+
+    JointSystem system_;
+    std::vector<std::size_t> slots_;
+    std::vector<std::int32_t> rows_;                   // by body of the system; -1: the world
+    std::vector<double> rim_;                          // m, likewise
+    std::vector<Change> given_;                        // by body: what its joints gave it in this substep
+    std::vector<SystemBody> before_;                   // that were read
+    std::vector<std::array<double, 3>> last_impulse_;  // N s, by joint: of the last substep of a step
+    double least_error_ = 0, most_error_ = 0;          // m
+    bool touches_ = false, is_beside_ = false;
+};
+
+extern template class DirectJoints<float>;
+extern template class DirectJoints<double>;
+
+}  // namespace carom

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "solvers/substeps/body_records.hpp"
+#include "solvers/substeps/step_terms.hpp"
+#include "state/world_state.hpp"
+
+namespace carom {
+
+/// The radius of the disc that has a body's mass and inertia, sqrt(2 I / m) [m]: what rim speeds refer to.
+template <class Real>
+double rim_of(const Bodies<Real>& bodies, std::size_t row) {
+    return static_cast<double>(bodies.rim(row));
+}
+
+/// What the joints are told of a step.
+template <class Real>
+struct JointStep {
+    WorldState<Real>& world;
+    BodyRecords<Real>& records;
+    const SubstepTerms& terms;
+    double& gravity_work;  ///< J, of this step, on velocities: solvers/soft/books.hpp
+};
+
+}  // namespace carom

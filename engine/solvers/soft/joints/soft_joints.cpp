@@ -1,0 +1,227 @@
+#include "solvers/soft/joints/soft_joints.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/wording.hpp"
+#include "sleeping/islands.hpp"
+
+namespace carom {
+namespace {
+
+/// Work of a substep on a joint that is solved exactly, on one thread: for the executor.
+constexpr double kNanosecondsToSolve = 400;
+
+}  // namespace
+
+template <class Real>
+void SoftJoints<Real>::find_groups(const WorldState<Real>& world) {
+    if (is_known_ && version_ == world.joints.version) return;
+    is_known_ = true, version_ = world.joints.version;
+    direct_.clear(), swept_groups_ = 0;
+    const std::size_t rows = world.bodies.count;
+    const auto row_of = [&](BodyId id) {
+        return id == BodyId{} ? SIZE_MAX : std::size_t{world.handles.row_of_slot(id.index)};
+    };
+    const auto moves = [&](std::size_t row) { return row < rows && !world.bodies.is_immovable(row); };
+    Islands islands;
+    islands.reset(rows);
+    struct Member {
+        std::int32_t island;
+        std::size_t slot;
+    };
+    std::vector<Member> members;
+    joined_.clear(), joined_.resize(rows);
+    world.joints.for_each([&](std::size_t, const StoredJoint& joint) {
+        const std::size_t a = row_of(joint.a), b = row_of(joint.b);
+        if (moves(a) && moves(b)) islands.join(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
+    });
+    world.joints.for_each([&](std::size_t slot, const StoredJoint& joint) {
+        const std::size_t a = row_of(joint.a), b = row_of(joint.b);
+        if (!moves(a) && !moves(b)) return;  // they sleep, or were quarantined
+        for (const std::size_t row : {a, b})
+            if (moves(row)) joined_[row] = Real(1);
+        members.push_back({islands.island_of(static_cast<std::int32_t>(moves(a) ? a : b)), slot});
+    });
+    // In the order of slots within a group, and groups by their first slot: rows do not bear on it.
+    std::vector<std::size_t> first_slot(rows, SIZE_MAX);
+    for (const Member& member : members)
+        first_slot[static_cast<std::size_t>(member.island)] =
+            std::min(first_slot[static_cast<std::size_t>(member.island)], member.slot);
+    std::stable_sort(members.begin(), members.end(), [&](const Member& left, const Member& right) {
+        const std::size_t of_left = first_slot[static_cast<std::size_t>(left.island)],
+                          of_right = first_slot[static_cast<std::size_t>(right.island)];
+        return of_left != of_right ? of_left < of_right : left.slot < right.slot;
+    });
+    std::vector<std::size_t> to_sweep, slots;
+    std::vector<DirectJoints<Real>> beside;
+    for (std::size_t i = 0; i < members.size();) {
+        slots.clear();
+        const std::int32_t island = members[i].island;
+        for (; i < members.size() && members[i].island == island; ++i) slots.push_back(members[i].slot);
+        DirectJoints<Real> group(world, slots);
+        if (group.is_small_enough()) {
+            direct_.push_back(std::move(group));
+            continue;
+        }
+        ++swept_groups_;
+        for (const std::size_t slot : slots) {
+            if (SweptJoints<Real>::knows(world.joints[slot]))
+                to_sweep.push_back(slot);
+            else
+                beside.emplace_back(world, std::vector<std::size_t>{slot});
+        }
+    }
+    for (const std::size_t slot : swept_.sort(world, to_sweep))
+        beside.emplace_back(world, std::vector<std::size_t>{slot});
+    first_beside_ = direct_.size();
+    for (DirectJoints<Real>& joint : beside) direct_.push_back(std::move(joint));
+    group_of_.assign(rows, -1);
+    for (std::size_t i = 0; i < first_beside_; ++i)
+        for (const std::int32_t row : direct_[i].rows())
+            if (row >= 0 && moves(static_cast<std::size_t>(row)))
+                group_of_[static_cast<std::size_t>(row)] = static_cast<std::int32_t>(i);
+}
+
+/// Marks groups of which a body can touch something in this step.
+template <class Real>
+void SoftJoints<Real>::find_touching(const JointStep<Real>& step, const StepView<Real>& contacts,
+                                     const PathSolver<Real>& paths, double dt) {
+    group_touches_.assign(direct_.size() + 1, 0);
+    const Bodies<Real>& bodies = step.world.bodies;
+    const auto speed_of = [&](std::size_t row) {
+        return std::fabs(static_cast<double>(bodies.velocity_x[row])) +
+               std::fabs(static_cast<double>(bodies.velocity_y[row]));
+    };
+    const auto group_at = [&](std::int32_t row) {
+        return static_cast<std::size_t>(row) < group_of_.size() ? group_of_[static_cast<std::size_t>(row)]
+                                                                : -1;
+    };
+    const auto look = [&](const ContactRows<Real>& rows, std::size_t i, std::int32_t a, std::int32_t b) {
+        const std::int32_t of_a = group_at(a), of_b = b < 0 ? -1 : group_at(b);
+        if (of_a < 0 && of_b < 0) return;
+        const auto row = static_cast<std::size_t>(a);
+        double near = 0.05 * static_cast<double>(bodies.radius[row]) + dt * speed_of(row);
+        if (b >= 0 && static_cast<std::size_t>(b) < bodies.count)
+            near += dt * speed_of(static_cast<std::size_t>(b));
+        if (!(rows.normal_impulse[i] > 0) && static_cast<double>(rows.separation[i]) > near) return;
+        if (of_a >= 0) group_touches_[static_cast<std::size_t>(of_a)] = 1;
+        if (of_b >= 0) group_touches_[static_cast<std::size_t>(of_b)] = 1;
+    };
+    const ContactRows<Real>& pairs = contacts.graph.pairs;
+    for (std::size_t group = 0; group < pairs.groups(); ++group)
+        pairs.for_each(group, group + 1, [&](std::size_t i) {
+            if (pairs.is_live[i / kContactBlock]) look(pairs, i, pairs.a[i], pairs.b[i]);
+        });
+    if (bodies.has_shapes)
+        paths.for_each([&](const PathContact<Real>& contact) {
+            for (const std::int32_t row : {contact.near, contact.far})
+                if (group_at(row) >= 0) group_touches_[static_cast<std::size_t>(group_at(row))] = 1;
+        });
+    contacts.supports.for_each(
+        [&](std::size_t i) { look(contacts.supports, i, contacts.supports.a[i], -1); });
+}
+
+template <class Real>
+void SoftJoints<Real>::begin_step(const JointStep<Real>& step, const StepView<Real>& contacts,
+                                  const PathSolver<Real>& paths, double dt) {
+    step.world.joints.broken.clear();
+    find_touching(step, contacts, paths, dt);
+    touches_ = false;
+    for (std::size_t i = 0; i < direct_.size(); ++i) {
+        const bool touches = i >= first_beside_ || group_touches_[i];
+        touches_ = touches_ || (group_touches_[i] && i < first_beside_);
+        direct_[i].begin_step(step, touches, i >= first_beside_);
+    }
+    if (!swept_.empty()) swept_.begin_step(step, contacts.loops);
+}
+
+template <class Real>
+void SoftJoints<Real>::solve(const JointStep<Real>& step, const StepLoops<Real>& loops, int substep) {
+    using Begin = typename SweptJoints<Real>::Begin;
+    if (!swept_.empty()) swept_.sweep(step, loops, substep == 0 ? Begin::step : Begin::substep);
+    std::size_t joints = 0;
+    for (std::size_t i = 0; i < first_beside_; ++i) joints += direct_[i].joints();
+    loops.executor->for_each_task(first_beside_, kNanosecondsToSolve * static_cast<double>(joints),
+                                  [&](std::size_t i) { direct_[i].solve_first(step, substep); });
+    for (std::size_t i = first_beside_; i < direct_.size(); ++i) direct_[i].solve_first(step, substep);
+    if (first_beside_ < direct_.size() && !swept_.empty()) swept_.sweep(step, loops, Begin::nothing);
+}
+
+template <class Real>
+void SoftJoints<Real>::solve_again(const JointStep<Real>& step, const StepLoops<Real>& loops) {
+    using Begin = typename SweptJoints<Real>::Begin;
+    if (!swept_.empty()) swept_.sweep(step, loops, Begin::nothing);
+    std::size_t joints = 0;
+    for (std::size_t i = 0; i < first_beside_; ++i) joints += direct_[i].joints();
+    loops.executor->for_each_task(first_beside_, kNanosecondsToSolve / 4 * static_cast<double>(joints),
+                                  [&](std::size_t i) {
+                                      if (direct_[i].touches()) direct_[i].solve_again(step);
+                                  });
+    for (std::size_t i = first_beside_; i < direct_.size(); ++i) direct_[i].solve_again(step);
+}
+
+template <class Real>
+void SoftJoints<Real>::end_substep(const JointStep<Real>& step, Books& books) {
+    for (DirectJoints<Real>& group : direct_) {
+        group.note_forces();
+        if (books.is_open) group.book(step, books, false);
+    }
+    if (books.is_open && !swept_.empty()) swept_.book(step, books);
+}
+
+template <class Real>
+bool SoftJoints<Real>::end_step(const JointStep<Real>& step, Books& books, double dt) {
+    JointStore& joints = step.world.joints;
+    for (DirectJoints<Real>& group : direct_) {
+        if (!group.touches()) {
+            group.end_step(step);
+            group.note_forces();
+            if (books.is_open) group.book(step, books, true);
+        }
+        group.store(joints, dt);
+    }
+    if (!swept_.empty()) swept_.store(joints, step.terms.substep_dt);
+    bool any = false;
+    for (std::size_t slot = 0; slot < joints.slots(); ++slot) {
+        if (!joints.has(slot)) continue;
+        const StoredJoint& joint = joints[slot];
+        if (length_squared(joint.force) <= joint.break_force * joint.break_force &&
+            std::fabs(joint.torque) <= joint.break_torque)
+            continue;
+        joints.broken.push_back(joints.id_of(slot));
+        any = true;
+    }
+    for (const JointId broken : joints.broken) joints.remove(broken.index);
+    return any;
+}
+
+template <class Real>
+std::string SoftJoints<Real>::describe() const {
+    std::size_t exact = 0, loops = 0, beside = 0;
+    for (std::size_t i = 0; i < direct_.size(); ++i)
+        if (i < first_beside_)
+            exact += direct_[i].joints(), loops += direct_[i].loops();
+        else
+            ++beside;
+    std::string text = join(exact, " in ", first_beside_, first_beside_ == 1 ? " group" : " groups",
+                            " solved exactly, leaves first");
+    if (loops > 0) text += join(" (", loops, " of them close loops)");
+    if (swept_.joints() > 0)
+        text += join("; ", swept_.joints(), " in ", swept_groups_, swept_groups_ == 1 ? " group" : " groups",
+                     " with too many loops for that swept by lanes in ", swept_.colours(), " colours");
+    if (beside > 0) text += join("; ", beside, " one by one beside these");
+    return text;
+}
+
+template <class Real>
+std::size_t SoftJoints<Real>::bytes() const {
+    std::size_t bytes = swept_.bytes() + joined_.bytes() + group_of_.capacity() * sizeof(std::int32_t);
+    for (const DirectJoints<Real>& group : direct_) bytes += group.bytes() + sizeof(group);
+    return bytes;
+}
+
+template class SoftJoints<float>;
+template class SoftJoints<double>;
+
+}  // namespace carom

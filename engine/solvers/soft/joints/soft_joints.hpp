@@ -1,0 +1,69 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "constraints/contact_graph.hpp"
+#include "solvers/paths/path_solver.hpp"
+#include "solvers/soft/joints/direct_joints.hpp"
+#include "solvers/soft/joints/swept_joints.hpp"
+#include "solvers/soft/step_view.hpp"
+
+namespace carom {
+
+/// The joints of a world under solver `soft`. Bodies that joints connect are a group. A group that is a tree,
+/// or nearly one, is solved exactly (direct_joints.hpp); one with many loops, a net, is swept
+/// (swept_joints.hpp), but for its joints that the kernels do not know, which are solved exactly beside the
+/// sweeps.
+template <class Real>
+class SoftJoints {
+  public:
+    /// Rows, masses or joints have changed: what was derived from them is made anew.
+    void forget() { is_known_ = false; }
+    /// Finds the groups if they are not known. Cost: O(bodies + joints) then.
+    void find_groups(const WorldState<Real>& world);
+    /// Rows beyond the bodies that joints name.
+    std::size_t rows_beyond() const { return swept_.rows_beyond(); }
+
+    /// @param contacts  of this step: groups that touch something are told from those that fly freely
+    /// @param paths  the contacts of shapes
+    void begin_step(const JointStep<Real>& step, const StepView<Real>& contacts,
+                    const PathSolver<Real>& paths, double dt);
+    void solve(const JointStep<Real>& step, const StepLoops<Real>& loops, int substep);
+    /// Once more, after contacts have changed velocities.
+    void solve_again(const JointStep<Real>& step, const StepLoops<Real>& loops);
+    /// Whether contacts and joints are to be solved in turns in this step.
+    bool touches() const { return touches_; }
+    void end_substep(const JointStep<Real>& step, Books& books);
+    /// @return whether a joint broke
+    bool end_step(const JointStep<Real>& step, Books& books, double dt);
+
+    /// [rows], above zero for bodies that have joints.
+    const Real* joined() const { return joined_.data(); }
+    bool has_swept() const { return !swept_.empty(); }
+    bool has_long_loops() const { return swept_.groups().chunks > 1; }
+    std::size_t bytes() const;
+
+    /// How many joints are solved in which way, in words, for `explain`.
+    std::string describe() const;
+
+  private:
+    void find_touching(const JointStep<Real>& step, const StepView<Real>& contacts,
+                       const PathSolver<Real>& paths, double dt);
+
+    bool is_known_ = false, touches_ = false;
+    std::int64_t version_ = -1;  // of the store
+    std::vector<DirectJoints<Real>> direct_;
+    std::size_t first_beside_ = 0;  // of direct_, that are solved beside sweeps
+    SweptJoints<Real> swept_;
+    std::size_t swept_groups_ = 0;
+    Column<Real> joined_;
+    std::vector<std::int32_t> group_of_;  // by row; -1: none
+    std::vector<std::uint8_t> group_touches_;
+};
+
+extern template class SoftJoints<float>;
+extern template class SoftJoints<double>;
+
+}  // namespace carom

@@ -1,0 +1,344 @@
+#include "solvers/soft/joints/swept_joints.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace carom {
+namespace {
+
+/// Share of an error that a substep takes away, by displacement.
+constexpr double kRecovery = 0.4;
+/// Largest such correction: in lengths of a rod, in arms of a hinge.
+constexpr double kLargestCorrection = 1;
+/// Factor by which the first sweep over rods goes farther. Hinges take 1: more pumps energy into them.
+constexpr double kOverRelaxation = 1.3;
+
+constexpr std::size_t kColours = 64;
+constexpr std::size_t kFewestChunks = 8;         // or one: four tasks for the threads to share
+constexpr std::size_t kFewestRowsOfChunk = 512;  // fewer: too many short colours
+constexpr double kNanosecondsToSweep = 5;        // a joint on one thread, for the executor
+
+}  // namespace
+
+template <class Real>
+bool SweptJoints<Real>::knows(const StoredJoint& joint) {
+    if (joint.has_lower || joint.has_upper || joint.has_motor || joint.is_spring()) return false;
+    return (joint.type == JointType::distance && joint.is_held) || joint.type == JointType::revolute;
+}
+
+template <class Real>
+std::size_t SweptJoints<Real>::kind_of(const StoredJoint& joint) {
+    if (joint.type == JointType::revolute) return kHinges;
+    const bool has_arms = joint.anchor_b != Vec2{} || (!joint.is_on_world() && joint.anchor_a != Vec2{});
+    return has_arms ? kRodsOfAnchors : kRods;
+}
+
+template <class Real>
+template <class Fn>
+void SweptJoints<Real>::Kind::for_each_column(const Fn& fn) {
+    for (Column<Real>* column :
+         {&start_x, &start_y, &length, &impulse_x, &impulse_y, &normal_x, &normal_y, &per_length})
+        fn(*column, false);
+    for (Column<Real>* column : {&start_arm_a_x, &start_arm_a_y, &start_arm_b_x, &start_arm_b_y, &arm_a_x,
+                                 &arm_a_y, &arm_b_x, &arm_b_y, &per_rim_a, &per_rim_b})
+        fn(*column, true);
+}
+
+template <class Real>
+void SweptJoints<Real>::Kind::resize(std::size_t places, bool has_arms) {
+    a.resize(places), b.resize(places), slot.resize(places);
+    for_each_column([&](Column<Real>& column, bool is_of_arms) {
+        column.clear();
+        column.resize(is_of_arms && !has_arms ? 0 : places);
+    });
+}
+
+template <class Real>
+JointColumns<Real> SweptJoints<Real>::Kind::columns() {
+    return {a.data(),
+            b.data(),
+            start_x.data(),
+            start_y.data(),
+            length.data(),
+            impulse_x.data(),
+            impulse_y.data(),
+            normal_x.data(),
+            normal_y.data(),
+            per_length.data(),
+            start_arm_a_x.data(),
+            start_arm_a_y.data(),
+            start_arm_b_x.data(),
+            start_arm_b_y.data(),
+            arm_a_x.data(),
+            arm_a_y.data(),
+            arm_b_x.data(),
+            arm_b_y.data(),
+            per_rim_a.data(),
+            per_rim_b.data()};
+}
+
+template <class Real>
+std::vector<std::size_t> SweptJoints<Real>::sort(const WorldState<Real>& world,
+                                                 const std::vector<std::size_t>& slots) {
+    const std::size_t rows = world.bodies.count;
+    first_beyond_ = static_cast<std::int32_t>(rows), joints_ = 0, colours_ = 0, longest_ = 0;
+    groups_ = {};
+    // Nets have their rows in order, so that joints reach into the next chunk at most: as long as a chunk has
+    // so many rows that most do.
+    if (rows / kFewestChunks >= kFewestRowsOfChunk && slots.size() > rows / 2) {
+        const std::size_t length = padded((rows + kFewestChunks - 1) / kFewestChunks);
+        groups_ = TaskGroups(length, (rows + length - 1) / length);
+    }
+    struct Entry {
+        std::size_t group, colour, kind, slot;
+        std::int32_t a, b;
+    };
+    std::vector<Entry> entries;
+    const auto row_of = [&](BodyId id) {
+        return id == BodyId{} ? first_beyond_
+                              : static_cast<std::int32_t>(world.handles.row_of_slot(id.index));
+    };
+    const auto moves = [&](std::int32_t row) {
+        return row < first_beyond_ && !world.bodies.is_immovable(static_cast<std::size_t>(row));
+    };
+    const auto drives = [&](std::int32_t row) {
+        return row < first_beyond_ &&
+               (world.bodies.flags_of(static_cast<std::size_t>(row)) & kKinematic) != 0;
+    };
+    std::vector<std::size_t> left_over;
+    for (const std::size_t slot : slots) {
+        const StoredJoint& joint = world.joints[slot];
+        const std::int32_t a = row_of(joint.a), b = row_of(joint.b);
+        if (drives(a) || drives(b)) {
+            left_over.push_back(slot);
+            continue;
+        }
+        // What does not move is in any group: the joint is where its other body is.
+        const std::int32_t low = !moves(a)   ? b
+                                 : !moves(b) ? a
+                                             : std::min(a, b),
+                           high = !moves(a)   ? b
+                                  : !moves(b) ? a
+                                              : std::max(a, b);
+        entries.push_back({groups_.group_of(low, high), 0, kind_of(joint), slot, a, b});
+    }
+    const auto by_group = [](const Entry& left, const Entry& right) { return left.group < right.group; };
+    std::stable_sort(entries.begin(), entries.end(), by_group);
+    std::vector<std::uint64_t> taken(rows * kKinds);
+    std::size_t group = SIZE_MAX;
+    for (Entry& entry : entries) {
+        if (entry.group != group) std::fill(taken.begin(), taken.end(), 0), group = entry.group;
+        const auto of = [&](std::int32_t row) -> std::uint64_t& {
+            return taken[static_cast<std::size_t>(row) * kKinds + entry.kind];
+        };
+        std::uint64_t both = 0;
+        for (const std::int32_t row : {entry.a, entry.b})
+            if (moves(row)) both |= of(row);
+        entry.colour = static_cast<std::size_t>(std::countr_one(both));
+        if (entry.colour == kColours) {
+            left_over.push_back(entry.slot);
+            continue;
+        }
+        ++joints_;
+        colours_ = std::max(colours_, entry.colour + 1);
+        for (const std::int32_t row : {entry.a, entry.b})
+            if (moves(row)) of(row) |= std::uint64_t{1} << entry.colour;
+    }
+    std::stable_sort(entries.begin(), entries.end(), [](const Entry& left, const Entry& right) {
+        return left.group != right.group ? left.group < right.group : left.colour < right.colour;
+    });
+    for (std::size_t kind = 0; kind < kKinds; ++kind) {
+        Kind& own = kinds_[kind];
+        std::vector<std::pair<std::size_t, const Entry*>> places;
+        std::size_t place = 0, colour = SIZE_MAX, of_group = SIZE_MAX;
+        own.begin.assign(groups_.count() + 1, 0);
+        for (const Entry& entry : entries) {
+            if (entry.kind != kind || entry.colour == kColours) continue;
+            if (entry.group != of_group || entry.colour != colour) place = padded(place);
+            if (entry.group != of_group) {
+                for (std::size_t g = of_group + 1; g <= entry.group; ++g)
+                    own.begin[g] = place;  // SIZE_MAX + 1 = 0
+                of_group = entry.group;
+            }
+            colour = entry.colour;
+            places.push_back({place++, &entry});
+        }
+        place = padded(place);
+        for (std::size_t g = of_group + 1; g < own.begin.size(); ++g) own.begin[g] = place;
+        own.resize(place, kind != kRods);
+        std::fill(own.slot.begin(), own.slot.end(), -1);
+        for (std::size_t g = 0; g < groups_.count(); ++g)
+            for (std::size_t at = own.begin[g]; at < own.begin[g + 1]; ++at)
+                own.a[at] = own.b[at] = first_beyond_ + static_cast<std::int32_t>(g);
+        for (const auto& [at, entry] : places) {
+            if (moves(entry->a)) own.a[at] = entry->a;
+            if (moves(entry->b)) own.b[at] = entry->b;
+            own.slot[at] = static_cast<std::int32_t>(entry->slot);
+        }
+    }
+    return left_over;
+}
+
+template <class Real>
+void SweptJoints<Real>::begin_step(const JointStep<Real>& step, const StepLoops<Real>& loops) {
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    const Bodies<Real>& bodies = step.world.bodies;
+    kernels_ = loops.kernels;
+    arguments_.assign(kKinds, {});
+    for (std::size_t kind = 0; kind < kKinds; ++kind) {
+        Kind& own = kinds_[kind];
+        struct End {
+            Vec2 place, arm;
+            double per_rim;
+        };
+        const auto end_of = [&](std::int32_t number, BodyId id, Vec2 anchor) -> End {
+            if (id == BodyId{}) return {anchor, {}, 0};
+            const std::size_t row = step.world.handles.row_of_slot(id.index);
+            End end{{bodies.position_x[row], bodies.position_y[row]}, {}, 0};
+            if (anchor == Vec2{} && kind != kHinges) return end;
+            const double angle = bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0;
+            end.arm = rotate(rotation_by(angle), anchor);
+            end.per_rim = 1 / rim_of(bodies, row);
+            if (number >= first_beyond_) end.place += end.arm, end.arm = {}, end.per_rim = 0;
+            return end;
+        };
+        for (std::size_t i = 0; i < own.slot.size(); ++i) {
+            if (own.slot[i] < 0) continue;
+            const StoredJoint& joint = step.world.joints[static_cast<std::size_t>(own.slot[i])];
+            const End a = end_of(own.a[i], joint.a, joint.anchor_a),
+                      b = end_of(own.b[i], joint.b, joint.anchor_b);
+            own.start_x[i] = real(b.place.x - a.place.x), own.start_y[i] = real(b.place.y - a.place.y);
+            own.length[i] = real(joint.length);
+            own.impulse_x[i] = real(joint.impulse[0]), own.impulse_y[i] = real(joint.impulse[1]);
+            if (kind == kRods) continue;
+            own.start_arm_a_x[i] = real(a.arm.x), own.start_arm_a_y[i] = real(a.arm.y);
+            own.start_arm_b_x[i] = real(b.arm.x), own.start_arm_b_y[i] = real(b.arm.y);
+            own.per_rim_a[i] = real(a.per_rim), own.per_rim_b[i] = real(b.per_rim);
+            longest_ = std::max(
+                {longest_, std::fabs(a.arm.x), std::fabs(a.arm.y), std::fabs(b.arm.x), std::fabs(b.arm.y)});
+        }
+        SweepJoints<Real>& k = arguments_[kind];
+        k.joints = own.columns();
+        k.velocity = step.records.velocity.data(), k.displacement = step.records.displacement.data();
+        k.turn = step.records.turn();
+        const double h = step.terms.substep_dt;
+        k.h = real(h), k.half_h = real(h / 2), k.per_h = real(1 / h);
+        k.recovery = real(kRecovery);
+        k.most = real(kind == kHinges ? kLargestCorrection * longest_ : kLargestCorrection);
+    }
+}
+
+template <class Real>
+void SweptJoints<Real>::run_group(std::size_t group, Kernel kernel) const {
+    for (std::size_t kind = 0; kind < kKinds; ++kind) {
+        const std::size_t first = kinds_[kind].begin[group], last = kinds_[kind].begin[group + 1];
+        if (first == last) continue;
+        SweepJoints<Real> k = arguments_[kind];
+        k.over_relaxation =
+            static_cast<Real>(kind == kHinges || kernel == Kernel::last ? 1 : kOverRelaxation);
+        const JointKernels<Real>& kernels = kernels_->joints[kind];
+        const auto run = kernel == Kernel::give    ? kernels.give
+                         : kernel == Kernel::first ? kernels.first
+                                                   : kernels.next;
+        run(k, first, last);
+    }
+}
+
+template <class Real>
+void SweptJoints<Real>::sweep(const JointStep<Real>& step, const StepLoops<Real>& loops, Begin begin) {
+    for (SweepJoints<Real>& k : arguments_) {
+        k.velocity = step.records.velocity.data(), k.displacement = step.records.displacement.data();
+        k.turn = step.records.turn();
+    }
+    bool any_far = false;
+    for (const Kind& kind : kinds_)
+        any_far |= groups_.chunks > 1 && kind.begin[groups_.far()] < kind.begin[groups_.far() + 1];
+    phases_.clear(), parts_.clear();
+    const auto add_sweep = [&](Kernel kernel) {
+        const auto add = [&](Part part, PhaseKind phase) {
+            parts_.push_back({kernel, part}), phases_.push_back(phase);
+        };
+        add(Part::chunks, PhaseKind::side_by_side);
+        if (any_far) add(Part::far, PhaseKind::alone);
+        add(Part::borders, PhaseKind::side_by_side);
+    };
+    if (begin == Begin::step) add_sweep(Kernel::give);
+    add_sweep(begin == Begin::nothing ? Kernel::next : Kernel::first);
+    add_sweep(Kernel::last);
+    const double work = kNanosecondsToSweep * static_cast<double>(joints_) * 2;
+    loops.executor->for_each_phase(phases_, groups_.tasks(), work, [&](std::size_t phase, std::size_t task) {
+        const auto [kernel, part] = parts_[phase];
+        const std::size_t chunk = 2 * task;
+        if (part == Part::far) return run_group(groups_.far(), kernel);
+        if (part == Part::borders) {
+            if (chunk > 0 && groups_.has_border(chunk - 1)) run_group(TaskGroups::across(chunk - 1), kernel);
+            return;
+        }
+        if (chunk >= groups_.chunks) return;
+        run_group(TaskGroups::inside(chunk), kernel);
+        if (!groups_.has_border(chunk)) return;
+        run_group(TaskGroups::across(chunk), kernel);
+        run_group(TaskGroups::inside(chunk + 1), kernel);
+    });
+}
+
+template <class Real>
+void SweptJoints<Real>::book(const JointStep<Real>& step, Books& books) const {
+    for (std::size_t kind = 0; kind < kKinds; ++kind) {
+        const Kind& own = kinds_[kind];
+        for (std::size_t i = 0; i < own.slot.size(); ++i) {
+            if (own.slot[i] < 0) continue;
+            const Vec2 j = kind == kHinges ? Vec2{own.impulse_x[i], own.impulse_y[i]}
+                                           : static_cast<double>(own.impulse_x[i]) *
+                                                 Vec2{own.normal_x[i], own.normal_y[i]};
+            const auto work_on = [&](std::int32_t number, Vec2 impulse, Vec2 arm, double per_rim) {
+                if (number >= first_beyond_) return -1 * impulse;
+                const auto row = static_cast<std::size_t>(number);
+                const Real* record = &step.records.velocity[4 * row];
+                const auto [x, y, rim] = step.records.start_of_substep(number);
+                books.joints += 0.5 * dot(impulse, Vec2{x, y} + Vec2{record[0], record[1]});
+                if (record[3] > Real(0))
+                    books.joints +=
+                        0.5 * per_rim * cross(arm, impulse) * (rim + static_cast<double>(record[2]));
+                return Vec2{};
+            };
+            const bool has_arms = kind != kRods;
+            const Vec2 arm_a = has_arms ? Vec2{own.arm_a_x[i], own.arm_a_y[i]} : Vec2{},
+                       arm_b = has_arms ? Vec2{own.arm_b_x[i], own.arm_b_y[i]} : Vec2{};
+            books.immovable_momentum -= work_on(own.a[i], -1 * j, arm_a, has_arms ? own.per_rim_a[i] : 0);
+            books.immovable_momentum -= work_on(own.b[i], j, arm_b, has_arms ? own.per_rim_b[i] : 0);
+        }
+    }
+}
+
+template <class Real>
+void SweptJoints<Real>::store(JointStore& joints, double substep_dt) const {
+    for (std::size_t kind = 0; kind < kKinds; ++kind) {
+        const Kind& own = kinds_[kind];
+        for (std::size_t i = 0; i < own.slot.size(); ++i) {
+            if (own.slot[i] < 0) continue;
+            StoredJoint& joint = joints[static_cast<std::size_t>(own.slot[i])];
+            joint.impulse = {own.impulse_x[i], own.impulse_y[i], 0};
+            joint.force = kind == kHinges ? (1 / substep_dt) * Vec2{own.impulse_x[i], own.impulse_y[i]}
+                                          : (static_cast<double>(own.impulse_x[i]) / substep_dt) *
+                                                Vec2{own.normal_x[i], own.normal_y[i]};
+            joint.torque = 0;
+        }
+    }
+}
+
+template <class Real>
+std::size_t SweptJoints<Real>::bytes() const {
+    std::size_t bytes = 0;
+    for (const Kind& kind : kinds_) {
+        bytes += kind.a.bytes() + kind.b.bytes() + kind.slot.bytes();
+        const_cast<Kind&>(kind).for_each_column([&](Column<Real>& column, bool) { bytes += column.bytes(); });
+    }
+    return bytes;
+}
+
+template class SweptJoints<float>;
+template class SweptJoints<double>;
+
+}  // namespace carom

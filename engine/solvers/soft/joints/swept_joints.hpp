@@ -1,0 +1,97 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "constraints/task_groups.hpp"
+#include "kernels/joint_arguments.hpp"
+#include "parallel/phases.hpp"
+#include "solvers/soft/joints/joint_step.hpp"
+
+namespace carom {
+
+/// Rods and hinges of groups that are too entangled to be solved exactly: swept by lanes, with the impulses
+/// of the step before to start from.
+///
+/// They have task groups of their own (constraints/task_groups.hpp), by rows alone: bodies in the order of
+/// their rows. In each the joints of a kind are sorted by colour, and a run over a group is one call of a
+/// kernel.
+template <class Real>
+class SweptJoints {
+  public:
+    /// Substeps a step where there are joints of this kind, unless a scene says otherwise.
+    static constexpr int kSubsteps = 6;
+
+    /// Whether the kernels know a joint.
+    static bool knows(const StoredJoint& joint);
+
+    /// Sorts the joints. @param slots  of those that the kernels know
+    /// @return slots of joints that found no colour, or hang on what moves by itself. Cost: O(joints)
+    std::vector<std::size_t> sort(const WorldState<Real>& world, const std::vector<std::size_t>& slots);
+    /// Rows beyond the bodies that joints name: the world, and what never moves, once for each group, so that
+    /// no two tasks write to one.
+    std::size_t rows_beyond() const { return groups_.count(); }
+    bool empty() const { return joints_ == 0; }
+    std::size_t joints() const { return joints_; }
+    std::size_t colours() const { return colours_; }
+    const TaskGroups& groups() const { return groups_; }
+
+    /// Where the joints are at the start of a step.
+    void begin_step(const JointStep<Real>& step, const StepLoops<Real>& loops);
+    /// Those that a substep takes: a number of next sweeps, after the first of a substep, after that which
+    /// gives impulses at the start of a step.
+    enum class Begin : std::uint8_t { step, substep, nothing };
+    void sweep(const JointStep<Real>& step, const StepLoops<Real>& loops, Begin begin);
+    /// The work of the joints in this substep, and what they gave to what nothing moves.
+    void book(const JointStep<Real>& step, Books& books) const;
+    /// What the store keeps of a step.
+    void store(JointStore& joints, double substep_dt) const;
+
+    /// Calls fn(row) for every row that has such a joint.
+    template <class Fn>
+    void for_each_row(const Fn& fn) const {
+        for (const Kind& kind : kinds_)
+            for (std::size_t i = 0; i < kind.slot.size(); ++i)
+                if (kind.slot[i] >= 0) fn(kind.a[i]), fn(kind.b[i]);
+    }
+    std::size_t bytes() const;
+
+  private:
+    /// The joints of one kernel, by group and colour; padding has the slot -1.
+    struct Kind {
+        Column<std::int32_t> a, b, slot;
+        Column<Real> start_x, start_y, length, impulse_x, impulse_y, normal_x, normal_y, per_length;
+        Column<Real> start_arm_a_x, start_arm_a_y, start_arm_b_x, start_arm_b_y;
+        Column<Real> arm_a_x, arm_a_y, arm_b_x, arm_b_y, per_rim_a, per_rim_b;
+        std::vector<std::size_t> begin;  // of each group, and the end
+
+        void resize(std::size_t places, bool has_arms);
+        JointColumns<Real> columns();
+        template <class Fn>
+        void for_each_column(const Fn& fn);
+    };
+    enum : std::size_t { kRods, kRodsOfAnchors, kHinges, kKinds };
+    static std::size_t kind_of(const StoredJoint& joint);
+
+    std::array<Kind, kKinds> kinds_;
+    TaskGroups groups_;
+    std::size_t joints_ = 0, colours_ = 0;
+    std::int32_t first_beyond_ = 0;             // row
+    double longest_ = 0;                        // m, arm of hinges
+    std::vector<SweepJoints<Real>> arguments_;  // by kind
+    const KernelTable<Real>* kernels_ = nullptr;
+    enum class Kernel : std::uint8_t { give, first, next, last };
+    enum class Part : std::uint8_t { chunks, far, borders };
+    struct Phase {
+        Kernel kernel;
+        Part part;
+    };
+    std::vector<PhaseKind> phases_;
+    std::vector<Phase> parts_;
+    void run_group(std::size_t group, Kernel kernel) const;
+};
+
+extern template class SweptJoints<float>;
+extern template class SweptJoints<double>;
+
+}  // namespace carom

@@ -1,0 +1,179 @@
+#include "state/joints.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "math/rotation.hpp"
+
+namespace carom {
+namespace {
+
+std::uint64_t pair_of(BodyId a, BodyId b) {
+    const auto low = std::min(a.index, b.index), high = std::max(a.index, b.index);
+    return std::uint64_t{low} << 32 | high;
+}
+
+/// What is of a hinge, slider, weld or wheel alike: anchors at a point of the world.
+template <class Kind>
+void place(StoredJoint& stored, const Kind& kind, const JointBody& a, const JointBody& b, bool is_b_world) {
+    const Vec2 anchor = kind.anchor.value_or(is_b_world ? a.position : b.position);
+    stored.anchor_a = rotate_back(rotation_by(a.angle), anchor - a.position);
+    stored.anchor_b = rotate_back(rotation_by(b.angle), anchor - b.position);
+    stored.angle = b.angle - a.angle;
+    stored.frequency = kind.frequency, stored.damping_ratio = kind.damping_ratio;
+}
+
+void limit(StoredJoint& stored, const std::optional<double>& lower, const std::optional<double>& upper) {
+    stored.has_lower = lower.has_value(), stored.has_upper = upper.has_value();
+    stored.lower = lower.value_or(0), stored.upper = upper.value_or(0);
+}
+
+void drive(StoredJoint& stored, const std::optional<double>& speed, double most) {
+    stored.has_motor = speed.has_value() && most > 0;
+    stored.motor_speed = speed.value_or(0), stored.max_motor = most;
+}
+
+void set_axis(StoredJoint& stored, Vec2 axis, const JointBody& a) {
+    const double length = std::sqrt(length_squared(axis));
+    stored.axis = rotate_back(rotation_by(a.angle), {axis.x / length, axis.y / length});
+}
+
+struct Describe {
+    StoredJoint& stored;
+    const JointBody &a, &b;
+    bool is_b_world;
+
+    void operator()(const DistanceJoint& kind) const {
+        stored.type = JointType::distance;
+        stored.anchor_a = kind.anchor_a, stored.anchor_b = kind.anchor_b;
+        const Vec2 from = a.position + rotate(rotation_by(a.angle), kind.anchor_a),
+                   to = b.position + rotate(rotation_by(b.angle), kind.anchor_b);
+        stored.length = kind.length.value_or(std::sqrt(length_squared(to - from)));
+        limit(stored, kind.min, kind.max);
+        stored.frequency = kind.frequency, stored.damping_ratio = kind.damping_ratio;
+        stored.is_held = (!kind.min && !kind.max) || kind.frequency > 0;
+    }
+    void operator()(const RevoluteJoint& kind) const {
+        stored.type = JointType::revolute;
+        place(stored, kind, a, b, is_b_world);
+        limit(stored, kind.lower, kind.upper);
+        drive(stored, kind.motor_speed, kind.max_motor_torque);
+    }
+    void operator()(const PrismaticJoint& kind) const {
+        stored.type = JointType::prismatic;
+        place(stored, kind, a, b, is_b_world);
+        set_axis(stored, kind.axis, a);
+        limit(stored, kind.lower, kind.upper);
+        drive(stored, kind.motor_speed, kind.max_motor_force);
+    }
+    void operator()(const WeldJoint& kind) const {
+        stored.type = JointType::weld;
+        place(stored, kind, a, b, is_b_world);
+    }
+    void operator()(const WheelJoint& kind) const {
+        stored.type = JointType::wheel;
+        place(stored, kind, a, b, is_b_world);
+        set_axis(stored, kind.axis, a);
+        drive(stored, kind.motor_speed, kind.max_motor_torque);
+    }
+    void operator()(const TargetJoint& kind) const {
+        stored.type = JointType::target;
+        stored.anchor_b = kind.anchor, stored.target = kind.target, stored.max_force = kind.max_force;
+        stored.frequency = kind.frequency, stored.damping_ratio = kind.damping_ratio;
+    }
+};
+
+}  // namespace
+
+/// A joint of a body and the world has the body as b: what lies on a then turns its sign.
+StoredJoint stored_joint(const Joint& joint, const JointBody& a, const JointBody& b) {
+    StoredJoint stored;
+    std::visit(Describe{stored, a, b, !joint.b}, joint.kind);
+    stored.a = joint.a.value_or(BodyId{}), stored.b = joint.b.value_or(BodyId{});
+    if (!joint.b) {
+        std::swap(stored.a, stored.b);
+        std::swap(stored.anchor_a, stored.anchor_b);
+        stored.axis = -rotate(rotation_by(a.angle), stored.axis);
+        stored.angle = -stored.angle;
+        if (stored.type != JointType::distance) {
+            std::swap(stored.has_lower, stored.has_upper);
+            std::swap(stored.lower, stored.upper);
+            stored.lower = -stored.lower, stored.upper = -stored.upper;
+            stored.motor_speed = -stored.motor_speed;
+        }
+    }
+    stored.collide = joint.collide;
+    stored.break_force = joint.break_force, stored.break_torque = joint.break_torque;
+    return stored;
+}
+
+JointId JointStore::add(const StoredJoint& joint) {
+    ++count_, ++version;
+    std::size_t slot = slots_.size();
+    if (free_.empty()) {
+        slots_.push_back({joint, 0, true});
+    } else {
+        slot = free_.back();
+        free_.pop_back();
+        slots_[slot].joint = joint, slots_[slot].is_used = true;
+    }
+    if (!joint.collide && !joint.is_on_world()) {
+        // In order where joints are added in it, which is how scenes mostly are.
+        const std::uint64_t pair = pair_of(joint.a, joint.b);
+        excluded_.insert(std::upper_bound(excluded_.begin(), excluded_.end(), pair), pair);
+        is_in_excluded_.resize(std::max<std::size_t>(
+            is_in_excluded_.size(), std::max(joint.a.index, joint.b.index) + std::size_t{1}));
+        is_in_excluded_[joint.a.index] = is_in_excluded_[joint.b.index] = 1;
+    }
+    return id_of(slot);
+}
+
+void JointStore::remove(std::size_t slot) {
+    --count_, ++version;
+    slots_[slot].is_used = false, ++slots_[slot].generation;
+    slots_[slot].joint = {};
+    free_.push_back(static_cast<std::uint32_t>(slot));
+    list_excluded();
+}
+
+void JointStore::remove_of(BodyId body) {
+    for (std::size_t slot = 0; slot < slots_.size() && count_ > 0; ++slot)
+        if (slots_[slot].is_used && (slots_[slot].joint.a == body || slots_[slot].joint.b == body))
+            remove(slot);
+}
+
+std::size_t JointStore::slot_of(JointId id, std::string_view where) const {
+    if (is_alive(id)) return id.index;
+    throw Error(ErrorCode::stale_handle,
+                std::string(where) + ": joint handle " + std::to_string(id.index) + " (generation " +
+                    std::to_string(id.generation) +
+                    ") names no joint of this world; it was removed, broke, went with a body, or comes from "
+                    "another world. Keep the handle that Scene::add or World::add returned.");
+}
+
+void JointStore::list_excluded() {
+    excluded_.clear(), is_in_excluded_.clear();
+    for_each([&](std::size_t, const StoredJoint& joint) {
+        if (joint.collide || joint.is_on_world()) return;
+        excluded_.push_back(pair_of(joint.a, joint.b));
+        is_in_excluded_.resize(std::max<std::size_t>(
+            is_in_excluded_.size(), std::max(joint.a.index, joint.b.index) + std::size_t{1}));
+        is_in_excluded_[joint.a.index] = is_in_excluded_[joint.b.index] = 1;
+    });
+    std::sort(excluded_.begin(), excluded_.end());
+}
+
+bool JointStore::excludes(BodyId a, BodyId b) const {
+    if (a.index >= is_in_excluded_.size() || b.index >= is_in_excluded_.size()) return false;
+    if (!is_in_excluded_[a.index] || !is_in_excluded_[b.index]) return false;
+    return std::binary_search(excluded_.begin(), excluded_.end(), pair_of(a, b));
+}
+
+std::size_t JointStore::bytes() const {
+    return slots_.capacity() * sizeof(Slot) + free_.capacity() * sizeof(std::uint32_t) +
+           excluded_.capacity() * sizeof(std::uint64_t) + is_in_excluded_.capacity() +
+           broken.capacity() * sizeof(JointId);
+}
+
+}  // namespace carom

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <carom/joints.hpp>
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+#include <vector>
+
+#include "state/bodies.hpp"
+#include "state/handles.hpp"
+
+namespace carom {
+
+enum class JointType : std::uint8_t { distance, revolute, prismatic, weld, wheel, target };
+
+/// A joint as a world keeps it: what was asked for, as numbers, and what it did last. The solver makes
+/// columns of those that it solves by lanes (solvers/soft/joints/).
+struct StoredJoint {
+    BodyId a, b;  // b is always a body; kNoBody in a: the world
+    JointType type = JointType::revolute;
+    bool collide = false, has_lower = false, has_upper = false, has_motor = false;
+    bool is_held = true;                      // whether the length of a distance joint is: a rope's is not
+    Vec2 anchor_a, anchor_b;                  // m, in the frame of the body, or of the world
+    Vec2 axis{1, 0};                          // of length 1, in the frame of a
+    double angle = 0;                         // rad, of b against a, at which its angle counts as 0
+    double length = 0;                        // m
+    double lower = 0, upper = 0;              // m or rad
+    double motor_speed = 0, max_motor = 0;    // m/s or rad/s; N or N m
+    double frequency = 0, damping_ratio = 0;  // Hz; 0: rigid
+    Vec2 target;                              // m
+    double max_force = 0;                     // N
+    double break_force = std::numeric_limits<double>::infinity();
+    double break_torque = std::numeric_limits<double>::infinity();
+    // What it did last.
+    std::array<double, 3> impulse{};  // N s, of a substep, of its rows: constraints/joints/joint_rows.hpp
+    Vec2 force;                       // N, on b
+    double torque = 0;                // N m, on b
+
+    bool is_on_world() const { return a == BodyId{}; }
+    bool is_spring() const { return frequency > 0; }
+};
+
+/// Every joint of a world. Slots stay; a removed joint leaves a hole that the next one fills.
+class JointStore {
+  public:
+    /// Counts changes after which what was derived from joints is to be made anew.
+    std::int64_t version = 0;
+
+    bool empty() const { return count_ == 0; }
+    std::size_t count() const { return count_; }
+    std::size_t slots() const { return slots_.size(); }
+    bool has(std::size_t slot) const { return slots_[slot].is_used; }
+    StoredJoint& operator[](std::size_t slot) { return slots_[slot].joint; }
+    const StoredJoint& operator[](std::size_t slot) const { return slots_[slot].joint; }
+    JointId id_of(std::size_t slot) const {
+        return JointId::of(static_cast<std::uint32_t>(slot), slots_[slot].generation);
+    }
+
+    JointId add(const StoredJoint& joint);
+    void remove(std::size_t slot);
+    /// Removes the joints of a body that is removed.
+    void remove_of(BodyId body);
+
+    bool is_alive(JointId id) const {
+        return id.index < slots_.size() && slots_[id.index].is_used &&
+               slots_[id.index].generation == id.generation;
+    }
+    /// @throws Error (stale_handle) naming the call.
+    std::size_t slot_of(JointId id, std::string_view where) const;
+
+    /// Calls fn(slot, joint) for each joint, in the order of slots.
+    template <class Fn>
+    void for_each(const Fn& fn) const {
+        for (std::size_t slot = 0; slot < slots_.size(); ++slot)
+            if (slots_[slot].is_used) fn(slot, slots_[slot].joint);
+    }
+
+    /// Whether a joint of these two bodies says that they do not touch. Cost: O(log joints), less for bodies
+    /// without any.
+    bool excludes(BodyId a, BodyId b) const;
+
+    std::vector<JointId> broken;  ///< in the last step
+
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.version, self.count_, self.slots_, self.free_, self.broken);
+        if constexpr (!std::is_const_v<Self>) self.list_excluded();
+    }
+    std::size_t bytes() const;
+
+  private:
+    struct Slot {
+        StoredJoint joint;
+        std::uint32_t generation = 0;
+        bool is_used = true;
+    };
+    void list_excluded();
+
+    std::size_t count_ = 0;
+    std::vector<Slot> slots_;
+    std::vector<std::uint32_t> free_;
+    // Pairs of bodies that do not touch, sorted, and by the slot of a body whether it is in one.
+    std::vector<std::uint64_t> excluded_;
+    std::vector<std::uint8_t> is_in_excluded_;
+};
+
+/// The joint in numbers.
+/// @param a, b  state of its bodies now; of the world at rest in the origin
+/// @param joint  that has been validated
+struct JointBody {
+    Vec2 position;
+    double angle = 0;
+};
+StoredJoint stored_joint(const Joint& joint, const JointBody& a, const JointBody& b);
+
+}  // namespace carom

@@ -1,0 +1,188 @@
+// Hard cases of joints: B13, B14 of docs/hard-cases.md, groups that touch, sleep and change.
+#include "support/joints.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+using namespace carom;
+using namespace carom::test;
+
+namespace {
+
+constexpr double kStep = 1.0 / 60;
+
+/// Plates on a lattice, each hinged to its neighbours at the middles of its edges: more joints than the
+/// plates have freedom.
+Scene hinged_grid(int count) {
+    Scene scene;
+    scene.gravity = {0, -10};
+    std::vector<BodyId> ids;
+    for (int y = 0; y < count; ++y)
+        for (int x = 0; x < count; ++x) {
+            Body body = bob({double(x), double(y)}, 1, 0.4);
+            if (y == count - 1 && (x == 0 || x == count - 1)) body.type = BodyType::static_body;
+            ids.push_back(scene.add(body));
+        }
+    for (int y = 0; y < count; ++y)
+        for (int x = 0; x < count; ++x) {
+            const auto at = static_cast<std::size_t>(y * count + x),
+                       up = at + static_cast<std::size_t>(count);
+            const auto hinge = [&](std::size_t other, Vec2 anchor) {
+                scene.add(Joint{.a = ids[at], .b = ids[other], .kind = RevoluteJoint{.anchor = anchor}});
+            };
+            if (x + 1 < count) hinge(at + 1, {x + 0.5, double(y)});
+            if (y + 1 < count) hinge(up, {double(x), y + 0.5});
+        }
+    return scene;
+}
+
+}  // namespace
+
+TEST_SUITE("hard cases: joints") {
+    TEST_CASE("a net that falls into its corners is stretched by less than 40 % and ends near its lengths") {
+        World world(hanging_net(100));
+        CHECK(world.plan().substeps == 6);
+        double worst = 0;
+        for (int i = 0; i < 240; ++i) {
+            world.step(kStep);
+            if (i > 120 && i < 160) worst = std::max(worst, world.joint_errors().max);
+        }
+        CHECK(worst < 0.395);
+        CHECK(world.joint_errors().mean < 0.0065);
+    }
+
+    TEST_CASE("B13: an over-constrained grid of 25 x 25 hinges stays together") {
+        World world(hinged_grid(25));
+        for (int i = 0; i < 300; ++i) world.step(kStep);
+        const double before = world.joint_errors().max;
+        for (int i = 0; i < 600; ++i) world.step(kStep);
+        CHECK(world.joint_errors().max < 0.05);
+        CHECK(world.joint_errors().max <= 1.05 * before);
+    }
+
+    TEST_CASE_TEMPLATE("B13: doubled joints hold as one does", Real, float, double) {
+        Scene scene = weighted_chain(6, 10, {1, 0});
+        const std::vector<Joint> once = scene.joints;
+        for (const Joint& joint : once) scene.add(joint);
+        BasicWorld<Real> world(scene), single(weighted_chain(6, 10, {1, 0}));
+        for (int i = 0; i < 120; ++i) world.step(kStep), single.step(kStep);
+        CHECK(world.joint_errors().max < 1e-4);
+        CHECK(world.ledger().energy.total() == doctest::Approx(single.ledger().energy.total()).epsilon(1e-3));
+        const BodyId end{6, 0};
+        CHECK(world.state(end).position.x == doctest::Approx(single.state(end).position.x).epsilon(1e-2));
+    }
+
+    TEST_CASE("B14: rods that start at twice their length draw together without speed") {
+        for (const int count : {3, 12})
+            for (const bool is_possible : {true, false}) {
+                CAPTURE(count);
+                CAPTURE(is_possible);
+                Scene scene = hanging_net(count);
+                scene.gravity = {};
+                for (Joint& joint : scene.joints) std::get<DistanceJoint>(joint.kind).length = 0.5;
+                // Between two corners that stay where they are the rods of a row cannot have their length.
+                if (is_possible) scene.bodies.back().type = BodyType::dynamic_body;
+                World world(scene);
+                double fastest = 0;
+                for (int i = 0; i < 300; ++i) {
+                    world.step(kStep);
+                    fastest = std::max(fastest, world.ledger().energy.kinetic);
+                }
+                CHECK(fastest < 1e-3);
+                CHECK(world.joint_errors().mean < (is_possible ? 0.01 : 0.6));
+            }
+    }
+
+    TEST_CASE("a chain that falls on a floor comes to rest, sleeps, and wakes as a whole") {
+        Scene scene;
+        scene.gravity = {0, -10};
+        scene.walls = Walls{.min = {-10, 0}, .max = {10, 10}, .material = {.friction = 0.5}};
+        std::optional<BodyId> last;
+        for (int i = 0; i < 8; ++i) {
+            const BodyId b = scene.add({.shape = Disc{0.3},
+                                        .position = {i * 0.7 - 2.5, 1.0 + 0.1 * i},
+                                        .material = {.friction = 0.5}});
+            if (last)
+                scene.add(Joint{
+                    .a = last, .b = b, .kind = RevoluteJoint{.anchor = Vec2{i * 0.7 - 2.85, 1.0 + 0.1 * i}}});
+            last = b;
+        }
+        scene.effects.sleep = true;
+        World world(scene);
+        for (int i = 0; i < 900; ++i) world.step(kStep);
+        const BodyId first{0, 0};
+        CHECK(world.joint_errors().max < 2e-3);
+        CHECK(world.is_asleep(first));
+        CHECK(world.is_asleep(*last));
+        world.set_velocity(first, {0, 5});
+        CHECK_FALSE(world.is_asleep(*last));
+        for (int i = 0; i < 60; ++i) world.step(kStep);
+        CHECK(world.joint_errors().max < 5e-3);
+    }
+
+    TEST_CASE("joined bodies do not touch each other unless they are to") {
+        for (const bool collide : {false, true}) {
+            CAPTURE(collide);
+            Scene scene;
+            const BodyId a = scene.add({.shape = Disc{0.5}, .position = {0, 0}, .velocity = {1, 0}});
+            const BodyId b = scene.add({.shape = Disc{0.5}, .position = {1.5, 0}, .velocity = {-1, 0}});
+            scene.add(Joint{.a = a, .b = b, .kind = DistanceJoint{.max = 3}, .collide = collide});
+            World world(scene);
+            for (int i = 0; i < 40; ++i) world.step(kStep);
+            CHECK((world.state(a).position.x > world.state(b).position.x - 0.9) == !collide);
+        }
+    }
+
+    TEST_CASE("joints are added, changed and removed while a world runs, and go with their bodies") {
+        Scene scene;
+        scene.gravity = {0, -10};
+        scene.walls = Walls{.min = {-20, 0}, .max = {20, 20}};
+        const BodyId a = scene.add({.shape = Disc{0.3}, .position = {0, 10}}),
+                     b = scene.add({.shape = Disc{0.3}, .position = {1, 10}});
+        World world(scene);
+        for (int i = 0; i < 10; ++i) world.step(kStep);
+        const Vec2 at = world.state(a).position;
+        const JointId pin = world.add(Joint{.b = a, .kind = RevoluteJoint{}});
+        const JointId rod = world.add(Joint{.a = a, .b = b, .kind = DistanceJoint{}});
+        CHECK(world.joint_count() == 2);
+        for (int i = 0; i < 60; ++i) world.step(kStep);
+        CHECK(std::hypot(world.state(a).position.x - at.x, world.state(a).position.y - at.y) < 1e-4);
+        CHECK(world.joint_errors().max < 1e-4);
+        world.remove(pin);
+        CHECK_FALSE(world.is_alive(pin));
+        CHECK_THROWS_AS(world.remove(pin), Error);
+        for (int i = 0; i < 30; ++i) world.step(kStep);
+        CHECK(world.state(a).position.y < at.y - 0.5);
+        world.remove(b);
+        CHECK_FALSE(world.is_alive(rod));
+        CHECK(world.joint_count() == 0);
+        for (int i = 0; i < 30; ++i) world.step(kStep);
+        CHECK_THROWS_AS(world.set_motor(rod, 1, 1), Error);
+    }
+
+    TEST_CASE("a kinematic body drives what is joined to it") {
+        Scene scene;
+        const BodyId crank = scene.add({.type = BodyType::kinematic_body,
+                                        .shape = Disc{0.2},
+                                        .position = {0, 0},
+                                        .angular_velocity = 2,
+                                        .group = -1});
+        const BodyId b = scene.add(bob({1, 0}));
+        scene.add(Joint{.a = crank, .b = b, .kind = WeldJoint{}});
+        World world(scene);
+        for (int i = 0; i < 120; ++i) world.step(kStep);
+        CHECK(world.state(b).position.x == doctest::Approx(std::cos(4.0)).epsilon(1e-3));
+        CHECK(world.state(b).position.y == doctest::Approx(std::sin(4.0)).epsilon(1e-3));
+    }
+
+    TEST_CASE("solvers without joints refuse them, and auto takes the one that has them") {
+        Scene scene = weighted_chain(2, 1, {1, 0});
+        CHECK(World(scene).plan().solver == "soft");
+        for (const Solver solver : {Solver::impulse, Solver::event}) {
+            scene.accuracy.solver = solver;
+            CHECK_THROWS_WITH_AS(World{scene}, doctest::Contains("joints"), Error);
+        }
+    }
+}
