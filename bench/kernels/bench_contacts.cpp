@@ -190,7 +190,8 @@ struct SubstepColumns {
                 .gain_y = 0,
                 .decay = 1,
                 .spin_decay = 1,
-                .is_last = false};
+                .is_last = false,
+                .joined = nullptr};
     }
     EndSubsteps<Real> end() {
         return {.velocity = velocity.data(),

@@ -52,7 +52,7 @@ struct SolvePaths {
     int bold_iterations;            // that change all rows of the active set that are wrong; the others
                                     // change one row a path
     int most_iterations;            // of the active set
-    int sweeps_of_unsettled;        // over paths whose active set does not settle by then
+    int sweeps_of_unsettled;        // over paths that settle neither as a whole nor in pieces
     void* scratch;                  // of path_scratch_bytes(longest bundle) bytes, aligned to 64
 };
 

@@ -12,6 +12,12 @@ namespace {
 
 /// Diagonals grow by this share, so that contacts which hold a body twice have a solution.
 constexpr double kRegularisation = 1e-5;
+/// Contacts change no velocity by more than so many times the largest relative speed there is: rows that are
+/// nearly alike have solutions that would, and would make energy of round-off.
+constexpr double kMostChange = 64;
+/// Links of a piece of a path that does not settle as a whole, and iterations of its active set.
+constexpr std::size_t kPiece = 8;
+constexpr int kIterationsOfPiece = 12;
 /// Speeds that no solution reaches [m/s]: an iteration that does is void.
 constexpr double kUnsound = 1e15;
 
@@ -263,18 +269,20 @@ void change_row(LinkScratch<Lanes>& s, typename Lanes::Batch row, typename Lanes
 
 /// The impulses from the last link to the first, what they do to the bodies, and the next active set.
 /// @param by_speed, by_impulse  tolerances [m/s], the second of impulse times inverse mass
+/// @param most  m/s: no body's velocity changes by more
 /// @param is_wary  change the active set of each lane in one row alone, the one that is farthest from its
 /// law: where many change at once they may do so for ever
 /// @return lanes that are not solved yet
 template <class Lanes, class Real>
 typename Lanes::Mask substitute(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch,
                                 typename Lanes::Batch by_speed, typename Lanes::Batch by_impulse,
-                                bool is_wary) {
+                                typename Lanes::Batch most, bool is_wary) {
     using F = typename Lanes::Batch;
     using simd::select;
     const F zero(0);
     auto bad = zero < zero;
     F worst = zero, worst_row(Real(-1));  // m/s; 3 link + row of the link
+    F largest = zero;                     // m/s, change of a body's velocity
     // Change of velocity of the far body of the link that is looked at, and of its near body.
     F far_x = zero, far_y = zero, far_u = zero;
     const auto check = [&](std::size_t i, F near_x, F near_y, F near_u) {
@@ -313,6 +321,8 @@ typename Lanes::Mask substitute(const PathBatch<Real>& p, LinkScratch<Lanes>* sc
         }
         const auto is_sound = simd::abs(v1) + simd::abs(v2) + simd::abs(vt) < F(static_cast<Real>(kUnsound));
         bad = bad | off1 | on1 | off2 | on2 | breaks | holds | !is_sound;
+        largest =
+            simd::max(largest, simd::max(simd::max(simd::abs(far_x), simd::abs(far_y)), simd::abs(far_u)));
     };
     F x0 = zero, x1 = zero, x2 = zero, jx_next = zero, jy_next = zero, spin_next = zero;
     for (std::size_t i = p.length; i-- > 0;) {
@@ -337,7 +347,7 @@ typename Lanes::Mask substitute(const PathBatch<Real>& p, LinkScratch<Lanes>* sc
     if (is_wary)
         for (std::size_t i = 0; i < p.length; ++i)
             change_row<Lanes>(scratch[i], worst_row, static_cast<Real>(3 * i));
-    return bad;
+    return bad | (largest > most);
 }
 
 /// Gives the bodies and the links the changes, of the lanes in `where` alone.
@@ -373,6 +383,50 @@ template <class Lanes, class Real, class Fn>
                                k.heads + bundle * kPathLanes + lane});
 }
 
+/// Solves the paths of a batch, or pieces of them, exactly; the lanes in `where` alone take the solution.
+/// @return lanes whose active set did not settle
+template <class Lanes, class Real>
+typename Lanes::Mask solve_exactly(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch, int most_iterations,
+                                   typename Lanes::Mask where, PathCounts& counts) {
+    using F = typename Lanes::Batch;
+    const SolvePaths<Real>& k = p.k;
+    const F fastest = begin_paths<Lanes>(p, scratch);
+    // Round-off of velocities, in shares of the largest.
+    const F by_speed = F(k.velocity_tolerance) + fastest * F(static_cast<Real>(4e-6)),
+            by_impulse =
+                F(k.velocity_tolerance * static_cast<Real>(.1)) + fastest * F(static_cast<Real>(1e-6)),
+            most = F(static_cast<Real>(kMostChange)) * (fastest + F(k.velocity_tolerance));
+    auto bad = F(0) <= F(0);
+    for (int i = 0; i < most_iterations && simd::any(bad & where); ++i) {
+        eliminate<Lanes>(p, scratch);
+        bad = substitute<Lanes>(p, scratch, by_speed, by_impulse, most, i >= k.bold_iterations);
+        counts.iterations += p.length;
+    }
+    apply_changes<Lanes>(p, scratch, where & !bad);
+    return bad & where;
+}
+
+/// What does not settle as a whole may in pieces: first those that begin with the path, then those that begin
+/// half a piece later, across the ends of the first.
+template <class Lanes, class Real>
+void solve_in_pieces(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch, typename Lanes::Mask where,
+                     PathCounts& counts) {
+    const SolvePaths<Real>& k = p.k;
+    auto bad = where;
+    for (const std::size_t shift : {std::size_t{0}, kPiece / 2}) {
+        bad = bad & (!bad);  // none yet
+        for (std::size_t from = 0; from < p.length;) {
+            const std::size_t to = from == 0 && shift > 0 ? shift : from + kPiece;
+            const std::size_t length = (to < p.length ? to : p.length) - from;
+            const PathBatch<Real> piece{k, p.link + from, length, p.lane, p.near_rows(from)};
+            bad = bad | solve_exactly<Lanes>(piece, scratch, kIterationsOfPiece, where, counts);
+            from += length;
+        }
+    }
+    if (!simd::any(bad)) return;
+    for (int i = 0; i < k.sweeps_of_unsettled; ++i) sweep_paths<Lanes>(p, i % 2 == 0, bad);
+}
+
 /// The first pass of a substep over bundles: floors, displacements, and the exact solve of each path.
 template <class Real, class Isa>
 PathCounts solve_paths(const SolvePaths<Real>& arguments, std::size_t first, std::size_t last) {
@@ -384,21 +438,10 @@ PathCounts solve_paths(const SolvePaths<Real>& arguments, std::size_t first, std
     PathCounts counts;
     for_each_path_batch<Lanes>(k, first, last, [&](const PathBatch<Real>& p) {
         part_paths<Lanes>(p);
-        const F fastest = begin_paths<Lanes>(p, scratch);
-        // Round-off of velocities, in shares of the largest.
-        const F by_speed = F(k.velocity_tolerance) + fastest * F(static_cast<Real>(4e-6)),
-                by_impulse =
-                    F(k.velocity_tolerance * static_cast<Real>(.1)) + fastest * F(static_cast<Real>(1e-6));
-        auto bad = F(0) <= F(0);
-        for (int i = 0; i < k.most_iterations && simd::any(bad); ++i) {
-            eliminate<Lanes>(p, scratch);
-            bad = substitute<Lanes>(p, scratch, by_speed, by_impulse, i >= k.bold_iterations);
-            counts.iterations += p.length;
-        }
-        apply_changes<Lanes>(p, scratch, !bad);
+        const auto bad = solve_exactly<Lanes>(p, scratch, k.most_iterations, F(0) <= F(0), counts);
         if (!simd::any(bad)) return;
         counts.unsettled += static_cast<std::size_t>(__builtin_popcount(simd::bitmask(bad)));
-        for (int i = 0; i < k.sweeps_of_unsettled; ++i) sweep_paths<Lanes>(p, i % 2 == 0, bad);
+        solve_in_pieces<Lanes>(p, scratch, bad, counts);
     });
     return counts;
 }

@@ -32,6 +32,25 @@ TEST_SUITE("hard cases/boxes") {
         CHECK(run.farthest_shift() < 0.02);
         CHECK(run.start(run.last()).y - run.place(run.last()).y < 0.001 * 40);
     }
+    TEST_CASE_TEMPLATE("towers that stand or collapse make no energy", Real, float, double) {
+        // One of a hundred that stands; one of 330 whose boxes fall on each other and buckle.
+        for (const bool collapses : {false, true}) {
+            CAPTURE(collapses);
+            Scene scene = box_ground(0.5);
+            scene.effects.ledger = true;
+            const int count = collapses ? scaled(330, 100) : 100;
+            for (int i = 0; i < count; ++i) scene.add(box_at(0, 0.5 + (collapses ? 1.4 : 1) * i, 1, 1, 0.5));
+            BoxRun<Real> run(scene);
+            const double before = run.world.ledger().energy.total();
+            double most = before;
+            for (int i = 0; i < 600; ++i) {
+                run.steps(1);
+                most = std::fmax(most, run.world.ledger().energy.total());
+            }
+            CHECK(most <= before * (1 + 1e-3));
+            if (!collapses) CHECK(run.farthest_shift() < 0.1);  // 0.1 % of its height
+        }
+    }
     TEST_CASE("a tower that stands falls asleep within three seconds") {
         Scene scene = tower(20, 0.02, 5);
         scene.effects.sleep = true;

@@ -22,7 +22,7 @@ constexpr double kCalm = 0.001, kRestless = 0.01;
 /// Fewer contacts have long paths from the start; more begin with short ones, as heaps do that still settle.
 constexpr std::size_t kFewContacts = 1024;
 /// Iterations of the active set: those that change all of its rows that are wrong; all, while paths are long
-/// and while they are short. Gauss-Seidel sweeps over a path where it does not settle by then.
+/// and while they are short. Gauss-Seidel sweeps over a path that settles neither so nor in pieces.
 constexpr int kBoldIterations = 4, kMostIterations = 40, kMostOfRestless = 8, kSweepsOfUnsettled = 4;
 /// By which a contact may miss its law, in shares of what gravity adds to a speed in a substep.
 constexpr double kTolerance = 2e-4;
