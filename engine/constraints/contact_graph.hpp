@@ -62,7 +62,7 @@ class ContactGraph {
     std::vector<LostContact> lost;             ///< that pushed, until they are dealt with
     TaskGroups groups;                         ///< of the last renewal
     ContactRows<Real> pairs;                   ///< of two discs that move, a < b
-    /// Of a disc that moves and what nothing moves: walls, edges, immovable discs.
+    /// Contacts of a disc that moves and what nothing moves: walls, edges, immovable discs.
     ContactRows<Real> supports;
 
     /// Rows that padding names: each group has its own beyond the bodies, so that no two threads write to

@@ -8,7 +8,7 @@
 namespace carom {
 namespace {
 
-/// Of the shapes of as many bodies as there are lanes: where they begin, in records of some Reals.
+/// The shapes of as many bodies as there are lanes: where they begin, in records of some Reals.
 template <std::size_t kLanes>
 struct ShapeRows {
     alignas(64) std::int32_t row[kLanes];

@@ -21,20 +21,20 @@ struct Moments {
     }
 };
 
-/// Of the triangle from the origin to the edge from a to b; negative if they lie clockwise.
+/// Moments of the triangle from the origin to the edge from a to b; negative if they lie clockwise.
 Moments of_triangle(Vec2 a, Vec2 b) {
     const double twice = cross(a, b);
     return {twice / 2, (twice / 6) * (a + b), twice / 12 * (dot(a, a) + dot(a, b) + dot(b, b))};
 }
 
-/// Of the rectangle that an edge from a to b becomes when it moves by `radius` along its normal.
+/// Moments of the rectangle that an edge from a to b becomes when it moves by `radius` along its normal.
 Moments of_side(Vec2 a, Vec2 b, Vec2 normal, double radius) {
     const double squared = length_squared(b - a), area = std::sqrt(squared) * radius;
     const Vec2 centre = 0.5 * (a + b + radius * normal);
     return {area, area * centre, area * (length_squared(centre) + (squared + radius * radius) / 12)};
 }
 
-/// Of the sector of a disc around `centre`, counter-clockwise from one direction to another.
+/// Moments of the sector of a disc around `centre`, counter-clockwise from one direction to another.
 /// @param angle  between them [rad]
 Moments of_sector(Vec2 centre, double radius, Vec2 from, Vec2 to, double angle) {
     const double area = 0.5 * angle * radius * radius;

@@ -80,7 +80,7 @@ inline constexpr std::size_t kLargestPolygonVertices = 8;
 inline constexpr double kLargestAspect = 1000;
 /// Sine of the angle by which a polygon turns at a vertex, at least.
 inline constexpr double kSmallestCornerSine = 1e-3;
-/// Of a polygon's extent: its shortest edge, at least.
+/// A polygon's shortest edge is at least this share of its extent.
 inline constexpr double kSmallestEdgeShare = 1e-3;
 
 }  // namespace carom
