@@ -111,7 +111,8 @@ bool Sleepers<Real>::mark_hit(const WorldState<Real>& world, double dt, double s
     for (const SleeperPair pair : pairs_) {
         const auto row = static_cast<std::size_t>(pair.row), sleeper = static_cast<std::size_t>(pair.sleeper);
         const bool falls = !bodies.is_immovable(row);
-        // Of what is no disc the disc around it: that wakes some that would not be hit, but misses none.
+        // What is no disc counts as the disc around it: that wakes some that would not be hit, but misses
+        // none.
         const double radius = bodies.radius[row],
                      smaller = std::fmin(bodies.inradius(row), bodies.inradius(sleeper));
         const Vec2 d = position_of(bodies, sleeper) - position_of(bodies, row), v = velocity_of(bodies, row);

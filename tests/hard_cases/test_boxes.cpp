@@ -1,5 +1,5 @@
-// B1, B2, B4, B8, B9, B20, B25, B30 and B40 of docs/hard-cases.md, A28 of docs/exact-cases.md: what is built of
-// boxes stands where it should and falls where it must.
+// B1, B2, B4, B8, B9, B20, B25, B30 and B40 of docs/hard-cases.md, A28 of docs/exact-cases.md: what is built
+// of boxes stands where it should and falls where it must.
 #include "support/box_scenes.hpp"
 #include "support/effort.hpp"
 #include "support/report.hpp"

@@ -208,7 +208,7 @@ TEST_SUITE("physics: joints") {
             // The lowest mode of a chain that is fixed at one end.
             const double mode = std::sin((i + 1) * kPi / (2 * count + 1));
             const BodyId b = scene.add(bob({i + 1 + 0.01 * mode, 0}));
-            // Of two masses of 1 kg the mass on the spring is 1/2 kg; the first hangs on the world.
+            // The mass on a spring between two masses of 1 kg is 1/2 kg; the first hangs on the world.
             const double frequency = 3 * (last ? std::sqrt(2.0) : 1);
             scene.add(Joint{.a = last, .b = b, .kind = DistanceJoint{.length = 1, .frequency = frequency}});
             last = b;

@@ -43,7 +43,7 @@ void Manifolds<Real>::renew(const WorldState<Real>& world, const Candidates<Real
     surface_finder_.renew(world, edges);
     if (!world.bodies.has_shapes) return bodies_.clear(), surfaces_.clear();
     std::swap(bodies_, old_), bodies_.clear();
-    // Of a contact that wakes, what it had when it fell asleep.
+    // A contact that wakes has what it had when it fell asleep.
     if (world.bodies.asleep != asleep_then_)
         for (const KeptManifold<Real>& kept : asleep_) {
             ManifoldList<Real>& list = kept.is_surface ? surfaces_ : old_;

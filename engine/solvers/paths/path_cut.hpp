@@ -41,7 +41,7 @@ class PathCut {
     /// @param longest  contacts in a path, >= 1
     void cut(std::span<const ContactLink> contacts, std::size_t rows, std::size_t longest);
 
-    /// Of each contact, in the order of `cut`.
+    /// The place of each contact, in the order of `cut`.
     std::span<const Place> places() const { return places_; }
     std::size_t bundles() const { return first_link_.size() - 1; }
     std::size_t links() const { return first_link_.back(); }

@@ -43,9 +43,9 @@ class ImpactPaths {
     /// @param gravity  m/s², as drag lets it act
     void begin_substep(const WorldState<Real>& world, const SubstepBodies<Real>& bodies, Vec2 gravity);
 
-    /// Of a body that is awake.
+    /// The path of a body that is awake.
     const Mover& of(std::int32_t row);
-    /// Of any body: one that sleeps has no record, and stands.
+    /// The path of any body: one that sleeps has no record, and stands.
     Mover of_any(std::int32_t row);
     /// How far a body has moved since the start of the step [m], at a time in the substep.
     Vec2 displacement_of(std::int32_t row, double time);
