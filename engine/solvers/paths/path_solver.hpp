@@ -31,7 +31,6 @@ struct PathContact {
     std::size_t lane;
     std::int32_t near, far;  ///< rows in the records; those of what nothing moves are beyond the bodies
     Partner partner;         ///< b of the contact
-    bool is_reversed;        ///< the near body is b, not a
     double restitution;
 };
 
@@ -68,7 +67,7 @@ class PathSolver {
             const std::size_t i = Manifolds<Real>::place_of(live[n]);
             const typename PathCut::Place place = cut_.places()[n];
             fn(PathContact<Real>{links_[place.link], place.lane, near_row(place),
-                                 links_[place.link].body[place.lane], Partner(list.b[i]), place.is_reversed,
+                                 links_[place.link].body[place.lane], Partner(list.b[i]),
                                  static_cast<double>(list.restitution[i])});
         }
     }

@@ -109,7 +109,7 @@ TEST_SUITE("kernels/find manifolds") {
             CHECK(bad_unit == 0);
             CHECK(bad_gap == 0);
             CHECK(bad_distance == 0);
-            // Of faces that are nearly parallel the one of a has the reference; vertices that meet have none.
+            // The face of a has the reference where faces are nearly parallel; vertices that meet have none.
             CHECK(inexact < pairs.count() / 20);
             CHECK(bad_place == 0);
             CHECK(bad_between == 0);
@@ -149,7 +149,7 @@ TEST_SUITE("kernels/find manifolds") {
                 const double exact = round_off<Real>(a, b), size = std::fmin(a.inradius, b.inradius);
                 if (!m.is_live() || !n.is_live()) continue;
                 ++live;
-                // Of faces that are as far away either may be taken.
+                // Either of two faces that are as far away may be taken.
                 if (std::sqrt(length_squared(m.normal - n.normal)) > 1e-3 || m.has_two() != n.has_two()) {
                     ++others;
                     bad +=
