@@ -26,7 +26,8 @@ template <class Lanes>
 struct LinkScratch {
     using F = typename Lanes::Batch;
     using Mask = typename Lanes::Mask;
-    F w, w2;  // of the far body
+    PathBody<Lanes> body;  // the far one
+    F w, w2;               // its masses
     F v1, v2, vt, floor1, floor2;
     F upper[9], right[3];       // the eliminated system: x[i] = right - upper x[i + 1]
     F change[3];                // of the impulses
@@ -36,11 +37,12 @@ struct LinkScratch {
     Mask would_slip_up;         // if it slipped now
 };
 
+/// Gives a body its change of velocity.
 template <class Lanes>
-void add_to_records(typename Lanes::Number* velocity, const std::int32_t* rows, typename Lanes::Mask where,
-                    const LinkScratch<Lanes>& s) {
+void store_changed(typename Lanes::Number* velocity, const std::int32_t* rows, typename Lanes::Mask where,
+                   const LinkScratch<Lanes>& s) {
     using F = typename Lanes::Batch;
-    auto record = Lanes::load_rows4(velocity, rows);
+    auto record = s.body.record;
     record[0] += simd::select(where, s.dvx, F(0)), record[1] += simd::select(where, s.dvy, F(0));
     record[2] += simd::select(where, s.du, F(0));
     Lanes::store_rows4(velocity, rows, record);
@@ -58,45 +60,63 @@ struct PathBatch {
     const std::int32_t* far_rows(std::size_t i) const { return link[i].body + lane; }
 };
 
+/// Displacement and rim displacement of a body since the start of the step.
+template <class Lanes>
+struct PathPlace {
+    typename Lanes::Batch2 at;
+    typename Lanes::Batch turn;
+
+    template <class Real>
+    PathPlace(const SolvePaths<Real>& k, const std::int32_t* rows)
+        : at(Lanes::load_rows2(k.displacement, rows)), turn(Lanes::gather_at(k.turn, rows)) {}
+    template <class Real>
+    void store(const SolvePaths<Real>& k, const std::int32_t* rows) const {
+        Lanes::store_rows2(k.displacement, rows, at), Lanes::scatter_at(k.turn, rows, turn);
+    }
+};
+
 /// Floors of a substep, and a share of the overlaps taken away by displacing and turning bodies.
 template <class Lanes, class Real>
 void part_paths(const PathBatch<Real>& p) {
     using F = typename Lanes::Batch;
     const SolvePaths<Real>& k = p.k;
     const F zero(0);
+    PathPlace<Lanes> near(k, p.head);
+    bool has_moved = false;  // near, by the link before
     for (std::size_t i = 0; i < p.length; ++i) {
         PathLink<Real>& link = p.link[i];
-        const std::int32_t *near = p.near_rows(i), *far = p.far_rows(i);
         const LinkLanes<Lanes, Real> l(link, p.lane);
-        auto at_near = Lanes::load_rows2(k.displacement, near),
-             at_far = Lanes::load_rows2(k.displacement, far);
-        F turn_near = Lanes::gather_at(k.turn, near), turn_far = Lanes::gather_at(k.turn, far);
+        PathPlace<Lanes> far(k, p.far_rows(i));
         F s1, s2, along;
-        l.relative(at_far[0] - at_near[0], at_far[1] - at_near[1], turn_near, turn_far, s1, s2, along);
+        l.relative(far.at[0] - near.at[0], far.at[1] - near.at[1], near.turn, far.turn, s1, s2, along);
         s1 += Lanes::load(link.separation1 + p.lane), s2 += Lanes::load(link.separation2 + p.lane);
         Lanes::store(link.floor1 + p.lane, simd::min(-s1 * F(k.inverse_h), zero));
         Lanes::store(link.floor2 + p.lane, simd::min(-s2 * F(k.inverse_h), zero));
         const auto deep = (s1 < zero) | (s2 < zero);
-        if (!simd::any(deep)) continue;
-        const PathBody<Lanes> a{Lanes::load_rows4(k.velocity, near)}, b{Lanes::load_rows4(k.velocity, far)};
-        const LinkMass<F> mass(l, a.inverse_mass(), a.inverse_rim_mass(), b.inverse_mass(),
-                               b.inverse_rim_mass());
-        const auto wanted = [&](F s) { return simd::select(s < zero, F(k.recovery) * s, s); };
-        F push1, push2;
-        solve_two_normals(mass.k11, mass.k12, mass.k22, wanted(s1), wanted(s2), push1, push2);
-        const F cap = F(k.push * k.h) * Lanes::load(link.thickness + p.lane);
-        push1 = simd::select(
-            deep, simd::min(push1, cap / mass.k11 + F(k.h) * Lanes::load(link.normal1 + p.lane)), zero);
-        push2 = simd::select(
-            deep, simd::min(push2, cap / mass.k22 + F(k.h) * Lanes::load(link.normal2 + p.lane)), zero);
-        const F push = push1 + push2;
-        at_near[0] -= a.inverse_mass() * push * l.nx, at_near[1] -= a.inverse_mass() * push * l.ny;
-        at_far[0] += b.inverse_mass() * push * l.nx, at_far[1] += b.inverse_mass() * push * l.ny;
-        turn_near -= a.inverse_rim_mass() * (l.near1 * push1 + l.near2 * push2);
-        turn_far += b.inverse_rim_mass() * (l.far1 * push1 + l.far2 * push2);
-        Lanes::store_rows2(k.displacement, near, at_near), Lanes::store_rows2(k.displacement, far, at_far);
-        Lanes::scatter_at(k.turn, near, turn_near), Lanes::scatter_at(k.turn, far, turn_far);
+        const bool moves = simd::any(deep);
+        if (moves) {
+            const PathBody<Lanes> a{Lanes::load_rows4(k.velocity, p.near_rows(i))},
+                b{Lanes::load_rows4(k.velocity, p.far_rows(i))};
+            const LinkMass<F> mass(l, a.inverse_mass(), a.inverse_rim_mass(), b.inverse_mass(),
+                                   b.inverse_rim_mass());
+            const auto wanted = [&](F s) { return simd::select(s < zero, F(k.recovery) * s, s); };
+            F push1, push2;
+            solve_two_normals(mass.k11, mass.k12, mass.k22, wanted(s1), wanted(s2), push1, push2);
+            const F cap = F(k.push * k.h) * Lanes::load(link.thickness + p.lane);
+            push1 = simd::select(
+                deep, simd::min(push1, cap / mass.k11 + F(k.h) * Lanes::load(link.normal1 + p.lane)), zero);
+            push2 = simd::select(
+                deep, simd::min(push2, cap / mass.k22 + F(k.h) * Lanes::load(link.normal2 + p.lane)), zero);
+            const F push = push1 + push2;
+            near.at[0] -= a.inverse_mass() * push * l.nx, near.at[1] -= a.inverse_mass() * push * l.ny;
+            far.at[0] += b.inverse_mass() * push * l.nx, far.at[1] += b.inverse_mass() * push * l.ny;
+            near.turn -= a.inverse_rim_mass() * (l.near1 * push1 + l.near2 * push2);
+            far.turn += b.inverse_rim_mass() * (l.far1 * push1 + l.far2 * push2);
+        }
+        if (moves || has_moved) near.store(k, p.near_rows(i));
+        near = far, has_moved = moves;
     }
+    if (has_moved) near.store(k, p.far_rows(p.length - 1));
 }
 
 /// One Gauss-Seidel sweep along the paths, of the lanes in `where` alone.
@@ -149,22 +169,24 @@ template <class Lanes, class Real>
 typename Lanes::Batch begin_paths(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch) {
     using F = typename Lanes::Batch;
     const SolvePaths<Real>& k = p.k;
-    const F zero(0);
+    const F zero(0), tolerance(k.velocity_tolerance);
     F fastest(0);
     PathBody<Lanes> a{Lanes::load_rows4(k.velocity, p.head)};
-    scratch[p.length].w = a.inverse_mass(), scratch[p.length].w2 = a.inverse_rim_mass();
+    LinkScratch<Lanes>& head = scratch[p.length];
+    head.body = a, head.w = a.inverse_mass(), head.w2 = a.inverse_rim_mass();
     for (std::size_t i = 0; i < p.length; ++i) {
         const PathLink<Real>& link = p.link[i];
         LinkScratch<Lanes>& s = scratch[i];
         const LinkLanes<Lanes, Real> l(link, p.lane);
         const PathBody<Lanes> b{Lanes::load_rows4(k.velocity, p.far_rows(i))};
-        s.w = b.inverse_mass(), s.w2 = b.inverse_rim_mass();
+        s.body = b, s.w = b.inverse_mass(), s.w2 = b.inverse_rim_mass();
         l.relative(b.record[0] - a.record[0], b.record[1] - a.record[1], a.record[2], b.record[2], s.v1, s.v2,
                    s.vt);
         s.floor1 = Lanes::load(link.floor1 + p.lane), s.floor2 = Lanes::load(link.floor2 + p.lane);
         const F old1 = Lanes::load(link.normal1 + p.lane), old2 = Lanes::load(link.normal2 + p.lane),
                 old_t = Lanes::load(link.tangent + p.lane);
-        s.pushes1 = (old1 > zero) | (s.v1 < s.floor1), s.pushes2 = (old2 > zero) | (s.v2 < s.floor2);
+        s.pushes1 = (old1 > zero) | (s.v1 < s.floor1 - tolerance);
+        s.pushes2 = (old2 > zero) | (s.v2 < s.floor2 - tolerance);
         const F limit = Lanes::load(link.friction + p.lane) * (old1 + old2);
         const auto is_idle = !(s.pushes1 | s.pushes2);
         const auto slips = (simd::abs(old_t) >= limit * F(Real(.999999))) & (old_t * s.vt < zero);
@@ -250,6 +272,15 @@ void eliminate(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch) {
     }
 }
 
+/// A contact of which no point pushes has no friction: its tangential impulse is at its limit, which is zero.
+/// One that begins to push sticks.
+template <class Lanes>
+[[gnu::always_inline]] inline void free_idle(LinkScratch<Lanes>& s, typename Lanes::Mask was_idle) {
+    const auto is_idle = !(s.pushes1 | s.pushes2);
+    s.slips_up = (s.slips_up & !was_idle) | is_idle;
+    s.slips_down = s.slips_down & !(was_idle | is_idle);
+}
+
 /// Turns one row of the active set round in the lanes where `row` is of this link.
 /// @param first  number of the link's first row
 template <class Lanes>
@@ -259,12 +290,14 @@ void change_row(LinkScratch<Lanes>& s, typename Lanes::Batch row, typename Lanes
         const auto is_off = !mask;
         mask = (mask & (!where)) | (is_off & where);
     };
+    const auto was_idle = !(s.pushes1 | s.pushes2);
     turn_round(s.pushes1, row == F(first)), turn_round(s.pushes2, row == F(first + 1));
     const auto tangent = row == F(first + 2);
     const auto slips = s.slips_up | s.slips_down;
     const auto breaks = tangent & (!slips);
     s.slips_up = (s.slips_up & !tangent) | (breaks & s.would_slip_up);
     s.slips_down = (s.slips_down & !tangent) | (breaks & !s.would_slip_up);
+    free_idle<Lanes>(s, was_idle);
 }
 
 /// The impulses from the last link to the first, what they do to the bodies, and the next active set.
@@ -303,7 +336,8 @@ typename Lanes::Mask substitute(const PathBatch<Real>& p, LinkScratch<Lanes>* sc
                    on2 = (!s.pushes2) & (v2 - s.floor2 < -by_speed);
         const auto sticks = !(s.slips_up | s.slips_down);
         const auto breaks = sticks & ((simd::abs(new_t) - limit) * w > by_impulse);
-        const auto holds = (s.slips_up & (vt > by_speed)) | (s.slips_down & (vt < -by_speed));
+        const auto was_idle = !(s.pushes1 | s.pushes2);
+        const auto holds = (!was_idle) & ((s.slips_up & (vt > by_speed)) | (s.slips_down & (vt < -by_speed)));
         s.would_slip_up = new_t > zero;
         if (is_wary) {
             const auto compare = [&](F miss, std::size_t row) {
@@ -318,6 +352,7 @@ typename Lanes::Mask substitute(const PathBatch<Real>& p, LinkScratch<Lanes>* sc
             s.pushes1 = (s.pushes1 & !off1) | on1, s.pushes2 = (s.pushes2 & !off2) | on2;
             s.slips_up = (s.slips_up & !holds) | (breaks & s.would_slip_up);
             s.slips_down = (s.slips_down & !holds) | (breaks & !s.would_slip_up);
+            free_idle<Lanes>(s, was_idle);
         }
         const auto is_sound = simd::abs(v1) + simd::abs(v2) + simd::abs(vt) < F(static_cast<Real>(kUnsound));
         bad = bad | off1 | on1 | off2 | on2 | breaks | holds | !is_sound;
@@ -356,11 +391,11 @@ void apply_changes(const PathBatch<Real>& p, const LinkScratch<Lanes>* scratch, 
     using F = typename Lanes::Batch;
     using simd::select;
     const F zero(0);
-    add_to_records<Lanes>(p.k.velocity, p.head, where, scratch[p.length]);
+    store_changed<Lanes>(p.k.velocity, p.head, where, scratch[p.length]);
     for (std::size_t i = 0; i < p.length; ++i) {
         PathLink<Real>& link = p.link[i];
         const LinkScratch<Lanes>& s = scratch[i];
-        add_to_records<Lanes>(p.k.velocity, p.far_rows(i), where, s);
+        store_changed<Lanes>(p.k.velocity, p.far_rows(i), where, s);
         const F old1 = Lanes::load(link.normal1 + p.lane), old2 = Lanes::load(link.normal2 + p.lane),
                 old_t = Lanes::load(link.tangent + p.lane);
         const F new1 = simd::max(old1 + s.change[0], zero), new2 = simd::max(old2 + s.change[1], zero),

@@ -49,13 +49,16 @@ struct BookedContact {
 
 template <class Real>
 void book_paths(const PathSolver<Real>& paths, const BodyRecords<Real>& records, Books& books) {
-    if (!books.is_open && !paths.has_walls()) return;
+    paths.for_each_surface([&](const PathContact<Real>& contact) {
+        if (contact.partner.is_wall())
+            books.wall_impulse += static_cast<double>(contact.link.normal1[contact.lane]) +
+                                  static_cast<double>(contact.link.normal2[contact.lane]);
+    });
+    if (!books.is_open) return;
     const auto is_moved = [&](std::int32_t row) { return static_cast<std::size_t>(row) < records.count(); };
     paths.for_each([&](const PathContact<Real>& contact) {
         const BookedContact<Real> booked(contact);
         const bool is_wall = contact.partner.is_wall();
-        if (is_wall) books.wall_impulse += booked.impulse[0] + booked.impulse[1];
-        if (!books.is_open) return;
         const MeanVelocity near = mean_of(records, contact.near), far = mean_of(records, contact.far);
         books.restitution += booked.work(0, near, far) + booked.work(1, near, far);
         books.friction += booked.work(2, near, far);

@@ -25,7 +25,7 @@ constexpr std::size_t kFewContacts = 1024;
 /// and while they are short. Gauss-Seidel sweeps over a path that settles neither so nor in pieces.
 constexpr int kBoldIterations = 4, kMostIterations = 40, kMostOfRestless = 8, kSweepsOfUnsettled = 4;
 /// By which a contact may miss its law, in shares of what gravity adds to a speed in a substep.
-constexpr double kTolerance = 2e-4;
+constexpr double kTolerance = 2e-3;
 /// Two points whose rows are alike by more than this are solved as one: det K / (k11 k22).
 constexpr double kLeastDeterminant = 1e-3;
 /// Paths are cut anew after so many steps, since loads have changed.

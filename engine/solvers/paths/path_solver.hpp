@@ -56,20 +56,18 @@ class PathSolver {
                int passes, bool sweeps);
     /// Moves the surfaces of kinematic bodies on by a substep.
     void advance(const SubstepTerms& terms, BodyRecords<Real>& records);
-    /// Whether some contact of the step may be with a wall.
-    bool has_walls() const { return !manifolds.live().empty() && manifolds.live().back() < 0; }
     /// Calls fn(contact) for each PathContact of the step.
     template <class Fn>
     void for_each(const Fn& fn) const {
+        for_each_from(0, fn);
+    }
+    /// The same for those with walls and edges, which come last.
+    template <class Fn>
+    void for_each_surface(const Fn& fn) const {
         const auto live = manifolds.live();
-        for (std::size_t n = 0; n < live.size(); ++n) {
-            const ManifoldList<Real>& list = manifolds.list_of(live[n]);
-            const std::size_t i = Manifolds<Real>::place_of(live[n]);
-            const typename PathCut::Place place = cut_.places()[n];
-            fn(PathContact<Real>{links_[place.link], place.lane, near_row(place),
-                                 links_[place.link].body[place.lane], Partner(list.b[i]),
-                                 static_cast<double>(list.restitution[i])});
-        }
+        std::size_t first = live.size();
+        while (first > 0 && live[first - 1] < 0) --first;
+        for_each_from(first, fn);
     }
     /// Keeps the impulses for the next step.
     void end();
@@ -84,6 +82,19 @@ class PathSolver {
 
   private:
     using Pass = typename PathKernels<Real>::Pass;
+
+    template <class Fn>
+    void for_each_from(std::size_t first, const Fn& fn) const {
+        const auto live = manifolds.live();
+        for (std::size_t n = first; n < live.size(); ++n) {
+            const ManifoldList<Real>& list = manifolds.list_of(live[n]);
+            const std::size_t i = Manifolds<Real>::place_of(live[n]);
+            const typename PathCut::Place place = cut_.places()[n];
+            fn(PathContact<Real>{links_[place.link], place.lane, near_row(place),
+                                 links_[place.link].body[place.lane], Partner(list.b[i]),
+                                 static_cast<double>(list.restitution[i])});
+        }
+    }
 
     SolvePaths<Real> arguments(const SubstepTerms& terms, BodyRecords<Real>& records);
     void run(Pass pass, SolvePaths<Real> arguments, const StepLoops<Real>& loops);
