@@ -107,7 +107,7 @@ void EdgeCandidates<Real>::add_strays(const WorldState<Real>& world, const Candi
         const double reach = candidates.reach()[row];
         if (candidates.farther_than_first(row) <= allowance_) continue;
         for (std::size_t i = 0; i < found_at_.size(); ++i) {
-            if (!poses_[i].takes_part) continue;
+            if (!poses_[i].takes_part || is_forbidden(world, stray, poses_[i])) continue;
             const FoundAt& at = found_at_[i];
             const Vec2 place = rotate_back(at.turn, p - at.position);
             const double near = reach + at.margin + candidates.largest_drift();
@@ -145,7 +145,7 @@ void EdgeCandidates<Real>::find_near_edge(const WorldState<Real>& world, const C
             candidates.find_near(middle, 0.5 * length / pieces + margin + rounding, near_);
         for (std::size_t n = 0; n < found; ++n) {
             const auto row = static_cast<std::size_t>(near_[n]);
-            if (bodies.is_immovable(row)) continue;
+            if (bodies.is_immovable(row) || is_forbidden(world, near_[n], pose)) continue;
             const Vec2 p{candidates.grid().built_x()[row], candidates.grid().built_y()[row]};
             const double share = nearest_share(p, a, b);
             // Each disc belongs to the piece it is nearest to.

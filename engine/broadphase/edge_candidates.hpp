@@ -78,6 +78,10 @@ class EdgeCandidates {
         Rotation turn;
         double angle = 0, reach = 0, margin = 0;  // rad, m, m
     };
+    /// Whether the filters of a body and of the body of an edge keep them apart.
+    bool is_forbidden(const WorldState<Real>& world, std::int32_t row, const EdgePose& pose) const {
+        return world.has_filters() && !world.may_collide(static_cast<std::size_t>(row), pose.row);
+    }
     void find_near_edge(const WorldState<Real>& world, const Candidates<Real>& candidates, std::int32_t edge,
                         double margin, double largest_reach);
 

@@ -32,11 +32,23 @@ std::optional<Problem> find_roughness_problem(const Item& item, const Material& 
                    "with gravity expected 0. Use \"soft\" or \"auto\", or set friction or gravity to 0.");
 }
 
+std::optional<Problem> find_filter_problem(const Item& item, const Body& body) {
+    const auto refuse = [&](std::string_view key, auto value) {
+        return problem(ErrorCode::inconsistent, item, join("/filter/", key), key, " ", value,
+                       ", but the solver \"event\" knows no filters. Use \"soft\", \"impulse\" or "
+                       "\"auto\".");
+    };
+    if (body.group != 0) return refuse("group", body.group);
+    if (body.category != kDefaultCategory) return refuse("category", body.category);
+    if (body.mask != kDefaultMask) return refuse("mask", body.mask);
+    return std::nullopt;
+}
+
 }  // namespace
 
 bool SolverFacts::would_change(const Body& body) const {
     return (no_disc.empty() && !is_disc(body.shape)) || (rough.empty() && body.material.friction > 0) ||
-           (resists.empty() && body.material.rolling_resistance > 0) || (joined.empty() && body.group < 0) ||
+           (resists.empty() && body.material.rolling_resistance > 0) ||
            (inelastic.empty() && is_inelastic(body));
 }
 
@@ -46,7 +58,6 @@ void SolverFacts::add(const Body& body, std::string_view label) {
     if (rough.empty() && body.material.friction > 0) rough = join(label, " has friction");
     if (resists.empty() && body.material.rolling_resistance > 0)
         resists = join(label, " has rolling resistance");
-    if (joined.empty() && body.group < 0) joined = join(label, " is of a group that does not touch");
     if (inelastic.empty() && is_inelastic(body))
         inelastic = join(label, " has restitution ", body.material.restitution, ", below 1");
 }
@@ -120,9 +131,8 @@ std::optional<Problem> find_solver_problem(const Item& item, const Body& body, V
         return problem(ErrorCode::inconsistent, item, join("/shape/", name_of(body.shape)), "the shape ",
                        quoted(name_of(body.shape)), ", but the solver ", quoted(name_of(solver)),
                        " knows discs only. Use \"soft\" or \"auto\".");
-    if (body.group < 0 && solver != Solver::soft)
-        return problem(ErrorCode::inconsistent, item, "/group", "group ", body.group, ", but the solver ",
-                       quoted(name_of(solver)), " knows no groups. Use \"soft\" or \"auto\".");
+    if (solver == Solver::event)
+        if (auto found = find_filter_problem(item, body)) return found;
     return find_roughness_problem(item, body.material, gravity, solver);
 }
 

@@ -110,6 +110,7 @@ bool Sleepers<Real>::mark_hit(const WorldState<Real>& world, double dt, double s
     const double gravity = std::sqrt(length_squared(world.gravity));
     for (const SleeperPair pair : pairs_) {
         const auto row = static_cast<std::size_t>(pair.row), sleeper = static_cast<std::size_t>(pair.sleeper);
+        if (world.has_filters() && !world.may_collide(row, sleeper)) continue;
         const bool falls = !bodies.is_immovable(row);
         // What is no disc counts as the disc around it: that wakes some that would not be hit, but misses
         // none.

@@ -67,7 +67,8 @@ struct Bodies {
     Column<Real> angle, angular_velocity;  // rad, rad/s; only with rotation
     Column<std::uint8_t> flags;            // BodyFlag bits; only if some row has one
     Column<BodyId> id;                     // handle of each row
-    Column<std::int32_t> group;            // bodies of one below zero do not touch; only if some have one
+    Column<std::int32_t> group;            // below zero: do not touch; only if some have one
+    Column<std::uint32_t> filter;          // category and mask (filter_of); only if some are not the default
     Column<float> still;                   // s, for how long slow enough to sleep; only with sleeping
     Column<std::int32_t> island;           // of rows that sleep; only with sleeping
     Property<Real> mass;                   // kg
@@ -84,6 +85,7 @@ struct Bodies {
     bool has_flags = false;
     bool has_shapes = false;  ///< some body is, or was, neither a disc nor edges
     bool has_groups = false;
+    bool has_categories = false;
     std::int32_t common_group = 0;  // below zero: all bodies there ever were are in it, and none may touch
 
     std::uint8_t flags_of(std::size_t row) const { return has_flags ? flags[row] : std::uint8_t{0}; }
@@ -145,6 +147,32 @@ struct Bodies {
         group[row] = value;
     }
 
+    void set_filter(std::size_t row, std::uint16_t category, std::uint16_t mask) {
+        const std::uint32_t value = filter_of(category, mask);
+        if (!has_categories) {
+            if (value == kDefaultFilter) return;
+            filter.resize(rows());
+            for (std::uint32_t& each : filter) each = kDefaultFilter;
+            has_categories = true;
+        }
+        filter[row] = value;
+    }
+    std::uint16_t category(std::size_t row) const {
+        return static_cast<std::uint16_t>((has_categories ? filter[row] : kDefaultFilter) >> kMaskBits);
+    }
+    std::uint16_t mask(std::size_t row) const {
+        return static_cast<std::uint16_t>((has_categories ? filter[row] : kDefaultFilter) & kDefaultMask);
+    }
+
+    /// Whether there are rows for which may_touch may say no.
+    bool has_filters() const { return has_groups || has_categories; }
+    /// Whether groups, categories and masks let two bodies touch.
+    bool may_touch(std::size_t a, std::size_t b) const {
+        if (has_groups && group[a] != 0 && group[a] == group[b]) return group[a] > 0;
+        if (!has_categories) return true;
+        return (filter[a] >> kMaskBits & filter[b]) != 0 && (filter[b] >> kMaskBits & filter[a]) != 0;
+    }
+
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
         archive(self.count, self.asleep, self.has_rotation, self.has_sleep, self.has_flags, self.has_shapes);
@@ -152,10 +180,16 @@ struct Bodies {
         archive(self.position_x, self.position_y, self.velocity_x, self.velocity_y, self.id);
         archive(self.angle, self.angular_velocity, self.flags, self.still, self.island);
         archive(self.shape, self.rims, self.inradii);
-        archive(self.has_groups, self.common_group, self.group);
+        archive(self.has_groups, self.common_group, self.group, self.has_categories, self.filter);
     }
 
   private:
+    static constexpr int kMaskBits = 16;
+    static constexpr std::uint32_t filter_of(std::uint16_t category, std::uint16_t mask) {
+        return static_cast<std::uint32_t>(category) << kMaskBits | mask;
+    }
+    static constexpr std::uint32_t kDefaultFilter = filter_of(kDefaultCategory, kDefaultMask);
+
     /// The one list of columns.
     template <class Self, class Fn>
     static void list_columns(Self& b, const Fn& fn) {
@@ -175,6 +209,7 @@ struct Bodies {
         }
         if (b.has_flags) fn("flags", "bits", b.flags);
         if (b.has_groups) fn("group", "1", b.group);
+        if (b.has_categories) fn("filter", "bits", b.filter);
         if (b.has_sleep) fn("still", "s", b.still), fn("island", "1", b.island);
     }
 };

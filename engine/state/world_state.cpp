@@ -111,6 +111,7 @@ BodyId WorldState<Real>::append(const Body& body) {
     bodies.velocity_x[row] = real(body.velocity.x), bodies.velocity_y[row] = real(body.velocity.y);
     bodies.id[row] = id;
     bodies.set_group(row, body.group);
+    bodies.set_filter(row, body.category, body.mask);
     if (bodies.has_rotation)
         bodies.angle[row] = real(body.angle), bodies.angular_velocity[row] = real(body.angular_velocity);
     set_shape(row, body, id);

@@ -91,14 +91,13 @@ struct WorldState {
     /// @param taken  what the books say it had by then; if that is no number, what its columns say is booked
     void quarantine(std::size_t row, const Sums& taken);
     void quarantine(std::size_t row) { quarantine(row, sums_of(row)); }
-    /// Whether two bodies can touch: a joint may say that they do not, or a group.
+    /// Whether two bodies can touch: a joint may say that they do not, or a filter.
     bool may_collide(std::size_t row_a, std::size_t row_b) const {
-        if (bodies.has_groups && bodies.group[row_a] < 0 && bodies.group[row_a] == bodies.group[row_b])
-            return false;
+        if (bodies.has_filters() && !bodies.may_touch(row_a, row_b)) return false;
         return joints.empty() || !joints.excludes(bodies.id[row_a], bodies.id[row_b]);
     }
     /// Whether there are bodies for which may_collide may say no.
-    bool has_filters() const { return bodies.has_groups || !joints.empty(); }
+    bool has_filters() const { return bodies.has_filters() || !joints.empty(); }
     /// Exchanges two rows. `list_immovable_rows` is to be called after it.
     void swap_rows(std::size_t a, std::size_t b);
     void list_immovable_rows();

@@ -22,6 +22,10 @@ enum class BodyType : std::uint8_t {
     kinematic_body,  ///< moves at its set velocity, whatever it meets
 };
 
+/// What a body is, as bits, and what it touches, unless it says otherwise.
+inline constexpr std::uint16_t kDefaultCategory = 1;
+inline constexpr std::uint16_t kDefaultMask = 0xFFFF;
+
 /// One body as a person describes it. Everything has a default; SI units.
 struct Body {
     std::string name{};  ///< empty, or unique in the scene
@@ -35,8 +39,12 @@ struct Body {
     Material material{};
     bool fixed_rotation = false;
     std::string color{};  ///< empty, or "#rrggbb"; for pictures only
-    /// Bodies of the same group below zero do not touch each other; 0: none.
+    /// Bodies of the same group touch each other never if it is below zero, always if it is above zero,
+    /// whatever category and mask say; 0: none.
     std::int32_t group = 0;
+    /// Two bodies touch if each has a category, a bit, that is in the other's mask.
+    std::uint16_t category = kDefaultCategory;
+    std::uint16_t mask = kDefaultMask;
 };
 
 /// A closed axis-aligned box around the bodies; each side can be left open.

@@ -54,10 +54,14 @@ void append_meetings(const ImpulseSimulation<Real>& sim, const FindImpacts<Real>
     k.found = found;
     const auto kernel = all.radius ? sim.kernels->find_impacts : sim.kernels->find_impacts_uniform_radius;
     const std::size_t count = kernel(k, first, padded(last));
+    const Bodies<Real>& bodies = sim.world.bodies;
+    const bool has_filters = bodies.has_filters();
     for (std::size_t n = 0; n < count; ++n) {
         const auto p = static_cast<std::size_t>(found[n]);
         if (p >= last) return;  // padding
         const std::int32_t a = all.a[p], b = all.b[p];
+        if (has_filters && !bodies.may_touch(static_cast<std::size_t>(a), static_cast<std::size_t>(b)))
+            continue;
         meetings.push_back(sim.impulse.examine(a < b ? Meeting{a, b} : Meeting{b, a}));
     }
 }

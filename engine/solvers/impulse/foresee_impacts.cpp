@@ -155,10 +155,13 @@ void ImpulseSolver<Real>::foresee_near(std::int32_t row, double from) {
         }
         found += more;
     }
-    const bool immovable = flights.is_immovable(row);
+    const bool immovable = flights.is_immovable(row), has_filters = flights.bodies->has_filters();
     for (std::size_t i = 0; i < found; ++i) {
         const std::int32_t other = near_[i];
         if (other == row || (immovable && flights.is_immovable(other))) continue;
+        if (has_filters &&
+            !flights.bodies->may_touch(static_cast<std::size_t>(row), static_cast<std::size_t>(other)))
+            continue;
         // One order for a pair, whichever of the two asks: the same bits and the same ties.
         foresee(row < other ? Meeting{row, other} : Meeting{other, row}, from);
     }

@@ -9,18 +9,31 @@ constexpr std::array<std::string_view, 12> kBodyKeys{
     "name", "type",     "shape",          "position", "angle", "velocity", "angular_velocity",
     "mass", "material", "fixed_rotation", "color",    "filter"};
 
-/// {"group": -1}: bodies of one group below zero do not touch each other.
-std::int32_t read_group(const Node& filter) {
-    static constexpr std::array<std::string_view, 1> kKeys{"group"};
-    filter.expect_keys(kKeys);
-    const Node group = filter.at("group");
-    const std::int64_t value = group.integer();
-    if (value < INT32_MIN || value > 0)
-        group.fail(ErrorCode::out_of_range,
-                   "group " + std::to_string(value) +
-                       "; expected 0, for none, or a number below it. Bodies of one group "
-                       "below zero do not touch each other.");
+/// Bits of a category or mask.
+std::uint16_t read_bits(const Node& node, std::string_view what) {
+    const std::int64_t value = node.integer();
+    if (value < 0 || value > UINT16_MAX)
+        node.fail(ErrorCode::out_of_range, std::string(what) + " " + std::to_string(value) +
+                                               "; expected 0 to 65535: each of 16 bits is a category.");
+    return static_cast<std::uint16_t>(value);
+}
+
+std::int32_t read_group(const Node& node) {
+    const std::int64_t value = node.integer();
+    if (value < INT32_MIN || value > INT32_MAX)
+        node.fail(ErrorCode::out_of_range,
+                  "group " + std::to_string(value) +
+                      "; expected -2147483648 to 2147483647. Bodies of one group never touch each other if "
+                      "it is below zero, always if it is above; 0 is none.");
     return static_cast<std::int32_t>(value);
+}
+
+void read_filter(const Node& filter, Body& body) {
+    static constexpr std::array<std::string_view, 3> kKeys{"category", "mask", "group"};
+    filter.expect_keys(kKeys);
+    if (const auto category = filter.find("category")) body.category = read_bits(*category, "category");
+    if (const auto mask = filter.find("mask")) body.mask = read_bits(*mask, "mask");
+    if (const auto group = filter.find("group")) body.group = read_group(*group);
 }
 
 Body read_body(const Node& node, const Materials& materials) {
@@ -38,7 +51,7 @@ Body read_body(const Node& node, const Materials& materials) {
     body.material = material ? read_material(*material, materials) : materials.standard;
     node.read("fixed_rotation", body.fixed_rotation);
     node.read("color", body.color);
-    if (const auto filter = node.find("filter")) body.group = read_group(*filter);
+    if (const auto filter = node.find("filter")) read_filter(*filter, body);
     return body;
 }
 
