@@ -192,7 +192,7 @@ void ContactGraph<Real>::list_walls(const Candidates<Real>& candidates, const Bo
     for (std::size_t row = 0; row < bodies.count; ++row)
         enclosure.for_each_side_within(bodies.position_x[row], bodies.position_y[row],
                                        candidates.first_reach(row) + drift, [&](std::int32_t side) {
-                                           if (bodies.is_immovable(row) || !bodies.is_disc(row)) return;
+                                           if (!bodies.is_moving_disc(row)) return;
                                            listed_a_.push_back(static_cast<std::int32_t>(row));
                                            listed_b_.push_back(side);
                                        });
@@ -462,7 +462,7 @@ void ContactGraph<Real>::add(const Candidates<Real>& candidates, const EdgeCandi
     };
     for (const std::int32_t stray : candidates.strays()) {
         const auto row = static_cast<std::size_t>(stray);
-        if (!walls || bodies.is_immovable(row) || !bodies.is_disc(row)) continue;
+        if (!walls || !bodies.is_moving_disc(row)) continue;
         enclosure.for_each_side_within(
             bodies.position_x[row], bodies.position_y[row],
             candidates.reach()[row] + static_cast<Real>(candidates.largest_drift()), [&](std::int32_t side) {

@@ -48,7 +48,7 @@ std::optional<Problem> find_filter_problem(const Item& item, const Body& body) {
 
 bool SolverFacts::would_change(const Body& body) const {
     return (no_disc.empty() && !is_disc(body.shape)) || (rough.empty() && body.material.friction > 0) ||
-           (resists.empty() && body.material.rolling_resistance > 0) ||
+           (resists.empty() && body.material.rolling_resistance > 0) || (joined.empty() && body.sensor) ||
            (inelastic.empty() && is_inelastic(body));
 }
 
@@ -58,6 +58,7 @@ void SolverFacts::add(const Body& body, std::string_view label) {
     if (rough.empty() && body.material.friction > 0) rough = join(label, " has friction");
     if (resists.empty() && body.material.rolling_resistance > 0)
         resists = join(label, " has rolling resistance");
+    if (joined.empty() && body.sensor) joined = join(label, " is a sensor");
     if (inelastic.empty() && is_inelastic(body))
         inelastic = join(label, " has restitution ", body.material.restitution, ", below 1");
 }
@@ -131,6 +132,9 @@ std::optional<Problem> find_solver_problem(const Item& item, const Body& body, V
         return problem(ErrorCode::inconsistent, item, join("/shape/", name_of(body.shape)), "the shape ",
                        quoted(name_of(body.shape)), ", but the solver ", quoted(name_of(solver)),
                        " knows discs only. Use \"soft\" or \"auto\".");
+    if (body.sensor && solver != Solver::soft)
+        return problem(ErrorCode::inconsistent, item, "/sensor", "sensor true, but the solver ",
+                       quoted(name_of(solver)), " knows no sensors. Use \"soft\" or \"auto\".");
     if (solver == Solver::event)
         if (auto found = find_filter_problem(item, body)) return found;
     return find_roughness_problem(item, body.material, gravity, solver);

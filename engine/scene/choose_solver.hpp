@@ -24,7 +24,7 @@ struct SolverFacts {
     std::string rough;      ///< of what has friction, or that it is forced on
     std::string resists;    ///< of what has rolling resistance
     std::string forced;     ///< of another effect, or of sweeps, that were asked for
-    std::string joined;     ///< of a joint
+    std::string joined;     ///< of a joint, or of a sensor
     std::string inelastic;  ///< of a body that bounces with less than its speed
 
     template <class Self, class Archive>

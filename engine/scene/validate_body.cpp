@@ -125,6 +125,10 @@ std::optional<Problem> find_problem(const Material& material) {
 
 std::optional<Problem> find_body_problem(const Item& item, const Body& body) {
     if (auto found = find_shape_problem(item, body)) return found;
+    if (body.sensor && !is_convex(body.shape))
+        return problem(ErrorCode::inconsistent, item, "/sensor", "sensor true and the shape ",
+                       quoted(name_of(body.shape)),
+                       "; expected a shape with an area, that bodies can be in. Use a box or a capsule.");
     if (auto found = find_position_problem(item, body.position)) return found;
     if (auto found = check(item, "/angle", body.angle, kAngle)) return found;
     if (auto found = find_velocity_problem(item, body.velocity)) return found;

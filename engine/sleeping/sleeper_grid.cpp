@@ -27,7 +27,8 @@ Vec2 velocity_of(const Bodies<Real>& bodies, std::size_t row) {
 template <class Real>
 bool can_come(const Bodies<Real>& bodies, std::size_t row) {
     const std::uint8_t flags = bodies.flags_of(row);
-    return (flags & (kDisabled | kEdges)) == 0 && ((flags & kImmovable) == 0 || (flags & kKinematic) != 0);
+    return (flags & (kDisabled | kEdges | kSensor)) == 0 &&
+           ((flags & kImmovable) == 0 || (flags & kKinematic) != 0);
 }
 
 }  // namespace
@@ -86,7 +87,8 @@ void Sleepers<Real>::find_pairs(const WorldState<Real>& world, const Candidates<
         if (!can_come(bodies, row)) continue;
         const double reach = static_cast<double>(candidates.reach()[row]) + candidates.largest_drift();
         for (const std::int32_t sleeper : find_near(world, position_of(bodies, row), reach))
-            pairs_.push_back({static_cast<std::int32_t>(row), sleeper});
+            if ((bodies.flags_of(static_cast<std::size_t>(sleeper)) & kSensor) == 0)
+                pairs_.push_back({static_cast<std::int32_t>(row), sleeper});
     }
 }
 

@@ -45,6 +45,15 @@ class Sleepers {
 
     // At its end.
 
+    /// Rows of sleepers around which the disc comes within `reach` [m] of a place, and of some more. Valid
+    /// until the next call.
+    std::span<const std::int32_t> around(const WorldState<Real>& world, Vec2 place, double reach,
+                                         const KernelTable<Real>& kernels, const Executor& executor) {
+        if (world.bodies.asleep == 0) return {};
+        build_grid(world, kernels, executor);
+        return find_near(world, place, reach);
+    }
+
     /// Marks the islands that something presses on.
     /// @param others  contacts besides those of the graph, here and below
     /// @return whether there are any.

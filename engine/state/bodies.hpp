@@ -93,6 +93,10 @@ struct Bodies {
 
     /// Whether a row is a disc: not another convex shape, not edges.
     bool is_disc(std::size_t row) const { return (flags_of(row) & (kEdges | kNotDisc)) == 0; }
+    /// Whether a row is a disc that others push.
+    bool is_moving_disc(std::size_t row) const {
+        return (flags_of(row) & (kEdges | kNotDisc | kSensor | kImmovable | kDisabled)) == 0;
+    }
     /// Whether two rows meet as discs.
     bool are_discs(std::int32_t a, std::int32_t b) const {
         return !has_shapes || (is_disc(static_cast<std::size_t>(a)) && is_disc(static_cast<std::size_t>(b)));

@@ -13,9 +13,10 @@ enum BodyFlag : std::uint8_t {
     kFixedAngle = 8,  ///< impulses do not turn it
     kEdges = 16,      ///< a segment or chain: its edges are in state/edges.hpp, its radius means nothing
     kNotDisc = 32,    ///< a box, capsule or polygon: convex, but no disc
+    kSensor = 64,     ///< tells what overlaps it, and touches nothing
 };
 
 /// Rows with one of these are no discs to the broadphase.
-inline constexpr std::uint8_t kNotInGrid = kDisabled | kEdges;
+inline constexpr std::uint8_t kNotInGrid = kDisabled | kEdges | kSensor;
 
 }  // namespace carom

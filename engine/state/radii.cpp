@@ -45,7 +45,7 @@ Radii measure_radii(const Bodies<Real>& bodies) {
     Radii radii;
     bool any = false;
     for (std::size_t row = 0; row < bodies.count; ++row) {
-        if (bodies.flags_of(row) & kEdges) continue;
+        if (bodies.flags_of(row) & (kEdges | kSensor)) continue;
         if (!bodies.is_disc(row) && bodies.is_immovable(row)) continue;
         const double radius = bodies.radius[row], inradius = bodies.inradius(row);
         radii.smallest = any ? std::fmin(radii.smallest, inradius) : inradius;

@@ -106,7 +106,11 @@ BodyId WorldState<Real>::append(const Body& body) {
     const BodyId id = handles.add(static_cast<std::uint32_t>(row));
     const auto real = [](double value) { return static_cast<Real>(value); };
     const double mass = mass_of(body);
-    const int kind = is_disc(body.shape) ? 0 : is_convex(body.shape) ? kNotDisc : kEdges;
+    const int kind = (is_disc(body.shape)     ? 0
+                      : is_convex(body.shape) ? kNotDisc
+                                              : kEdges) |
+                     (body.sensor ? kSensor : 0);
+    if (body.sensor) sensing.sensors.push_back(id);
     bodies.position_x[row] = real(body.position.x), bodies.position_y[row] = real(body.position.y);
     bodies.velocity_x[row] = real(body.velocity.x), bodies.velocity_y[row] = real(body.velocity.y);
     bodies.id[row] = id;
@@ -136,6 +140,7 @@ EdgeStore::Removed WorldState<Real>::remove(std::size_t row) {
     const EdgeStore::Removed gone = edges.remove(bodies.id[row]);
     if (bodies.has_shapes && bodies.shape[row] >= 0) shapes.remove(bodies.shape[row]);
     if (!joints.empty()) joints.remove_of(bodies.id[row]);
+    if (bodies.flags_of(row) & kSensor) std::erase(sensing.sensors, bodies.id[row]);
     outside = outside - sums_of(row);
     if (!bodies.is_immovable(row)) dynamic_mass -= static_cast<double>(bodies.mass[row]);
     handles.remove(bodies.id[row]);
@@ -199,7 +204,7 @@ void WorldState<Real>::reorder(const std::int32_t* order) {
 template <class Real>
 std::size_t WorldState<Real>::bytes() const {
     std::size_t bytes = handles.bytes() + edges.bytes() + shapes.bytes() + joints.bytes() + spare_.bytes() +
-                        immovable_rows.capacity() * sizeof(std::int32_t);
+                        immovable_rows.capacity() * sizeof(std::int32_t) + sensing.bytes();
     bodies.for_each_column([&](auto, auto, const auto& column) { bytes += column.bytes(); });
     return bytes;
 }

@@ -12,6 +12,7 @@
 #include "state/edges.hpp"
 #include "state/handles.hpp"
 #include "state/joints.hpp"
+#include "state/sensing.hpp"
 #include "state/shapes.hpp"
 
 namespace carom {
@@ -50,6 +51,7 @@ struct WorldState {
     EdgeStore edges;          ///< of segments and chains
     ShapeStore<Real> shapes;  ///< of the other bodies; empty where these are all discs
     JointStore joints;
+    Sensing sensing;
     Vec2 gravity;  ///< m/s²
     Drag drag;
     std::optional<Walls> walls;
@@ -68,7 +70,7 @@ struct WorldState {
         archive(self.bodies, self.handles, self.edges, self.shapes, self.gravity, self.drag, self.walls);
         archive(self.effects);
         archive(self.time, self.falls, self.books, self.initial, self.outside, self.dynamic_mass);
-        archive(self.immovable_rows, self.quarantined_count, self.joints);
+        archive(self.immovable_rows, self.quarantined_count, self.joints, self.sensing);
     }
 
     std::size_t bytes() const;

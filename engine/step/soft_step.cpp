@@ -48,6 +48,7 @@ class SoftStep final : public SoftSimulation<Real> {
     static constexpr auto has_joints_in_contact = [](const Sim& sim) {
         return !sim.world.joints.empty() && sim.soft.joints.touches() && sim.can_meet();
     };
+    static constexpr auto has_sensors = [](const Sim& sim) { return sim.world.sensing.is_called_for(); };
     static constexpr auto has_lost_bodies = [](const Sim& sim) { return !sim.lost.empty(); };
 
     static constexpr Stage<Sim> kBegin[] = {
@@ -139,6 +140,9 @@ class SoftStep final : public SoftSimulation<Real> {
         {"book_displacements",
          [](Sim& sim) { sim.soft.book_displacements(sim.world, sim.motion, sim.world.books); }, has_ledger,
          KernelChoice::none, "motion, position", "books"},
+        {"sense", [](Sim& sim) { sense(sim); }, has_sensors, KernelChoice::scalar_f64,
+         "position, angle, velocity, angular velocity, candidate pairs, bodies in sensors",
+         "bodies in sensors, events"},
         {"put_to_sleep", [](Sim& sim) { put_to_sleep(sim); }, sleeps, KernelChoice::none,
          "velocity, angular velocity, coloured candidates, impulses",
          "rows of all columns, velocity, angular velocity, books"},

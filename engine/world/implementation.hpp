@@ -69,6 +69,7 @@ struct BasicWorld<Real>::Implementation : WorldSettings {
             if (!b.is_disc(row)) body.shape = state.shape_of(row);
             if (b.is_immovable(row)) body.type = BodyType::static_body;
             if (b.has_groups) body.group = b.group[row];
+            body.sensor = (b.flags_of(row) & kSensor) != 0;
             body.category = b.category(row), body.mask = b.mask(row);
             body.material = {.friction = b.friction[row],
                              .restitution = b.restitution[row],

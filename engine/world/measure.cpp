@@ -51,7 +51,7 @@ template <class Real>
 void add_walls(const WorldState<Real>& world, Overlaps& overlaps) {
     const Walls& walls = *world.walls;
     for (std::size_t row = 0; row < world.bodies.count; ++row) {
-        if (world.bodies.is_immovable(row)) continue;
+        if (world.bodies.is_immovable(row) || (world.bodies.flags_of(row) & kSensor)) continue;
         const Vec2 x{world.bodies.position_x[row], world.bodies.position_y[row]};
         const Rotation turn = turn_of(world.bodies, row);
         for (const std::int32_t side : kWallSides)

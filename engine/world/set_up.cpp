@@ -33,6 +33,8 @@ void set_up(Simulation<Real>& sim, const Scene& scene, const WorldOptions& optio
     world.books.is_open = effects.ledger;
     world.bodies.has_rotation = effects.rotation;
     world.bodies.has_sleep = effects.sleeping;
+    world.sensing.is_on = scene.events.sensor.value_or(true);
+    world.sensing.keeps = options.keep_events;
     for (const Body& body : scene.bodies) world.append(body);
     for (const Joint& joint : scene.joints) world.joints.add(joint_of(world, joint));
     world.initial = world.sums();

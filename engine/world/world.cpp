@@ -120,6 +120,7 @@ void BasicWorld<Real>::step(double dt) {
     validate_dt(dt, "World::step");
     if (dt == 0) return;
     Simulation<Real>& sim = implementation_->sim();
+    if (!sim.world.sensing.keeps) sim.world.sensing.events.clear();
     const double begin = sim.world.time;
     sim.interruption.start();
     const auto step = [&] { sim.step(dt); };
@@ -269,6 +270,25 @@ void BasicWorld<Real>::set_angular_velocity(BodyId body, double angular_velocity
     if (!b.has_rotation) return;
     row = implementation_->wake_around(row);
     implementation_->change_row(row, [&] { b.angular_velocity[row] = static_cast<Real>(angular_velocity); });
+}
+
+template <class Real>
+Events BasicWorld<Real>::events() const noexcept {
+    return {implementation_->sim().world.sensing.events};
+}
+
+template <class Real>
+void BasicWorld<Real>::clear_events() noexcept {
+    implementation_->sim().world.sensing.events.clear();
+}
+
+template <class Real>
+std::vector<BodyId> BasicWorld<Real>::sensed(BodyId sensor) const {
+    implementation_->row_of(sensor, "World::sensed");
+    std::vector<BodyId> bodies;
+    for (const SensedPair& pair : implementation_->sim().world.sensing.inside)
+        if (pair.sensor == sensor) bodies.push_back(pair.body);
+    return bodies;
 }
 
 template <class Real>

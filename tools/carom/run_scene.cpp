@@ -17,6 +17,7 @@
 #include "interrupt.hpp"
 #include "progress_bar.hpp"
 #include "report/run_page.hpp"
+#include "results/events_csv.hpp"
 #include "results/final_csv.hpp"
 #include "results/ledger_csv.hpp"
 #include "results/page_file.hpp"
@@ -135,6 +136,7 @@ class Recorder {
              const RunChoices& choices)
         : every_(scene.record.every) {
         if (simulation.keeps_ledger()) ledger_ = std::make_unique<LedgerCsv>(folder.temporary("ledger.csv"));
+        if (choices.events) events_ = std::make_unique<EventsCsv>(folder.temporary("events.csv"));
         if (choices.no_trajectory) return;
         const std::int64_t frames = 1 + scene.step.count / every_ + (scene.step.count % every_ != 0 ? 1 : 0);
         Outlines outlines = outlines_of(scene.bodies);
@@ -157,6 +159,7 @@ class Recorder {
         const bool is_between = simulation.time() != last_time_;
         if (is_between) append_row(simulation);
         if (ledger_) ledger_->close();
+        if (events_) events_->close();
         if (!trajectory_) return;
         if (last_frame_ != step || is_between) append_frame(simulation, step);
         trajectory_->close();
@@ -165,6 +168,7 @@ class Recorder {
   private:
     void append_row(const Simulation& simulation) {
         if (ledger_) ledger_->append(simulation.ledger(), simulation.profile().impacts);
+        if (events_) events_->append(simulation.events());
         last_time_ = simulation.time();
     }
 
@@ -177,6 +181,7 @@ class Recorder {
     std::int64_t last_frame_ = 0;
     double last_time_ = 0;  // s, of the last row
     std::unique_ptr<LedgerCsv> ledger_;
+    std::unique_ptr<EventsCsv> events_;
     std::unique_ptr<TrajectoryH5> trajectory_;
 };
 

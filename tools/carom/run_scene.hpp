@@ -15,6 +15,7 @@ struct RunChoices {
     bool no_trajectory = false;
     bool no_report = false;
     std::size_t page_bytes = report::kDefaultPageBytes;  ///< of report.html
+    bool events = false;                                 ///< write events.csv
     bool quiet = false;
     std::string scene_text;  ///< for the trajectory's notes
 };

@@ -6,6 +6,7 @@
 #include <carom/build_info.hpp>
 #include <carom/effects.hpp>
 #include <carom/errors.hpp>
+#include <carom/events.hpp>
 #include <carom/generators.hpp>
 #include <carom/ids.hpp>
 #include <carom/joints.hpp>

@@ -45,6 +45,9 @@ struct Body {
     /// Two bodies touch if each has a category, a bit, that is in the other's mask.
     std::uint16_t category = kDefaultCategory;
     std::uint16_t mask = kDefaultMask;
+    /// Tells what overlaps it (`World::events`, `World::sensed`), and touches nothing. Needs the solver
+    /// `soft`, and a shape with an area.
+    bool sensor = false;
 };
 
 /// A closed axis-aligned box around the bodies; each side can be left open.
@@ -67,6 +70,12 @@ struct Drag {
 struct StepSettings {
     double dt = 1.0 / 60;     ///< s, kSmallestStep ... kLargestStep
     std::int64_t count = 60;  ///< steps a run takes, >= 0
+};
+
+/// Events a scene asks for, or says that it does not want; what is left out comes where there is something
+/// to tell.
+struct EventChoices {
+    std::optional<bool> sensor{};  ///< left out: told if there are sensors
 };
 
 struct Record {
@@ -108,6 +117,7 @@ struct Scene {
     Accuracy accuracy{};
     EffectOverrides effects{};
     Record record{};
+    EventChoices events{};
 
     /// Appends a body; it is checked when a `World` is made of the scene, or by `validate`.
     /// @return the handle that body has in every world made of this scene.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <carom/events.hpp>
 #include <carom/ledger.hpp>
 #include <carom/profile.hpp>
 #include <carom/scene.hpp>
@@ -39,6 +40,8 @@ struct WorldOptions {
     ParallelFor parallel_for{};  ///< an embedding program's own threads in place of OpenMP
     ShouldStop should_stop{};    ///< ends a step that is too long; copies of the world ask it, too
     EffectOverrides effects{};   ///< over the scene's own
+    /// Events stay until `clear_events`; else those of a step until the next one.
+    bool keep_events = false;
 };
 
 /// Spans over the columns, without a copy; valid until the next call that changes the world. Rows may be
@@ -165,6 +168,14 @@ class BasicWorld {
     std::vector<JointId> broken_joints() const;
     /// Where a joint holds a and b now [m], for pictures. @throws Error (stale_handle)
     std::array<Vec2, 2> joint_anchors(JointId joint) const;
+
+    /// What happened in the last step, or since the last `clear_events` (`WorldOptions::keep_events`). Valid
+    /// until the next call that changes the world.
+    Events events() const noexcept;
+    void clear_events() noexcept;
+    /// The bodies that overlapped a sensor at the end of the last step, in handle order.
+    /// @throws Error (stale_handle). Cost: O(bodies in sensors).
+    std::vector<BodyId> sensed(BodyId sensor) const;
 
     double time() const noexcept;  ///< s, sum of all steps
     /// Energy and momentum now; by cause if the ledger effect is on. Cost: O(bodies).

@@ -112,6 +112,7 @@ void SurfaceFinder<Real>::find_walls(const WorldState<Real>& world, const Subste
     const Walls& walls = *world.walls;
     for (std::size_t row = 0; row < bodies.count; ++row) {
         if (bodies.is_disc(row) || bodies.shape[row] < 0 || bodies.is_immovable(row)) continue;
+        if (bodies.flags_of(row) & kSensor) continue;
         const double thickness = bodies.inradius(row);
         const double margin = near(thickness) + thickness + reach_in_step(bodies, row, terms.dt);
         const Vec2 centre{bodies.position_x[row], bodies.position_y[row]};

@@ -21,7 +21,8 @@ void find_candidate_pairs(Simulation<Real>& sim, const FlightClock& end) {
     const Bodies<Real>& bodies = sim.world.bodies;
     sim.displaced.clear();
     sim.displaced_rows.for_each_below(bodies.count, [&](std::int32_t row) {
-        if ((bodies.flags_of(static_cast<std::size_t>(row)) & kEdges) == 0) sim.displaced.push_back(row);
+        if ((bodies.flags_of(static_cast<std::size_t>(row)) & (kEdges | kSensor)) == 0)
+            sim.displaced.push_back(row);
     });
     sim.candidates.update(bodies, end, sim.world.gravity, sim.displaced, sim.fastest, *sim.kernels,
                           sim.executor);

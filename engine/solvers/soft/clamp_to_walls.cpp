@@ -48,6 +48,7 @@ void clamp_to_walls(SoftSimulation<Real>& sim) {
         if (outside == 0) continue;
         for (std::size_t row = first; row < last; ++row) {
             if (!box.is_outside(x[row], y[row]) || bodies.is_immovable(row)) continue;
+            if (bodies.flags_of(row) & kSensor) continue;
             const Real* start = &sim.motion[4 * row];
             if (box.is_outside(start[0], start[1])) continue;  // it was put there
             const auto along_x = [&](double side) { return reach_along(world, row, {side, 0}); };

@@ -56,7 +56,7 @@ bool EndProjection<Real>::mark_deflected(const Inputs& in, double largest) {
     const Vec2 fall = 0.5 * dt * dt * in.world.gravity;
     for (std::size_t row = 0; row < in.step.records.count(); ++row) {
         const double radius = in.world.bodies.radius[row];
-        if (radius >= largest || in.world.bodies.is_immovable(row) || !in.world.bodies.is_disc(row)) continue;
+        if (radius >= largest || !in.world.bodies.is_moving_disc(row)) continue;
         const Vec2 off{
             static_cast<double>(displacement[2 * row]) - dt * static_cast<double>(motion[4 * row + 2]),
             static_cast<double>(displacement[2 * row + 1]) - dt * static_cast<double>(motion[4 * row + 3])};

@@ -43,6 +43,10 @@ void clamp_to_walls(SoftSimulation<Real>& sim);
 template <class Real>
 void quarantine_bodies(SoftSimulation<Real>& sim);
 
+/// Finds what overlaps the sensors, and tells what has changed.
+template <class Real>
+void sense(SoftSimulation<Real>& sim);
+
 /// Wakes islands that something presses on, puts islands to sleep that have been still for long enough.
 template <class Real>
 void put_to_sleep(SoftSimulation<Real>& sim);

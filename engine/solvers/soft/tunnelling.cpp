@@ -77,7 +77,7 @@ void Tunnelling<Real>::find_strays(const WorldState<Real>& world, const StepFlig
                          Vec2{candidates.built_x()[row], candidates.built_y()[row]};
         const double margin = static_cast<double>(candidates.reach()[row]) - radius;
         const double squared = length_squared(way);
-        if (squared <= margin * margin || bodies.is_immovable(row) || !bodies.is_disc(row)) continue;
+        if (squared <= margin * margin || !bodies.is_moving_disc(row)) continue;
         // Edges somewhat beyond its margin are among the supports, too.
         if (std::sqrt(squared) - margin + candidates.farther_than_first(row) > flight.edges.allowance())
             strays_.push_back(static_cast<std::int32_t>(row));

@@ -19,8 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 
 // What a run may leave in a folder; a file of these names from an earlier run does not outlive the next one.
-constexpr std::array<std::string_view, 5> kResultFiles{"summary.json", "final.csv", "ledger.csv",
-                                                       "trajectory.h5", "report.html"};
+constexpr std::array<std::string_view, 6> kResultFiles{"summary.json", "final.csv",     "ledger.csv",
+                                                       "events.csv",   "trajectory.h5", "report.html"};
 constexpr std::string_view kSummary = "summary.json";
 constexpr std::string_view kTemporarySuffix = ".part";
 

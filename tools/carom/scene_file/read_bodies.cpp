@@ -5,9 +5,9 @@
 namespace carom::tool {
 namespace {
 
-constexpr std::array<std::string_view, 12> kBodyKeys{
-    "name", "type",     "shape",          "position", "angle", "velocity", "angular_velocity",
-    "mass", "material", "fixed_rotation", "color",    "filter"};
+constexpr std::array<std::string_view, 13> kBodyKeys{
+    "name", "type",     "shape",          "position", "angle",  "velocity", "angular_velocity",
+    "mass", "material", "fixed_rotation", "color",    "filter", "sensor"};
 
 /// Bits of a category or mask.
 std::uint16_t read_bits(const Node& node, std::string_view what) {
@@ -51,6 +51,7 @@ Body read_body(const Node& node, const Materials& materials) {
     body.material = material ? read_material(*material, materials) : materials.standard;
     node.read("fixed_rotation", body.fixed_rotation);
     node.read("color", body.color);
+    node.read("sensor", body.sensor);
     if (const auto filter = node.find("filter")) read_filter(*filter, body);
     return body;
 }

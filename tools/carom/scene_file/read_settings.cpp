@@ -95,6 +95,22 @@ void read_record(const Node& node, Record& record) {
     node.read("trail", record.trail);
 }
 
+/// The kinds of events that are wanted; those left out are not told.
+void read_events(const Node& node, EventChoices& events) {
+    static constexpr std::array<std::string_view, 6> kKinds{"sensor", "begin", "end",
+                                                            "hit",    "break", "sleep"};
+    node.expect_array("kinds of events, e.g. [\"sensor\"]");
+    events.sensor = false;
+    for (std::size_t i = 0; i < node.size(); ++i) {
+        const Node kind = node[i];
+        const std::size_t which = kind.one_of(kKinds, "kind of event");
+        if (which > 0)
+            kind.fail(ErrorCode::not_built_yet, "events \"" + std::string(kKinds[which]) +
+                                                    "\" are not built in this version; expected \"sensor\".");
+        events.sensor = true;
+    }
+}
+
 void read_version(const Node& root) {
     const Node version = root.at("carom");
     if (version.integer() != 1)
@@ -105,9 +121,9 @@ void read_version(const Node& root) {
 }  // namespace
 
 Materials read_settings(const Node& root, Scene& scene) {
-    static constexpr std::array<std::string_view, 15> kKeys{
+    static constexpr std::array<std::string_view, 16> kKeys{
         "carom",    "name",   "gravity", "drag",     "walls",   "materials", "default_material", "bodies",
-        "generate", "joints", "step",    "accuracy", "effects", "record",    "$schema"};
+        "generate", "joints", "step",    "accuracy", "effects", "record",    "events",           "$schema"};
     read_version(root);  // first: another version may have other keys
     root.expect_keys(kKeys);
     Materials materials = read_materials(root);
@@ -120,6 +136,7 @@ Materials read_settings(const Node& root, Scene& scene) {
     if (const auto step = root.find("step")) read_step(*step, scene.step);
     if (const auto accuracy = root.find("accuracy")) read_accuracy(*accuracy, scene.accuracy);
     if (const auto effects = root.find("effects")) read_effects(*effects, scene.effects);
+    if (const auto events = root.find("events")) read_events(*events, scene.events);
     if (const auto record = root.find("record")) read_record(*record, scene.record);
     return materials;
 }

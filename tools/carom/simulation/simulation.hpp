@@ -41,6 +41,8 @@ class Simulation {
     virtual Profile profile() const = 0;
     virtual Plan plan() const = 0;
     virtual OverlapReport overlaps() const = 0;
+    /// Of the last step.
+    virtual Events events() const { return {}; }
     virtual JointErrors joint_errors() const { return {}; }
     virtual std::vector<std::size_t> quarantined() const = 0;
     virtual std::uint64_t state_hash() const = 0;
