@@ -27,7 +27,9 @@ class SoftStep final : public SoftSimulation<Real> {
     static constexpr auto bounces = [](const Sim& sim) {
         return sim.world.effects.restitution && sim.can_meet();
     };
-    static constexpr auto has_edges = [](const Sim& sim) { return !sim.world.edges.empty(); };
+    static constexpr auto has_edges = [](const Sim& sim) {
+        return !sim.world.edges.empty() && sim.can_meet();
+    };
     static constexpr auto has_walls = [](const Sim& sim) { return sim.world.effects.walls; };
     static constexpr auto has_ledger = [](const Sim& sim) { return sim.world.effects.ledger; };
     static constexpr auto has_books = [](const Sim& sim) {
@@ -71,7 +73,11 @@ class SoftStep final : public SoftSimulation<Real> {
         {"find_contacts",
          [](Sim& sim) { sim.soft.find_contacts(sim.world, sim.edge_candidates, sim.motion, sim.flight_dt); },
          can_meet, KernelChoice::contacts, "motion, coloured candidates, impulses", "contacts"},
-        {"find_manifolds", [](Sim& sim) { sim.soft.find_manifolds(sim.world, sim.edge_candidates); },
+        {"find_manifolds",
+         [](Sim& sim) {
+             if (!sim.can_meet()) return sim.soft.paths.manifolds.clear();  // pairs are not kept up to date
+             sim.soft.find_manifolds(sim.world, sim.edge_candidates);
+         },
          has_shapes, KernelChoice::isa, "position, angle, velocity, candidate pairs, impulses of shapes",
          "paths of contacts"},
         {"mark_impacts", [](Sim& sim) { sim.soft.mark_impacts(sim.world, sim.candidates); }, bounces,

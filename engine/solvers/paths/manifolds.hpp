@@ -26,6 +26,8 @@ class Manifolds {
     /// Lists what can touch, when candidate pairs have been found anew.
     void renew(const WorldState<Real>& world, const Candidates<Real>& candidates,
                const EdgeCandidates<Real>& edges, std::span<const SleeperPair> sleepers);
+    /// Forgets all contacts.
+    void clear() { bodies_.clear(), surfaces_.clear(), live_.clear(), surface_finder_.clear(); }
     /// Adds the pairs that have come with new margins.
     void add(const WorldState<Real>& world, const Candidates<Real>& candidates,
              const EdgeCandidates<Real>& edges);

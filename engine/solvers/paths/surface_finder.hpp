@@ -21,6 +21,7 @@ class SurfaceFinder {
   public:
     /// Takes the edges over that bodies can touch until candidate pairs change.
     void renew(const WorldState<Real>& world, const EdgeCandidates<Real>& edges);
+    void clear() { pairs_.clear(); }
     /// Adds what came with new margins.
     void add(const WorldState<Real>& world, const EdgeCandidates<Real>& edges);
     /// Whether nothing can be found.

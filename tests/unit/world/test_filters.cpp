@@ -77,6 +77,21 @@ TEST_SUITE("world: filters") {
             }
     }
 
+    TEST_CASE("a world whose last body that could be met is removed goes on") {
+        for (const Body& falling : kFalling) {
+            Scene scene;
+            scene.gravity = {0, -10};
+            Body body = falling;
+            body.position = {0, 0.2};
+            const BodyId id = scene.add(body), floor = scene.add(kFloors[2]);
+            World world(scene);
+            for (int step = 0; step < 30; ++step) world.step(1.0 / 60);
+            world.remove(floor);
+            for (int step = 0; step < 60; ++step) world.step(1.0 / 60);
+            CHECK(world.state(id).position.y < -3);
+        }
+    }
+
     TEST_CASE("solver impulse lets discs through each other as their filters say, and bounces the others") {
         const auto speed_after = [](std::uint16_t category) {
             Scene scene;
