@@ -72,17 +72,22 @@ void SensorFinder<Real>::look(std::size_t sensor, std::size_t body) {
     if (world_.has_filters() && !world_.may_collide(sensor, body)) return;
     MovingConvex a = moving(sensor), b = moving(body);
     const SensedPair pair{bodies.id[sensor], bodies.id[body]};
-    if (separation_of(at_time(a, 0), at_time(b, 0)).distance < 0) {
+    const double distance = separation_of(at_time(a, 0), at_time(b, 0)).distance;
+    if (distance < 0) {
         inside.push_back(pair);
         return;
     }
-    const double thickness = std::min(a.shape.inradius, b.shape.inradius);
+    const double thickness = std::min(a.shape.inradius, b.shape.inradius),
+                 target = kMeetingTarget * thickness;
     const double way = dt_ * (std::sqrt(length_squared(b.velocity - a.velocity)) +
                               std::fabs(a.spin) * a.shape.extent + std::fabs(b.spin) * b.shape.extent);
     if (!(way > kFastThicknesses * thickness)) return;
-    // Back from the end, as they came.
+    // Back from the end, as they came. What is no farther than the target at either end has not passed: it is
+    // about to come in, or was in before.
     for (MovingConvex* each : {&a, &b}) each->velocity = -each->velocity, each->spin = -each->spin;
-    if (impact_time(a, b, dt_, kMeetingTarget * thickness).touches) passed.push_back(pair);
+    if (distance > target && separation_of(at_time(a, dt_), at_time(b, dt_)).distance > target &&
+        impact_time(a, b, dt_, target).touches)
+        passed.push_back(pair);
 }
 
 /// A segment or chain is in a sensor if one of its edges is.

@@ -66,7 +66,7 @@ TEST_SUITE("world: sensors") {
             scene.walls = Walls{{-3, 0}, {3, 5}};
             for (int i = 0; i < 12; ++i)
                 scene.add({.shape = i % 2 == 0 ? Shape(Disc{0.2}) : Shape(Box{0.4, 0.3}),
-                           .position = {-1.2 + 0.1 * i, 0.5 + 0.35 * i}});
+                           .position = {-2.6 + 0.47 * i, 1 + 0.3 * (i % 3)}});  // none meets another
             scene.add(sensor(Box{1, 1}, {x, 1}));
             scene.add(sensor(Disc{0.5}, {x == 0 ? 0.3 : 2.5, 3}, BodyType::dynamic_body));
             scene.add(sensor(Box{1, 0.2}, {x == 0 ? -0.3 : -2.4, 3}, BodyType::dynamic_body));
