@@ -82,9 +82,11 @@ std::optional<Problem> find_friction_problem(const Scene& scene, const EffectOve
 
 std::optional<Problem> find_effects_problem(const Scene& scene, const EffectOverrides& effects) {
     if (effects.continuous == false && scene.accuracy.solver != Solver::pairwise)
-        return problem(ErrorCode::inconsistent, kEffectsItem, "/continuous",
-                       "the effect continuous forced off, but the solver \"impulse\" always is continuous. "
-                       "Leave \"continuous\" out.");
+        return problem(
+            ErrorCode::inconsistent, kEffectsItem, "/continuous",
+            "the effect continuous forced off, but every solver except \"pairwise\" looks ahead over "
+            "the whole step: nothing passes through. Leave \"continuous\" out, or use "
+            "\"pairwise\".");
     if (effects.gravity == false && scene.gravity != Vec2{})
         return forced_off("gravity", "gravity ", scene.gravity, " m/s²");
     if (effects.drag == false && (scene.drag.linear != 0 || scene.drag.angular != 0))

@@ -7,7 +7,7 @@ namespace carom {
 /// Effects a scene forces on or off; what is left out is on when the scene calls for it.
 struct EffectOverrides {
     std::optional<bool> sleep{};       ///< bodies at rest are left alone; off unless asked for; needs `soft`
-    std::optional<bool> continuous{};  ///< `impulse` is always continuous: `false` is an error there
+    std::optional<bool> continuous{};  ///< every solver of `World` always is: `false` is an error
     std::optional<bool> ledger{};      ///< energy and momentum by cause; off unless asked for
     std::optional<bool>
         gravity{};  ///< `true` keeps the stages even for zero gravity; `false` is an error if it is not zero

@@ -275,7 +275,7 @@ const std::vector<Fault> kSettingFaults{
      ErrorCode::inconsistent, "/effects/sleep",
      "the effect sleep forced on, but the solver \"impulse\" does not have it. Use \"soft\" or \"auto\""},
     {"not continuous", [](Scene& s) { s.effects.continuous = false; }, ErrorCode::inconsistent,
-     "/effects/continuous", "always is continuous"},
+     "/effects/continuous", "looks ahead over the whole step"},
     {"gravity forced off", [](Scene& s) { s.effects.gravity = false; }, ErrorCode::inconsistent,
      "/effects/gravity", "the effect gravity forced off although it has gravity [0, -10] m/s²"},
     {"drag forced off", [](Scene& s) { s.effects.drag = false; }, ErrorCode::inconsistent, "/effects/drag",
