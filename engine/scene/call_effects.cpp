@@ -68,16 +68,13 @@ CalledEffects call_effects(const Scene& scene, const EffectOverrides& overrides)
                      "linear drag is zero");
     on.walls =
         decide(reports, "walls", {}, scene.walls ? "the scene has walls" : "", "the scene has no walls");
-    std::string bounces = first_body(
-        scene, [](const Body& b) { return b.material.restitution > 0; }, " has a restitution above zero");
+    std::string bounces = first_body(scene, has_restitution, " has a restitution above zero");
     if (bounces.empty() && scene.walls && scene.walls->material.restitution > 0)
         bounces = "the walls have a restitution above zero";
     on.restitution = decide(reports, "restitution", either(overrides.restitution, own.restitution), bounces,
                             "every restitution is zero");
-    std::string rubs = first_body(
-        scene, [](const Body& b) { return b.material.friction > 0; }, " has friction");
-    std::string resists = first_body(
-        scene, [](const Body& b) { return b.material.rolling_resistance > 0; }, " has rolling resistance");
+    std::string rubs = first_body(scene, has_friction, " has friction");
+    std::string resists = first_body(scene, has_rolling_resistance, " has rolling resistance");
     if (resists.empty() && scene.walls && scene.walls->material.rolling_resistance > 0)
         resists = "the walls have rolling resistance";
     const auto rolling = either(overrides.rolling_resistance, own.rolling_resistance);

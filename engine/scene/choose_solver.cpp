@@ -47,17 +47,16 @@ std::optional<Problem> find_filter_problem(const Item& item, const Body& body) {
 }  // namespace
 
 bool SolverFacts::would_change(const Body& body) const {
-    return (no_disc.empty() && !is_disc(body.shape)) || (rough.empty() && body.material.friction > 0) ||
-           (resists.empty() && body.material.rolling_resistance > 0) || (joined.empty() && body.sensor) ||
+    return (no_disc.empty() && !is_disc(body.shape)) || (rough.empty() && has_friction(body)) ||
+           (resists.empty() && has_rolling_resistance(body)) || (joined.empty() && body.sensor) ||
            (inelastic.empty() && is_inelastic(body));
 }
 
 void SolverFacts::add(const Body& body, std::string_view label) {
     ++bodies;
     if (no_disc.empty() && !is_disc(body.shape)) no_disc = join(label, " is a ", name_of(body.shape));
-    if (rough.empty() && body.material.friction > 0) rough = join(label, " has friction");
-    if (resists.empty() && body.material.rolling_resistance > 0)
-        resists = join(label, " has rolling resistance");
+    if (rough.empty() && has_friction(body)) rough = join(label, " has friction");
+    if (resists.empty() && has_rolling_resistance(body)) resists = join(label, " has rolling resistance");
     if (joined.empty() && body.sensor) joined = join(label, " is a sensor");
     if (inelastic.empty() && is_inelastic(body))
         inelastic = join(label, " has restitution ", body.material.restitution, ", below 1");

@@ -5,6 +5,7 @@
 #include "scene/place_discs.hpp"
 #include "scene/random_velocities.hpp"
 #include "scene/validation.hpp"
+#include "shapes/compound.hpp"
 #include "shapes/convex_geometry.hpp"
 
 #include <algorithm>
@@ -52,9 +53,9 @@ std::optional<Problem> check_pattern(const Item& item, Body body, std::optional<
     if (!body.name.empty())
         return problem(ErrorCode::inconsistent, item, "/name", "a body with the name ", quoted(body.name),
                        "; expected none, as names are unique. Name the bodies after they are made.");
-    if (!is_convex(body.shape))
+    if (!has_area(body.shape))
         return problem(ErrorCode::inconsistent, item, "/shape", "the shape ", quoted(name_of(body.shape)),
-                       "; expected a disc, box, capsule or polygon. Add other shapes one by one.");
+                       "; expected a disc, box, capsule, polygon or compound. Add other shapes one by one.");
     if (radius && !is_disc(body.shape))
         return problem(ErrorCode::inconsistent, item, "/shape", "the shape ", quoted(name_of(body.shape)),
                        " and radii, which are of discs; expected a disc. Leave one of the two out.");
@@ -103,6 +104,8 @@ Body with_shape(const Body& pattern, double radius) {
 
 /// How far a body of a pattern reaches from its centre, as it is turned.
 double reach_of(const Body& body, Vec2 direction) {
+    if (const auto* compound = std::get_if<Compound>(&body.shape))
+        return reach_along(*compound, body.material, rotation_by(body.angle), direction);
     return reach_along(convex_shape_of<double>(body.shape), rotation_by(body.angle), direction);
 }
 

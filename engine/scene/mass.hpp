@@ -18,15 +18,15 @@ inline double radius_of(const Shape& shape) {
     return disc ? disc->radius : 0;
 }
 
-inline double area_of(const Shape& shape) {  // m²
-    return mass_properties_of(shape).area;
-}
-
-/// Radius of the disc that has the mass and the moment of inertia of a shape [m], whatever its density: the
+/// Radius of the disc that has the mass and the moment of inertia of a body [m], whatever its mass: the
 /// moment of inertia is mass rim² / 2. Zero for segments and chains.
-inline double rim_of(const Shape& shape) {
-    if (is_disc(shape)) return radius_of(shape);
-    const MassProperties of = mass_properties_of(shape);
+inline double rim_of(const Body& body) {
+    if (is_disc(body.shape)) return radius_of(body.shape);
+    if (std::holds_alternative<Compound>(body.shape)) {
+        const BodyMass of = body_mass_of(body);
+        return std::sqrt(2 * of.inertia / of.mass);
+    }
+    const MassProperties of = mass_properties_of(body.shape);
     return of.area > 0 ? std::sqrt(2 * of.second_moment / of.area) : 0;
 }
 
@@ -36,7 +36,35 @@ inline bool is_turned_by_contacts(const Body& body) {
 }
 
 inline double mass_of(const Body& body) {  // kg
-    return body.mass ? *body.mass : body.material.density * area_of(body.shape);
+    return body.mass ? *body.mass : body_mass_of(body).mass;
+}
+
+/// Calls fn(material) for all that a body is made of.
+template <class Fn>
+void for_each_material(const Body& body, const Fn& fn) {
+    const auto* compound = std::get_if<Compound>(&body.shape);
+    bool all_have_one = compound != nullptr;
+    if (compound)
+        for (const Piece& piece : compound->pieces)
+            piece.material ? fn(*piece.material) : void(all_have_one = false);
+    if (!all_have_one) fn(body.material);
+}
+
+/// Whether something of a body is made of a material for which `holds` does.
+template <class Holds>
+bool any_material(const Body& body, const Holds& holds) {
+    bool any = false;
+    for_each_material(body, [&](const Material& material) { any = any || holds(material); });
+    return any;
+}
+inline bool has_friction(const Body& body) {
+    return any_material(body, [](const Material& m) { return m.friction > 0; });
+}
+inline bool has_restitution(const Body& body) {
+    return any_material(body, [](const Material& m) { return m.restitution > 0; });
+}
+inline bool has_rolling_resistance(const Body& body) {
+    return any_material(body, [](const Material& m) { return m.rolling_resistance > 0; });
 }
 
 }  // namespace carom

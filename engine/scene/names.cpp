@@ -51,8 +51,8 @@ Problem duplicate(const std::vector<Body>& bodies, std::size_t first, std::size_
 }  // namespace
 
 std::string_view name_of(const Shape& shape) {
-    static constexpr std::array kNames{"disc", "segment", "chain",
-                                       "box",  "capsule", "polygon"};  // in the order of the variant
+    static constexpr std::array kNames{"disc",    "segment", "chain",   "box",
+                                       "capsule", "polygon", "compound"};  // in the order of the variant
     static_assert(kNames.size() == std::variant_size_v<Shape>);
     return kNames[shape.index()];
 }

@@ -4,6 +4,7 @@
 #include "scene/limits.hpp"
 #include "scene/mass.hpp"
 #include "scene/validation.hpp"
+#include "shapes/compound.hpp"
 #include "shapes/convex_geometry.hpp"
 
 #include <utility>
@@ -29,7 +30,12 @@ struct RadiusSpread {
         if (inradius < smallest) smallest = inradius, smallest_body = body;
         if (extent > largest) largest = extent, largest_body = body, largest_shape = shape;
     }
-    void take(const Shape& shape, std::size_t body) {
+    void take(const Body& of, std::size_t body) {
+        const Shape& shape = of.shape;
+        if (const auto* compound = std::get_if<Compound>(&shape)) {
+            const CompoundSize size = compound_size_of(*compound, of.material);
+            return take(size.thinnest, size.extent, body, name_of(shape));
+        }
         if (!is_convex(shape)) return;
         if (is_disc(shape)) return take(radius_of(shape), radius_of(shape), body, "disc/radius");
         const ConvexShape<double> convex = convex_shape_of<double>(shape);
@@ -47,6 +53,22 @@ std::optional<Problem> find_spread_problem(const RadiusSpread& spread) {
 }
 
 }  // namespace
+
+BodyMass body_mass_of(const Body& body) {
+    BodyMass of;
+    if (const auto* compound = std::get_if<Compound>(&body.shape)) {
+        const CompoundMass sum = compound_mass_of(*compound, body.material);
+        of = {sum.mass, sum.centre, sum.inertia};
+    } else {
+        const MassProperties shape = mass_properties_of(body.shape);
+        of = {body.material.density * shape.area, shape.centroid,
+              body.material.density * shape.second_moment};
+    }
+    if (!body.mass || !(of.mass > 0)) return of;
+    of.inertia *= *body.mass / of.mass;
+    of.mass = *body.mass;
+    return of;
+}
 
 BodyId Scene::add(Body body) {
     if (bodies.size() >= kLargestBodyCount) raise("Scene::add", too_many_bodies(bodies.size() + 1));
@@ -72,7 +94,7 @@ std::optional<Problem> Scene::find_problem() const {
         if (auto found = find_body_problem(item, bodies[i])) return found;
         if (walls)
             if (auto found = find_inside_problem(item, bodies[i], *walls)) return found;
-        spread.take(bodies[i].shape, i);
+        spread.take(bodies[i], i);
     }
     if (auto found = find_spread_problem(spread)) return found;
     if (auto found = find_duplicate_name(bodies)) return found;

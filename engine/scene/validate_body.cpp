@@ -1,6 +1,7 @@
 #include "scene/limits.hpp"
 #include "scene/mass.hpp"
 #include "scene/validation.hpp"
+#include "shapes/compound.hpp"
 #include "shapes/convex_geometry.hpp"
 
 #include <algorithm>
@@ -125,7 +126,7 @@ std::optional<Problem> find_problem(const Material& material) {
 
 std::optional<Problem> find_body_problem(const Item& item, const Body& body) {
     if (auto found = find_shape_problem(item, body)) return found;
-    if (body.sensor && !is_convex(body.shape))
+    if (body.sensor && !has_area(body.shape))
         return problem(ErrorCode::inconsistent, item, "/sensor", "sensor true and the shape ",
                        quoted(name_of(body.shape)),
                        "; expected a shape with an area, that bodies can be in. Use a box or a capsule.");
@@ -142,8 +143,10 @@ std::optional<Problem> find_body_problem(const Item& item, const Body& body) {
 std::optional<Problem> find_inside_problem(const Item& item, const Body& body, const Walls& walls) {
     if (body.type != BodyType::dynamic_body)
         return std::nullopt;  // what walls do not move may stand anywhere
-    const double radius =
-        is_disc(body.shape) ? radius_of(body.shape) : convex_shape_of<double>(body.shape).inradius;
+    const auto* compound = std::get_if<Compound>(&body.shape);
+    const double radius = is_disc(body.shape) ? radius_of(body.shape)
+                          : compound          ? compound_size_of(*compound, body.material).thickest
+                                              : convex_shape_of<double>(body.shape).inradius;
     const Axis x{"x",        "/position/0", body.position.x, walls.min.x, walls.max.x,
                  walls.left, walls.right,   "left",          "right"};
     if (auto found = find_axis_problem(item, x, body.shape, radius)) return found;

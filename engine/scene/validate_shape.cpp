@@ -1,6 +1,7 @@
 #include "scene/limits.hpp"
 #include "scene/mass.hpp"
 #include "scene/validation.hpp"
+#include "shapes/compound.hpp"
 #include "shapes/convex_geometry.hpp"
 
 #include <algorithm>
@@ -181,6 +182,47 @@ std::optional<Problem> find_polygon_problem(const Item& item, const Polygon& pol
     return find_size_problem(item, polygon);
 }
 
+/// What is wrong with a piece, told where the piece stands.
+std::optional<Problem> find_piece_problem(const Item& item, const Body& body, const Piece& piece,
+                                          const std::string& pointer) {
+    const auto in_piece = [&](std::optional<Problem> found) {
+        if (found) found->pointer.insert(item.path().size(), pointer);
+        return found;
+    };
+    static constexpr Quantity kPieceX{"x of a piece", "m", -kLargestRadius, kLargestRadius, kUseMetres};
+    static constexpr Quantity kPieceY{"y of a piece", "m", -kLargestRadius, kLargestRadius, kUseMetres};
+    Body alone;
+    alone.type = body.type, alone.shape = shape_of(piece);
+    if (auto found = find_shape_problem(item, alone)) return in_piece(found);
+    if (auto found = check(item, "/position/0", piece.position.x, kPieceX)) return in_piece(found);
+    if (auto found = check(item, "/position/1", piece.position.y, kPieceY)) return in_piece(found);
+    if (auto found = check(item, "/angle", piece.angle, kAngle)) return in_piece(found);
+    if (!piece.material) return std::nullopt;
+    return in_piece(find_material_problem(item, "/material", *piece.material));
+}
+
+std::optional<Problem> find_compound_problem(const Item& item, const Body& body, const Compound& compound) {
+    constexpr std::string_view kPieces = "/shape/compound/shapes";
+    const std::size_t count = compound.pieces.size();
+    if (count < 1 || count > kLargestPieceCount)
+        return problem(ErrorCode::out_of_range, item, kPieces, "a compound of ", count,
+                       " shapes; expected 1 to ", kLargestPieceCount,
+                       count < 1 ? ". Add shapes." : ". Leave some out, or weld several bodies.");
+    for (std::size_t i = 0; i < count; ++i)
+        if (auto found = find_piece_problem(item, body, compound.pieces[i], join(kPieces, "/", i)))
+            return found;
+    if (auto found = find_material_problem(item, "/material", body.material)) return found;
+    const CompoundSize size = compound_size_of(compound, body.material);
+    if (size.extent > kLargestRadius)
+        return problem(ErrorCode::out_of_range, item, kPieces, "a compound that reaches ", size.extent,
+                       " m from its centre of mass; expected at most ", kLargestRadius, " m. ", kUseMetres);
+    if (size.extent <= kLargestAspect * size.thinnest) return std::nullopt;
+    return problem(ErrorCode::out_of_range, item, kPieces, "a compound that reaches ", size.extent,
+                   " m from its centre of mass, with a piece ", 2 * size.thinnest,
+                   " m thick; expected a reach of at most ", kLargestAspect,
+                   " times half of the thickness. Make the piece thicker, or the compound smaller.");
+}
+
 }  // namespace
 
 std::optional<Problem> find_shape_problem(const Item& item, const Body& body) {
@@ -190,6 +232,8 @@ std::optional<Problem> find_shape_problem(const Item& item, const Body& body) {
     if (const auto* box = std::get_if<Box>(&body.shape)) return find_box_problem(item, *box);
     if (const auto* capsule = std::get_if<Capsule>(&body.shape)) return find_capsule_problem(item, *capsule);
     if (const auto* polygon = std::get_if<Polygon>(&body.shape)) return find_polygon_problem(item, *polygon);
+    if (const auto* compound = std::get_if<Compound>(&body.shape))
+        return find_compound_problem(item, body, *compound);
     return check(item, "/shape/disc/radius", radius_of(body.shape), kRadius);
 }
 

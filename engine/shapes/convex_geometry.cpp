@@ -51,6 +51,10 @@ Vec2 normal_of_edge(const Outline& outline, int i) {
 static_assert(kLargestPolygonVertices == kMostVertices);
 
 bool is_convex(const Shape& shape) {
+    return has_area(shape) && !std::holds_alternative<Compound>(shape);
+}
+
+bool has_area(const Shape& shape) {
     return !std::holds_alternative<Segment>(shape) && !std::holds_alternative<Chain>(shape);
 }
 
@@ -73,9 +77,10 @@ Polygon recentred(const Polygon& polygon) {
     return {{outline.vertices.begin(), outline.vertices.begin() + outline.count}, outline.radius};
 }
 
+namespace {
+
 template <class Real>
-ConvexShape<Real> convex_shape_of(const Shape& shape) {
-    const Outline outline = centred_outline_of(shape);
+ConvexShape<Real> convex_shape_of(const Outline& outline) {
     ConvexShape<Real> convex{};
     double extent = 0, inradius = outline.count > 2 ? std::numeric_limits<double>::infinity() : 0;
     for (int i = 0; i < kMostVertices; ++i) {
@@ -93,6 +98,24 @@ ConvexShape<Real> convex_shape_of(const Shape& shape) {
     return convex;
 }
 
+}  // namespace
+
+template <class Real>
+ConvexShape<Real> convex_shape_of(const Shape& shape) {
+    return convex_shape_of<Real>(centred_outline_of(shape));
+}
+
+template <class Real>
+ConvexShape<Real> convex_shape_of(const Shape& shape, Vec2 centre, double angle) {
+    Outline outline = centred_outline_of(shape);
+    const Real inradius = convex_shape_of<Real>(outline).inradius;
+    const Rotation turn = rotation_by(angle);
+    for (Vec2& vertex : outline.vertices) vertex = centre + rotate(turn, vertex);
+    ConvexShape<Real> convex = convex_shape_of<Real>(outline);
+    convex.inradius = inradius;
+    return convex;
+}
+
 template <class Real>
 double reach_along(const ConvexShape<Real>& shape, Rotation turn, Vec2 direction) {
     const Vec2 own = rotate_back(turn, direction);
@@ -103,6 +126,8 @@ double reach_along(const ConvexShape<Real>& shape, Rotation turn, Vec2 direction
 
 template ConvexShape<float> convex_shape_of(const Shape&);
 template ConvexShape<double> convex_shape_of(const Shape&);
+template ConvexShape<float> convex_shape_of(const Shape&, Vec2, double);
+template ConvexShape<double> convex_shape_of(const Shape&, Vec2, double);
 template double reach_along(const ConvexShape<float>&, Rotation, Vec2);
 template double reach_along(const ConvexShape<double>&, Rotation, Vec2);
 

@@ -9,8 +9,10 @@
 
 namespace carom {
 
-/// Discs, boxes, capsules and polygons; not segments and chains.
+/// Discs, boxes, capsules and polygons; not segments, chains and compounds.
 bool is_convex(const Shape& shape);
+/// All but segments and chains.
+bool has_area(const Shape& shape);
 
 /// The polygon that a convex shape is, grown by a radius, in the frame in which it is given:
 /// counter-clockwise; a disc has one vertex, a capsule two. Without vertices for segments and chains.
@@ -28,6 +30,12 @@ Outline outline_of(const Shape& shape);
 template <class Real>
 ConvexShape<Real> convex_shape_of(const Shape& shape);
 
+/// A convex shape somewhere in the frame of a body: its extent is measured from the body's centre, its
+/// inradius is its own.
+/// @param shape  convex; its centroid comes to lie at `centre` [m], turned by `angle` [rad]
+template <class Real>
+ConvexShape<Real> convex_shape_of(const Shape& shape, Vec2 centre, double angle);
+
 /// How far a convex shape reaches from its centre in a direction [m].
 /// @param direction  of length 1
 template <class Real>
@@ -35,6 +43,8 @@ double reach_along(const ConvexShape<Real>& shape, Rotation turn, Vec2 direction
 
 extern template ConvexShape<float> convex_shape_of(const Shape&);
 extern template ConvexShape<double> convex_shape_of(const Shape&);
+extern template ConvexShape<float> convex_shape_of(const Shape&, Vec2, double);
+extern template ConvexShape<double> convex_shape_of(const Shape&, Vec2, double);
 extern template double reach_along(const ConvexShape<float>&, Rotation, Vec2);
 extern template double reach_along(const ConvexShape<double>&, Rotation, Vec2);
 

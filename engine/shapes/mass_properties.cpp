@@ -4,6 +4,7 @@
 
 #include "math/angle.hpp"
 #include "math/vec2_math.hpp"
+#include "shapes/compound.hpp"
 #include "shapes/convex_geometry.hpp"
 
 namespace carom {
@@ -74,6 +75,10 @@ MassProperties mass_properties_of(const Shape& shape) {
     if (const auto* disc = std::get_if<Disc>(&shape)) {
         const double squared = disc->radius * disc->radius, area = kPi * squared;
         return {area, {}, 0.5 * area * squared};
+    }
+    if (const auto* compound = std::get_if<Compound>(&shape)) {
+        const CompoundMass of = compound_mass_of(*compound, Material{});
+        return {of.area, of.centre, of.mass > 0 ? of.inertia / of.mass * of.area : 0};
     }
     const Outline outline = outline_of(shape);
     return outline.count > 1 ? properties_of(outline) : MassProperties{};

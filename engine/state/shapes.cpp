@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <limits>
+#include <utility>
 
+#include "shapes/compound.hpp"
 #include "shapes/convex_geometry.hpp"
 
 namespace carom {
@@ -41,12 +44,24 @@ template <class Real>
 std::size_t ShapeStore<Real>::hash_of(const Record& record) {
     std::uint64_t sum = mix(static_cast<std::uint64_t>(record.kind), record.radius);
     for (const Vec2 point : record.points) sum = mix(mix(sum, point.x), point.y);
+    sum = record.is_piece == 0 ? sum : mix(sum, static_cast<double>(record.is_piece));
     return static_cast<std::size_t>(sum);
 }
 
 template <class Real>
 Shape ShapeStore<Real>::shape(std::int32_t number) const {
     const Record& record = records_[static_cast<std::size_t>(number)];
+    if (const std::span<const StoredPiece> all = pieces(number); !all.empty()) {
+        Compound compound;
+        for (const StoredPiece& piece : all)
+            std::visit(
+                [&](const auto& kind) {
+                    if constexpr (requires { Piece{kind, {}, 0, {}}; })
+                        compound.pieces.push_back({kind, {piece.x, piece.y}, piece.angle, piece.material});
+                },
+                shape(piece.number));
+        return compound;
+    }
     const auto is = [&](const Shape& kind) { return record.kind == static_cast<std::int32_t>(kind.index()); };
     if (is(Box{})) return Box{record.points[0].x, record.points[0].y};
     if (is(Capsule{})) return Capsule{record.points[0].x, record.radius};
@@ -73,7 +88,8 @@ void ShapeStore<Real>::make_index() {
 }
 
 template <class Real>
-std::int32_t ShapeStore<Real>::add(const Shape& shape) {
+std::int32_t ShapeStore<Real>::add(const Shape& shape, const Material& standard) {
+    if (const auto* compound = std::get_if<Compound>(&shape)) return add_compound(*compound, standard);
     assert(is_convex(shape));
     const Record record = record_of(shape);
     if (!index_.empty())
@@ -81,6 +97,12 @@ std::int32_t ShapeStore<Real>::add(const Shape& shape) {
             ++bodies_[static_cast<std::size_t>(known)];
             return known;
         }
+    return make_number(record, convex_shape_of<Real>(shape));
+}
+
+/// A number for a record that has none.
+template <class Real>
+std::int32_t ShapeStore<Real>::make_number(const Record& record, const ConvexShape<Real>& shape) {
     if (free_.empty()) {
         free_.push_back(static_cast<std::int32_t>(records_.size()));
         shapes_.resize(records_.size() + 1), records_.emplace_back(), bodies_.push_back(0);
@@ -89,15 +111,81 @@ std::int32_t ShapeStore<Real>::add(const Shape& shape) {
     const std::int32_t number = free_.back();
     free_.pop_back();
     const auto i = static_cast<std::size_t>(number);
-    shapes_[i] = convex_shape_of<Real>(shape);
+    shapes_[i] = shape;
     records_[i] = record, bodies_[i] = 1;
     index_[slot_of(record)] = number;
     return number;
 }
 
 template <class Real>
+bool ShapeStore<Real>::is_same(std::int32_t number, const Compound& compound) const {
+    const std::span<const StoredPiece> all = pieces(number);
+    if (all.size() != compound.pieces.size()) return false;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const Piece& piece = compound.pieces[i];
+        Record record = record_of(carom::shape_of(piece));
+        record.is_piece = all[i].number + 1;
+        if (!(records_[static_cast<std::size_t>(all[i].number)] == record) ||
+            piece.position != Vec2{all[i].x, all[i].y} || piece.angle != all[i].angle ||
+            !(*piece.material == all[i].material))
+            return false;
+    }
+    return true;
+}
+
+/// A compound is known by a hash of its pieces, and by how many others of that hash there are.
+template <class Real>
+std::int32_t ShapeStore<Real>::add_compound(const Compound& given, const Material& standard) {
+    Compound compound = recentred(given, standard);
+    Record record;
+    record.kind = static_cast<std::int32_t>(Shape(Compound{}).index());
+    record.count = static_cast<std::int32_t>(compound.pieces.size());
+    std::uint64_t sum = compound.pieces.size();
+    ConvexShape<Real> around = convex_shape_of<Real>(Disc{1});
+    around.extent = 0, around.inradius = std::numeric_limits<Real>::infinity();
+    std::vector<ConvexShape<Real>> shapes;
+    for (Piece& piece : compound.pieces) {
+        piece.material = material_of(piece, standard);
+        const Material& m = *piece.material;
+        sum = mix(sum, static_cast<double>(hash_of(record_of(carom::shape_of(piece)))));
+        for (const double value : {piece.position.x, piece.position.y, piece.angle, m.density, m.friction,
+                                   m.restitution, m.rolling_resistance})
+            sum = mix(sum, value);
+        shapes.push_back(convex_shape_of<Real>(carom::shape_of(piece), piece.position, piece.angle));
+        around.extent = std::max(around.extent, shapes.back().extent);
+        around.inradius = std::min(around.inradius, shapes.back().inradius);
+    }
+    around.radius = around.extent;
+    record.points[0] = {static_cast<double>(sum >> 32), static_cast<double>(sum & UINT32_MAX)};
+    for (; !index_.empty(); ++record.radius) {
+        const std::int32_t known = index_[slot_of(record)];
+        if (known < 0) break;
+        if (!is_same(known, compound)) continue;
+        ++bodies_[static_cast<std::size_t>(known)];
+        return known;
+    }
+    const std::int32_t number = make_number(record, around);
+    std::vector<StoredPiece> stored;
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        const Piece& piece = compound.pieces[i];
+        Record own = record_of(carom::shape_of(piece));
+        // Each has a record of its own, by the number it is about to get.
+        own.is_piece = 1 + (free_.empty() ? static_cast<std::int32_t>(records_.size()) : free_.back());
+        stored.push_back(
+            {make_number(own, shapes[i]), piece.position.x, piece.position.y, piece.angle, *piece.material});
+    }
+    compounds_.resize(std::max(compounds_.size(), static_cast<std::size_t>(number) + 1));
+    compounds_[static_cast<std::size_t>(number)] = std::move(stored);
+    return number;
+}
+
+template <class Real>
 void ShapeStore<Real>::remove(std::int32_t number) {
     if (--bodies_[static_cast<std::size_t>(number)] > 0) return;
+    if (is_compound(number)) {
+        for (const StoredPiece& piece : pieces(number)) remove(piece.number);
+        compounds_[static_cast<std::size_t>(number)].clear();
+    }
     leave_index(number);
     free_.push_back(number);
 }

@@ -72,7 +72,7 @@ void WorldState<Real>::turn_shapes_on() {
 template <class Real>
 void WorldState<Real>::set_shape(std::size_t row, const Body& body, BodyId id) {
     const std::size_t rows = bodies.rows();
-    if (!is_convex(body.shape)) {
+    if (!has_area(body.shape)) {
         edges.append(id, body.shape);
         bodies.radius.set_any(row, rows, Real(1));
         if (!bodies.has_shapes) return;
@@ -84,16 +84,16 @@ void WorldState<Real>::set_shape(std::size_t row, const Body& body, BodyId id) {
         bodies.radius.set(row, rows, static_cast<Real>(radius_of(body.shape)));
         return;
     }
-    const std::int32_t number = shapes.add(body.shape);
+    const std::int32_t number = shapes.add(body.shape, body.material);
     bodies.shape[row] = number;
     bodies.radius.set(row, rows, shapes[number].extent);
-    bodies.rims.set(row, rows, static_cast<Real>(rim_of(body.shape)));
+    bodies.rims.set(row, rows, static_cast<Real>(rim_of(body)));
     bodies.inradii.set(row, rows, shapes[number].inradius);
 }
 
 template <class Real>
 BodyId WorldState<Real>::append(const Body& body) {
-    if (is_convex(body.shape) && !is_disc(body.shape) && !bodies.has_shapes) turn_shapes_on();
+    if (has_area(body.shape) && !is_disc(body.shape) && !bodies.has_shapes) turn_shapes_on();
     const std::size_t row = bodies.count, rows = bodies.rows() + 1;
     bodies.resize(rows);
     if (bodies.asleep > 0) {  // the first that sleeps makes room
@@ -106,9 +106,9 @@ BodyId WorldState<Real>::append(const Body& body) {
     const BodyId id = handles.add(static_cast<std::uint32_t>(row));
     const auto real = [](double value) { return static_cast<Real>(value); };
     const double mass = mass_of(body);
-    const int kind = (is_disc(body.shape)     ? 0
-                      : is_convex(body.shape) ? kNotDisc
-                                              : kEdges) |
+    const int kind = (is_disc(body.shape)    ? 0
+                      : has_area(body.shape) ? kNotDisc
+                                             : kEdges) |
                      (body.sensor ? kSensor : 0);
     if (body.sensor) sensing.sensors.push_back(id);
     bodies.position_x[row] = real(body.position.x), bodies.position_y[row] = real(body.position.y);

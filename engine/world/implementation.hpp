@@ -99,9 +99,9 @@ struct BasicWorld<Real>::Implementation : WorldSettings {
     /// Turns on what a body to be added calls for and no other body has.
     void call_effects_of(const Body& body, Solver solver) {
         Effects& on = world().effects;
-        const bool bounces = body.material.restitution > 0 && !on.restitution;
-        const bool resists = body.material.rolling_resistance > 0 && !on.rolling_resistance;
-        const bool rubs = (body.material.friction > 0 || resists) && !on.friction;
+        const bool bounces = has_restitution(body) && !on.restitution;
+        const bool resists = has_rolling_resistance(body) && !on.rolling_resistance;
+        const bool rubs = (has_friction(body) || resists) && !on.friction;
         if (!bounces && !resists && !rubs) return;
         Scene alone;  // what is forced off cannot be called for
         alone.accuracy.solver = solver;

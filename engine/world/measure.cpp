@@ -44,7 +44,7 @@ Rotation turn_of(const Bodies<Real>& bodies, std::size_t row) {
 template <class Real>
 double reach_along(const WorldState<Real>& world, std::size_t row, Rotation turn, Vec2 direction) {
     if (world.bodies.is_disc(row)) return world.bodies.radius[row];
-    return reach_along(world.shapes[world.bodies.shape[row]], turn, direction);
+    return world.shapes.reach_along(world.bodies.shape[row], turn, direction);
 }
 
 template <class Real>

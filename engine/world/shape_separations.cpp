@@ -12,13 +12,32 @@ namespace carom {
 
 template <class Real>
 ShapeSeparations<Real>::ShapeSeparations(const WorldState<Real>& world)
-    : rows_(world.bodies.rows()), shape_(world.bodies.shape) {
+    : store_(&world.shapes), rows_(world.bodies.rows()), shape_(world.bodies.shape) {
     shapes_.resize(world.shapes.size());
     std::copy_n(world.shapes.data(), world.shapes.size(), shapes_.data());
     for (std::size_t row = 0; row < rows_; ++row) {
         const double angle = world.bodies.has_rotation ? static_cast<double>(world.bodies.angle[row]) : 0;
         add_pose({world.bodies.position_x[row], world.bodies.position_y[row]}, rotation_by(angle));
     }
+    if (world.shapes.has_compounds())
+        for (std::size_t row = 0; row < rows_; ++row) {
+            first_piece_.push_back(static_cast<std::int32_t>(shape_.size()));
+            if (world.bodies.shape[row] < 0) continue;
+            for (const StoredPiece& piece : world.shapes.pieces(world.bodies.shape[row])) {
+                shape_.push_back(piece.number);
+                for (std::size_t k = 0; k < 4; ++k) pose_.push_back(pose_[4 * row + k]);
+            }
+        }
+    first_edge_ = shape_.size();
+}
+
+template <class Real>
+template <class Fn>
+void ShapeSeparations<Real>::for_each_piece(std::int32_t row, const Fn& fn) const {
+    const auto i = static_cast<std::size_t>(row);
+    const std::size_t pieces = store_->pieces(shape_[i]).size();
+    if (pieces == 0) fn(row);
+    for (std::size_t n = 0; n < pieces; ++n) fn(first_piece_[i] + static_cast<std::int32_t>(n));
 }
 
 template <class Real>
@@ -29,7 +48,9 @@ void ShapeSeparations<Real>::add_pose(Vec2 place, Rotation turn) {
 
 template <class Real>
 void ShapeSeparations<Real>::add(std::int32_t a, std::int32_t b) {
-    a_.push_back(a), b_.push_back(b);
+    for_each_piece(a, [&](std::int32_t item_a) {
+        for_each_piece(b, [&](std::int32_t item_b) { a_.push_back(item_a), b_.push_back(item_b); });
+    });
 }
 
 /// The edge is a capsule without a radius whose body is the edge alone.
@@ -40,7 +61,8 @@ void ShapeSeparations<Real>::add(std::int32_t row, const Edge& edge, const EdgeP
     const Vec2 direction = rotate(pose.turn, (1 / length) * along);
     ConvexShape<Real> shape = convex_shape_of<Real>(Capsule{length, 0});
     shape.inradius = static_cast<Real>(kNoPoint);  // the body's is the smaller one
-    add(row, static_cast<std::int32_t>(shape_.size()));
+    const auto number = static_cast<std::int32_t>(shape_.size());
+    for_each_piece(row, [&](std::int32_t item) { a_.push_back(item), b_.push_back(number); });
     shape_.push_back(static_cast<std::int32_t>(shapes_.size())), shapes_.push_back(shape);
     add_pose(pose.position + rotate(pose.turn, 0.5 * (edge.a + edge.b)), {direction.x, direction.y});
 }

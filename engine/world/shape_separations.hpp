@@ -4,6 +4,8 @@
 #include "isa/kernel_table.hpp"
 #include "state/world_state.hpp"
 
+#include <vector>
+
 namespace carom {
 
 /// How far convex shapes are from each other and from edges now, pair by pair, where they touch.
@@ -25,19 +27,25 @@ class ShapeSeparations {
         for (std::size_t pair = 0; pair < a_.size(); ++pair) {
             const double separation = std::fmin(separation1_[pair], separation2_[pair]);
             if (!(separation < 0)) continue;
-            const bool is_edge = static_cast<std::size_t>(b_[pair]) >= rows_;
+            const bool is_edge = static_cast<std::size_t>(b_[pair]) >= first_edge_;
             touch(separation, std::fmin(inradius_of(a_[pair]), inradius_of(b_[pair])), is_edge);
         }
     }
 
   private:
+    /// Calls fn(item) for the pieces of a row, or for itself.
+    template <class Fn>
+    void for_each_piece(std::int32_t row, const Fn& fn) const;
     void find(const KernelTable<Real>& kernels);
     void add_pose(Vec2 place, Rotation turn);
     double inradius_of(std::int32_t row) const {
         return shapes_[static_cast<std::size_t>(shape_[static_cast<std::size_t>(row)])].inradius;
     }
 
-    std::size_t rows_;  // of bodies; rows behind them are edges
+    const ShapeStore<Real>* store_;
+    std::size_t rows_;                       // of bodies
+    std::size_t first_edge_;                 // behind them pieces of compounds, then edges
+    std::vector<std::int32_t> first_piece_;  // by row; empty without compounds
     Column<std::int32_t> a_, b_, shape_;
     Column<Real> pose_;
     Column<ConvexShape<Real>> shapes_;

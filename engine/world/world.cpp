@@ -7,6 +7,7 @@
 #include "scene/mass.hpp"
 #include "scene/validation.hpp"
 #include "scene/wording.hpp"
+#include "shapes/compound.hpp"
 #include "shapes/convex_geometry.hpp"
 #include "state/state_hash.hpp"
 #include "step/make_simulation.hpp"
@@ -191,7 +192,9 @@ BodyId BasicWorld<Real>::add(const Body& body) {
     implementation_->change_solver(choice.solver, choice.reason);
     if (body.angular_velocity != 0 || body.angle != 0 || is_turned_by_contacts(body))
         implementation_->turn_rotation_on();
-    if (is_convex(body.shape))
+    if (const auto* compound = std::get_if<Compound>(&body.shape))
+        implementation_->sim().wake_at(body.position, compound_size_of(*compound, body.material).extent);
+    else if (is_convex(body.shape))
         implementation_->sim().wake_at(body.position, convex_shape_of<double>(body.shape).extent);
     else
         implementation_->sim().wake_all();

@@ -93,13 +93,24 @@ nlohmann::ordered_json edges_json(const std::vector<Body>& bodies) {
     return edges;
 }
 
-/// The outlines of boxes, capsules and polygons: vertices [m] and rounding radius [m].
+nlohmann::ordered_json outline_json(const ShapeOutline& outline) {
+    nlohmann::ordered_json vertices = nlohmann::ordered_json::array();
+    for (const Vec2 vertex : outline.vertices) vertices.push_back({vertex.x, vertex.y});
+    return {{"vertices", std::move(vertices)}, {"radius", outline.radius}};
+}
+
+/// The outlines of boxes, capsules and polygons: vertices [m] and rounding radius [m]; of compounds those of
+/// their pieces.
 nlohmann::ordered_json shapes_json(const std::vector<ShapeOutline>& outlines) {
     nlohmann::ordered_json shapes = nlohmann::ordered_json::array();
     for (const ShapeOutline& outline : outlines) {
-        nlohmann::ordered_json vertices = nlohmann::ordered_json::array();
-        for (const Vec2 vertex : outline.vertices) vertices.push_back({vertex.x, vertex.y});
-        shapes.push_back({{"vertices", std::move(vertices)}, {"radius", outline.radius}});
+        if (outline.pieces.empty()) {
+            shapes.push_back(outline_json(outline));
+            continue;
+        }
+        nlohmann::ordered_json pieces = nlohmann::ordered_json::array();
+        for (const ShapeOutline& piece : outline.pieces) pieces.push_back(outline_json(piece));
+        shapes.push_back({{"pieces", std::move(pieces)}});
     }
     return shapes;
 }

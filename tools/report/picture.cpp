@@ -218,9 +218,15 @@ void Picture::draw_bodies(std::size_t frame) {
 void Picture::trace_shape(std::size_t body, double px, double py, double angle) {
     const DrawnShape& shape = shape_of(body);
     const double cos = std::cos(angle) * scale_, sin = std::sin(angle) * scale_;
-    for (std::size_t i = 0; i < shape.x.size(); ++i)
+    auto start = shape.starts.begin();
+    for (std::size_t i = 0; i < shape.x.size(); ++i) {
+        if (start != shape.starts.end() && i == *start) {
+            if (i > 0) cairo_close_path(surface_->pen);
+            cairo_new_sub_path(surface_->pen), ++start;
+        }
         cairo_line_to(surface_->pen, px + cos * shape.x[i] - sin * shape.y[i],
                       py - sin * shape.x[i] - cos * shape.y[i]);
+    }
     cairo_close_path(surface_->pen);
 }
 

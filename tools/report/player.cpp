@@ -161,7 +161,7 @@ Json shapes(const H5Reader& trajectory, const Json& settings, const FrameChoice&
     if (of_bodies.empty()) return nullptr;
     Json outlines = Json::array();
     for (const DrawnShape& shape : drawn_shapes(settings))
-        outlines.push_back({{"x", shape.x}, {"y", shape.y}, {"mark", shape.mark}});
+        outlines.push_back({{"x", shape.x}, {"y", shape.y}, {"starts", shape.starts}, {"mark", shape.mark}});
     std::vector<std::uint32_t> index;
     for (const double number : chosen(of_bodies, choice.bodies))
         index.push_back(static_cast<std::uint32_t>(number + 1));

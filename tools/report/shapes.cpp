@@ -28,11 +28,13 @@ void add_corner(DrawnShape& shape, double x, double y, double radius, double fro
     }
 }
 
-/// From the centre to the nearest side.
+/// From the centre to the nearest side of the polygon that was added last; below zero where the centre is
+/// outside.
 double inradius_of(const DrawnShape& shape) {
     double least = INFINITY;
-    for (std::size_t i = 0; i < shape.x.size(); ++i) {
-        const std::size_t next = (i + 1) % shape.x.size();
+    const std::size_t first = shape.starts.back(), count = shape.x.size() - first;
+    for (std::size_t i = first; i < shape.x.size(); ++i) {
+        const std::size_t next = first + (i - first + 1) % count;
         const double along_x = shape.x[next] - shape.x[i], along_y = shape.y[next] - shape.y[i];
         const double length = std::hypot(along_x, along_y);
         if (length > 0) least = std::min(least, (shape.x[i] * along_y - shape.y[i] * along_x) / length);
@@ -40,18 +42,31 @@ double inradius_of(const DrawnShape& shape) {
     return least;
 }
 
-DrawnShape drawn(const Json& outline) {
+void add_polygon(const Json& outline, DrawnShape& shape) {
     const std::vector<std::vector<double>> vertices = outline["vertices"];
     const std::size_t count = vertices.size();
+    shape.starts.push_back(shape.x.size());
+    if (count == 1) return add_corner(shape, vertices[0][0], vertices[0][1], outline["radius"], 0, 0);
     const auto normal = [&](std::size_t from) {  // outward, of the side that begins at a vertex
         const auto &a = vertices[from % count], &b = vertices[(from + 1) % count];
         return direction_of(b[1] - a[1], a[0] - b[0]);
     };
-    DrawnShape shape;
     for (std::size_t i = 0; i < count; ++i)
         add_corner(shape, vertices[i][0], vertices[i][1], outline["radius"], normal(i + count - 1),
                    normal(i));
-    shape.mark = kMark * inradius_of(shape);
+}
+
+DrawnShape drawn(const Json& outline) {
+    DrawnShape shape;
+    const auto add = [&](const Json& polygon) {
+        add_polygon(polygon, shape);
+        shape.mark = std::max(shape.mark, kMark * inradius_of(shape));
+    };
+    if (!outline.contains("pieces")) {
+        add(outline);
+    } else {
+        for (const Json& piece : outline["pieces"]) add(piece);
+    }
     return shape;
 }
 

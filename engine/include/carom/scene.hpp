@@ -50,6 +50,16 @@ struct Body {
     bool sensor = false;
 };
 
+/// How a body resists being moved and turned; all zero for segments and chains. `mass` and inertia are those
+/// that a dynamic body has.
+struct BodyMass {
+    double mass = 0;     ///< kg
+    Vec2 centre{};       ///< m, centre of mass in the frame in which the shape is given
+    double inertia = 0;  ///< kg m², about the centre of mass
+};
+/// Exact. @param body  within its limits (`Scene::validate`)
+BodyMass body_mass_of(const Body& body);
+
 /// A closed axis-aligned box around the bodies; each side can be left open.
 struct Walls {
     Vec2 min{};  ///< m, lower left corner

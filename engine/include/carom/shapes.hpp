@@ -1,8 +1,10 @@
 #pragma once
 
+#include <carom/materials.hpp>
 #include <carom/vec2.hpp>
 
 #include <cstddef>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -49,8 +51,25 @@ struct Polygon {
     double radius = 0;             ///< m, >= 0
 };
 
+/// A convex shape of a compound, placed in the compound's frame.
+struct Piece {
+    std::variant<Disc, Box, Capsule, Polygon> shape{};  ///< a polygon's vertices stay where they are given
+    Vec2 position{};                                    ///< m, of the origin of the shape's own frame
+    double angle = 0;                                   ///< rad, counter-clockwise
+    std::optional<Material> material{};                 ///< left out: the body's
+};
+
+/// Several convex shapes that are one body, concave as a whole: an L, a cross, a wheel with teeth.
+///
+/// Pieces may be given anywhere: like a polygon, a compound is recentred, so that its centre of mass is the
+/// body's position. Pieces may overlap; mass and moment of inertia are the sums over pieces, so that what
+/// overlaps counts twice.
+struct Compound {
+    std::vector<Piece> pieces{};  ///< 1 ... kLargestPieceCount
+};
+
 /// The geometry of a body. Boxes, capsules and polygons are the convex shapes beside the disc.
-using Shape = std::variant<Disc, Segment, Chain, Box, Capsule, Polygon>;
+using Shape = std::variant<Disc, Segment, Chain, Box, Capsule, Polygon, Compound>;
 
 /// What mass and motion need of a shape of uniform density.
 struct MassProperties {
@@ -60,7 +79,9 @@ struct MassProperties {
                                ///< body's moment of inertia is its mass times it over the area
 };
 
-/// Exact, rounding included: nothing is sampled. All are zero for segments and chains, which have no area.
+/// Exact, rounding included: nothing is sampled. Of a compound the sums over its pieces, where a piece
+/// without a material counts as one of the standard density. All are zero for segments and chains, which have
+/// no area.
 /// @param shape  within its limits (`Scene::validate`)
 /// Source: Steiner's decomposition of a parallel body: the polygon, a rectangle on each of its edges and a
 /// sector of a disc at each of its vertices.
@@ -69,6 +90,14 @@ MassProperties mass_properties_of(const Shape& shape);
 /// The polygon as a body has it: counter-clockwise, its centroid at (0, 0).
 /// @param polygon  within its limits (`Scene::validate`)
 Polygon recentred(const Polygon& polygon);
+
+/// The compound as a body has it: its centre of mass at (0, 0), polygons around their own centroids.
+/// @param standard  material of the pieces that have none
+/// @param compound  within its limits (`Scene::validate`)
+Compound recentred(const Compound& compound, const Material& standard = {});
+
+/// Pieces are looked at one by one wherever a compound is near something.
+inline constexpr std::size_t kLargestPieceCount = 256;
 
 /// Points are looked at one by one whenever bodies have moved far.
 inline constexpr std::size_t kLargestChainPoints = 65536;

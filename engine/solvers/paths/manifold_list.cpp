@@ -15,7 +15,7 @@ void ManifoldList<Real>::for_each_found_column(Self& self, const Fn& fn) {
 
 template <class Real>
 void ManifoldList<Real>::clear() {
-    a.clear(), b.clear();
+    a.clear(), b.clear(), item_a.clear(), item_b.clear();
     names.clear(), memory.clear();
 }
 
@@ -30,6 +30,8 @@ void ManifoldList<Real>::fit() {
     for_each_found_column(*this, [&](Column<Real>& column) { column.resize(count()); });
     if (names.empty()) return;
     for (Column<std::int32_t>* rows : {&a, &b}) std::fill(rows->end(), rows->data() + padded(count()), a[0]);
+    for (Column<std::int32_t>* items : {&item_a, &item_b})
+        if (!items->empty()) std::fill(items->end(), items->data() + padded(count()), item_a[0]);
 }
 
 template <class Real>
@@ -50,8 +52,9 @@ void ManifoldList<Real>::set_manifold(std::size_t i, const Manifold<double>& fou
 
 template <class Real>
 std::size_t ManifoldList<Real>::bytes() const {
-    std::size_t bytes = a.bytes() + b.bytes() + margin.bytes() + thickness.bytes() + friction.bytes() +
-                        restitution.bytes() + names.capacity() * sizeof(ManifoldName) +
+    std::size_t bytes = a.bytes() + b.bytes() + item_a.bytes() + item_b.bytes() + margin.bytes() +
+                        thickness.bytes() + friction.bytes() + restitution.bytes() +
+                        names.capacity() * sizeof(ManifoldName) +
                         memory.capacity() * sizeof(ManifoldMemory<Real>);
     for_each_found_column(*this, [&](const Column<Real>& column) { bytes += column.bytes(); });
     return bytes;

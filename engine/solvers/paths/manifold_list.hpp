@@ -31,7 +31,17 @@ struct ManifoldMemory {
 /// Names a contact whatever row its bodies have.
 struct ManifoldName {
     BodyId a, b;             // b: a body; of a wall an id that no body has, of an edge its body
-    std::int32_t place = 0;  // of a wall its side, of an edge its number in the body; else 0
+    std::int32_t place = 0;  // of a wall its side; else 0; of compounds the pieces besides
+
+    static constexpr std::int32_t kPlaces = 4096;  // more than pieces of a compound, and sides
+    static std::int32_t place_of_pieces(std::int32_t piece_a, std::int32_t piece_b) {
+        return kPlaces * piece_a + piece_b;
+    }
+    static std::int32_t place_of_side(std::int32_t side, std::int32_t piece) {
+        return side - kPlaces * piece;
+    }
+    /// The same contact of two bodies, seen from the other one.
+    ManifoldName reversed() const { return {b, a, place_of_pieces(place % kPlaces, place / kPlaces)}; }
     friend bool operator==(const ManifoldName&, const ManifoldName&) = default;
 };
 
@@ -45,7 +55,9 @@ struct KeptManifold {
 /// Contacts of convex shapes that can come about before the candidate pairs change, as columns.
 template <class Real>
 struct ManifoldList {
-    Column<std::int32_t> a, b;        ///< row of a body that moves; Partner
+    Column<std::int32_t> a, b;  ///< row of a body that moves; Partner
+    /// Items, of Manifolds: the bodies, or pieces of theirs. Only with compounds, else the rows.
+    Column<std::int32_t> item_a, item_b;
     Column<Real> margin;              ///< m
     Column<Real> thickness;           ///< m, the smaller inradius of the two
     Column<Real> friction;            ///< Coulomb coefficient
@@ -72,7 +84,7 @@ struct ManifoldList {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.a, self.b, self.names, self.memory);
+        archive(self.a, self.b, self.item_a, self.item_b, self.names, self.memory);
         if constexpr (!std::is_const_v<Self>) self.fit();
     }
 

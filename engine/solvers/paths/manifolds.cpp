@@ -33,7 +33,14 @@ void Manifolds<Real>::add_pair(const WorldState<Real>& world, std::int32_t a, st
     const bool a_moves = !bodies.is_immovable(i), b_moves = k < bodies.count && !bodies.is_immovable(k);
     if (!a_moves && !b_moves) return;
     if (!a_moves) std::swap(a, b);
-    bodies_.add(a, b, {bodies.id[static_cast<std::size_t>(a)], bodies.id[static_cast<std::size_t>(b)], 0});
+    const BodyId id_a = bodies.id[static_cast<std::size_t>(a)], id_b = bodies.id[static_cast<std::size_t>(b)];
+    if (items_.empty()) return bodies_.add(a, b, {id_a, id_b, 0});
+    items_.for_each(a, [&](std::int32_t item_a, std::int32_t piece_a) {
+        items_.for_each(b, [&](std::int32_t item_b, std::int32_t piece_b) {
+            bodies_.add(a, b, {id_a, id_b, ManifoldName::place_of_pieces(piece_a, piece_b)});
+            bodies_.item_a.push_back(item_a), bodies_.item_b.push_back(item_b);
+        });
+    });
 }
 
 template <class Real>
@@ -50,6 +57,7 @@ void Manifolds<Real>::renew(const WorldState<Real>& world, const Candidates<Real
             list.add(0, 0, kept.name), list.memory.back() = kept.memory;
         }
     list_boxes(world.shapes);
+    items_.list(world);
     // Boxes first: blocks of them alone have a quicker kernel.
     for (const bool boxes : {true, false}) {
         for (std::size_t p = 0; p < candidates.pair_count(); ++p)
@@ -95,7 +103,8 @@ template <class Real>
 void Manifolds<Real>::list_boxes(const ShapeStore<Real>& shapes) {
     is_box_of_.resize(shapes.size());
     for (std::size_t shape = 0; shape < shapes.size(); ++shape)
-        is_box_of_[shape] = is_box(shapes[static_cast<std::int32_t>(shape)]);
+        is_box_of_[shape] = is_box(shapes[static_cast<std::int32_t>(shape)]) &&
+                            !shapes.is_piece(static_cast<std::int32_t>(shape));
 }
 
 template <class Real>
@@ -159,7 +168,7 @@ void Manifolds<Real>::recall(ManifoldList<Real>& list, const ManifoldList<Real>&
         const ManifoldName& name = list.names[i];
         if (const auto* memory = find(name))
             list.memory[i] = *memory;
-        else if (const auto* other = find({name.b, name.a, name.place}))
+        else if (const auto* other = find(name.reversed()))
             list.memory[i] = other->reversed();
     }
 }
@@ -212,6 +221,7 @@ void Manifolds<Real>::pose_bodies(const WorldState<Real>& world) {
         pose[2] = static_cast<Real>(turn.cos), pose[3] = static_cast<Real>(turn.sin);
         pose_angle_[row] = angle;
     }
+    items_.add_poses(pose_);
 }
 
 template <class Real>
@@ -260,15 +270,50 @@ void Manifolds<Real>::describe_pairs(const WorldState<Real>& world, double dt, c
         bodies_.friction[i] = friction_varies
                                   ? static_cast<Real>(pair_friction(bodies.friction[a], bodies.friction[b]))
                                   : bodies.friction[a];
+        if (!items_.empty()) describe_pieces(world, near, i);
     }
+}
+
+/// What differs where one of the two is a piece.
+template <class Real>
+void Manifolds<Real>::describe_pieces(const WorldState<Real>& world, const ContactDistance& near,
+                                      std::size_t i) {
+    const Bodies<Real>& bodies = world.bodies;
+    const std::int32_t a = bodies_.a[i], b = bodies_.b[i];
+    const StoredPiece *of_a = items_.piece_of(world, a, bodies_.item_a[i]),
+                      *of_b = items_.piece_of(world, b, bodies_.item_b[i]);
+    if (!of_a && !of_b) return;
+    struct Side {
+        Real thickness;
+        double friction, restitution;
+    };
+    const auto side = [&](std::int32_t number, const StoredPiece* piece) -> Side {
+        const auto row = static_cast<std::size_t>(number);
+        if (!piece) return {bodies.inradius(row), bodies.friction[row], bodies.restitution[row]};
+        return {world.shapes[piece->number].inradius, piece->material.friction, piece->material.restitution};
+    };
+    const Side at_a = side(a, of_a), at_b = side(b, of_b);
+    const auto row_b = static_cast<std::size_t>(b);
+    const bool b_moves = row_b < bodies.count && !bodies.is_immovable(row_b);
+    const Real before = bodies_.thickness[i];
+    bodies_.thickness[i] = b_moves ? std::min(at_a.thickness, at_b.thickness) : at_a.thickness;
+    bodies_.margin[i] += static_cast<Real>(near(static_cast<double>(bodies_.thickness[i])) -
+                                           near(static_cast<double>(before)));
+    bodies_.friction[i] = static_cast<Real>(pair_friction(at_a.friction, at_b.friction));
+    bodies_.restitution[i] = static_cast<Real>(pair_restitution(at_a.restitution, at_b.restitution));
 }
 
 /// @param first  a multiple of kRowPadding
 template <class Real>
 void Manifolds<Real>::find_pairs(const WorldState<Real>& world, const ConvexKernels<Real>& kernels,
                                  std::size_t first, std::size_t last) {
-    const FindManifolds<Real> k{pose_.data(),     world.bodies.shape.data(), world.shapes.data(),
-                                bodies_.a.data(), bodies_.b.data(),          bodies_.margin.data(),
+    const bool all_rows = items_.empty();
+    const FindManifolds<Real> k{pose_.data(),
+                                all_rows ? world.bodies.shape.data() : items_.shapes(),
+                                world.shapes.data(),
+                                all_rows ? bodies_.a.data() : bodies_.item_a.data(),
+                                all_rows ? bodies_.b.data() : bodies_.item_b.data(),
+                                bodies_.margin.data(),
                                 bodies_.columns()};
     for (std::size_t i = first; i < last; i += kRowPadding) {
         const bool are_boxes = blocks_are_boxes_[i / kRowPadding] != 0;
@@ -295,7 +340,11 @@ void Manifolds<Real>::find_meetings(const WorldState<Real>& world, double dt, st
         const double thickness = bodies_.thickness[i];
         if (!(way > kFastThicknesses * thickness) || !(way > static_cast<double>(gap))) continue;
         Manifold<double> met{};
-        if (meeting_manifold(moving_row(world, a), moving_row(world, b), dt, thickness, met))
+        const auto moving = [&](std::size_t row, const Column<std::int32_t>& items) {
+            if (items_.empty()) return moving_row(world, row, bodies.shape[row]);
+            return moving_row(world, row, shape_of(world, static_cast<std::int32_t>(row), items[i]));
+        };
+        if (meeting_manifold(moving(a, bodies_.item_a), moving(b, bodies_.item_b), dt, thickness, met))
             bodies_.set_manifold(i, met);
     }
 }
@@ -330,8 +379,8 @@ template <class Real>
 std::size_t Manifolds<Real>::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
     return bodies_.bytes() + surfaces_.bytes() + old_.bytes() + old_surfaces_.bytes() +
-           surface_finder_.bytes() + of(asleep_) + of(is_recalled_) + of(loaded_) + of(is_box_of_) +
-           of(blocks_are_boxes_) + of(first_of_slot_) + of(next_of_slot_) + pose_.bytes() +
+           surface_finder_.bytes() + items_.bytes() + of(asleep_) + of(is_recalled_) + of(loaded_) +
+           of(is_box_of_) + of(blocks_are_boxes_) + of(first_of_slot_) + of(next_of_slot_) + pose_.bytes() +
            pose_angle_.bytes() + of(live_) + of(was_live_);
 }
 

@@ -9,6 +9,7 @@
 #include "sleeping/sleepers.hpp"
 #include "solvers/paths/contact_distance.hpp"
 #include "solvers/paths/manifold_list.hpp"
+#include "solvers/paths/piece_items.hpp"
 #include "solvers/paths/surface_finder.hpp"
 #include "solvers/substeps/step_terms.hpp"
 #include "state/world_state.hpp"
@@ -57,8 +58,8 @@ class Manifolds {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.bodies_, self.surfaces_, self.surface_finder_, self.asleep_, self.asleep_then_,
-                self.live_, self.blocks_are_boxes_);
+        archive(self.items_, self.bodies_, self.surfaces_, self.surface_finder_, self.asleep_,
+                self.asleep_then_, self.live_, self.blocks_are_boxes_);
     }
 
   private:
@@ -76,11 +77,17 @@ class Manifolds {
     void pose_bodies(const WorldState<Real>& world);
     void describe_pairs(const WorldState<Real>& world, double dt, const ContactDistance& near,
                         std::size_t first, std::size_t last);
+    void describe_pieces(const WorldState<Real>& world, const ContactDistance& near, std::size_t i);
+    std::int32_t shape_of(const WorldState<Real>& world, std::int32_t row, std::int32_t item) const {
+        const StoredPiece* piece = items_.piece_of(world, row, item);
+        return piece ? piece->number : world.bodies.shape[static_cast<std::size_t>(row)];
+    }
     void find_pairs(const WorldState<Real>& world, const ConvexKernels<Real>& kernels, std::size_t first,
                     std::size_t last);
     void find_meetings(const WorldState<Real>& world, double dt, std::size_t first, std::size_t last);
     bool list_live();
 
+    PieceItems<Real> items_;
     ManifoldList<Real> bodies_;    // contacts of two bodies
     ManifoldList<Real> surfaces_;  // of a body and a wall or an edge, of the last step
     ManifoldList<Real> old_, old_surfaces_;

@@ -23,13 +23,14 @@ inline constexpr double kMeetingTarget = 0.02;
 bool meeting_manifold(const MovingConvex& a, const MovingConvex& b, double dt, double thickness,
                       Manifold<double>& manifold);
 
-/// A body as it flies at the start of a step.
+/// A body, or a piece of it, as it flies at the start of a step.
+/// @param shape  its number in the ShapeStore
 template <class Real>
-MovingConvex moving_row(const WorldState<Real>& world, std::size_t row) {
+MovingConvex moving_row(const WorldState<Real>& world, std::size_t row, std::int32_t shape) {
     const Bodies<Real>& bodies = world.bodies;
     const Vec2 at{bodies.position_x[row], bodies.position_y[row]};
     const bool turns = bodies.has_rotation;
-    return {placed(world.shapes[bodies.shape[row]], at, {}).shape,
+    return {placed(world.shapes[shape], at, {}).shape,
             at,
             {bodies.velocity_x[row], bodies.velocity_y[row]},
             turns ? static_cast<double>(bodies.angle[row]) : 0,

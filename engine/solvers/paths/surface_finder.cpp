@@ -22,10 +22,11 @@ double reach_in_step(const Bodies<Real>& bodies, std::size_t row, double dt) {
                  turns * static_cast<double>(bodies.radius[row]));
 }
 
+/// A body, or a piece of it, in the world.
 template <class Real>
-PlacedConvex placed_row(const WorldState<Real>& world, std::size_t row) {
+PlacedConvex placed_row(const WorldState<Real>& world, std::size_t row, const ConvexShape<Real>& shape) {
     const Bodies<Real>& bodies = world.bodies;
-    return placed(world.shapes[bodies.shape[row]], {bodies.position_x[row], bodies.position_y[row]},
+    return placed(shape, {bodies.position_x[row], bodies.position_y[row]},
                   rotation_by(bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0));
 }
 
@@ -42,6 +43,23 @@ MovingConvex still_edge(const Edge& edge) {
     }
     shape.extent = length, shape.count = 2;
     return {shape, centre, {}, 0, 0};
+}
+
+/// A piece around its own centroid, which edges ask for: they have to know on which side of them it is.
+PlacedConvex around_own_centre(const PlacedConvex& placed, Vec2 offset) {
+    PlacedConvex piece = placed;
+    for (int i = 0; i < kMostVertices; ++i) piece.shape.x[i] -= offset.x, piece.shape.y[i] -= offset.y;
+    piece.centre += rotate(piece.turn, offset);
+    return piece;
+}
+
+/// The manifold of a piece with its levers about the centre of mass of its body.
+/// @param lever  m, from there to the centroid of the piece
+Manifold<double> about_body(Manifold<double> m, Vec2 lever) {
+    const Vec2 n{m.normal_x, m.normal_y};
+    const double across = cross(lever, n);
+    m.lever_a1 += across, m.lever_a2 += across, m.lever_a_t += dot(lever, n);
+    return m;
 }
 
 /// A manifold of a frame that is turned, and whose origin is the body b's.
@@ -80,7 +98,7 @@ template <class Real>
 void SurfaceFinder<Real>::find(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
                                const SubstepTerms& terms, const ContactDistance& near,
                                ManifoldList<Real>& list) {
-    list.clear(), manifolds_.clear();
+    list.clear(), manifolds_.clear(), pieces_.clear();
     if (world.walls) find_walls(world, terms, near, list);
     find_edges(world, edges, terms, near, list);
     list.fit();
@@ -89,7 +107,8 @@ void SurfaceFinder<Real>::find(const WorldState<Real>& world, const EdgeCandidat
     for (std::size_t i = 0; i < list.count(); ++i) {
         list.set_manifold(i, manifolds_[i]);
         const auto row = static_cast<std::size_t>(list.a[i]);
-        list.thickness[i] = bodies.inradius(row);
+        const StoredPiece* piece = pieces_[i];
+        list.thickness[i] = piece ? world.shapes[piece->number].inradius : bodies.inradius(row);
         const Partner support(list.b[i]);
         double friction = 0, restitution = 0;
         if (support.is_wall()) {
@@ -98,8 +117,10 @@ void SurfaceFinder<Real>::find(const WorldState<Real>& world, const EdgeCandidat
             const std::size_t other = edges.pose_of(world.edges[support.edge_number()]).row;
             friction = bodies.friction[other], restitution = bodies.restitution[other];
         }
-        list.friction[i] = real(pair_friction(bodies.friction[row], friction));
-        list.restitution[i] = real(pair_restitution(bodies.restitution[row], restitution));
+        const double own_friction = piece ? piece->material.friction : double{bodies.friction[row]},
+                     own_restitution = piece ? piece->material.restitution : double{bodies.restitution[row]};
+        list.friction[i] = real(pair_friction(own_friction, friction));
+        list.restitution[i] = real(pair_restitution(own_restitution, restitution));
     }
 }
 
@@ -113,18 +134,24 @@ void SurfaceFinder<Real>::find_walls(const WorldState<Real>& world, const Subste
     for (std::size_t row = 0; row < bodies.count; ++row) {
         if (bodies.is_disc(row) || bodies.shape[row] < 0 || bodies.is_immovable(row)) continue;
         if (bodies.flags_of(row) & kSensor) continue;
-        const double thickness = bodies.inradius(row);
-        const double margin = near(thickness) + thickness + reach_in_step(bodies, row, terms.dt);
+        const double way = reach_in_step(bodies, row, terms.dt);
         const Vec2 centre{bodies.position_x[row], bodies.position_y[row]};
         for (const std::int32_t side : kWallSides) {
             if (!has_wall(walls, side)) continue;
             const Vec2 n = wall_normal(side), corner = wall_corner(walls, side);
-            if (dot(corner - centre, n) - static_cast<double>(bodies.radius[row]) > margin) continue;
-            const Manifold<double> m = manifold_on_plane(placed_row(world, row), n, corner);
-            if (m.separation1 > margin && m.separation2 > margin) continue;
-            list.add(static_cast<std::int32_t>(row), Partner::wall(side).stored(),
-                     {bodies.id[row], BodyId{}, side});
-            manifolds_.push_back(m);
+            const double apart = dot(corner - centre, n) - static_cast<double>(bodies.radius[row]);
+            const double thickness = bodies.inradius(row);
+            if (apart > near(thickness) + thickness + way) continue;
+            world.shapes.for_each_piece(
+                bodies.shape[row],
+                [&](const ConvexShape<Real>& shape, std::int32_t number, const StoredPiece* piece) {
+                    const double thick = shape.inradius, margin = near(thick) + thick + way;
+                    const Manifold<double> m = manifold_on_plane(placed_row(world, row, shape), n, corner);
+                    if (m.separation1 > margin && m.separation2 > margin) return;
+                    list.add(static_cast<std::int32_t>(row), Partner::wall(side).stored(),
+                             {bodies.id[row], BodyId{}, ManifoldName::place_of_side(side, number)});
+                    manifolds_.push_back(m), pieces_.push_back(piece);
+                });
         }
     }
 }
@@ -143,41 +170,56 @@ void SurfaceFinder<Real>::find_edges(const WorldState<Real>& world, const EdgeCa
         const auto row = static_cast<std::size_t>(pairs_[first].row);
         const EdgePose& pose = edges.pose_of(world.edges[near_edges_[0]]);
         if (!pose.takes_part) continue;
-        const double thickness = bodies.inradius(row);
-        const double margin =
-            near(thickness) + reach_in_step(bodies, row, terms.dt) +
-            std::sqrt(length_squared(pose.end_position - pose.position)) +
-            std::fabs(pose.end_angle - pose.angle) * world.edges.body_of(near_edges_[0]).reach;
-        PlacedConvex body = placed_row(world, row);
-        const Vec2 centre = body.centre;
-        const double angle_in_chain =
-            (bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0) - pose.angle;
-        body.centre = rotate_back(pose.turn, body.centre - pose.position);
-        body.turn = {body.turn.cos * pose.turn.cos + body.turn.sin * pose.turn.sin,
-                     body.turn.sin * pose.turn.cos - body.turn.cos * pose.turn.sin};
-        found_.clear();
-        MovingConvex moving = moving_row(world, row);  // in the frame of the chain
-        moving.centre = body.centre;
-        moving.velocity =
-            (1 / terms.dt) *
-            (rotate_back(pose.end_turn, centre + terms.dt * moving.velocity - pose.end_position) -
-             body.centre);
-        moving.spin -= (pose.end_angle - pose.angle) / terms.dt;
-        const double met = time_of_meeting_edges(world, moving, angle_in_chain, terms.dt, thickness);
-        PlacedConvex then = body;
-        if (met > 0)
-            then.centre = body.centre + met * moving.velocity,
-            then.turn = rotation_by(angle_in_chain + met * moving.spin);
-        find_chain_manifolds(then, world.edges.edges, near_edges_, margin, found_);
-        for (ChainManifold& found : found_) {
-            if (met > 0) {
-                moving.angle = angle_in_chain;
-                move_back(found.manifold, moving, {}, met);
-            }
-            list.add(pairs_[first].row, Partner::edge(found.edge).stored(),
-                     {bodies.id[row], bodies.id[pose.row], 0});
-            manifolds_.push_back(turned(found.manifold, pose.turn));
+        world.shapes.for_each_piece(bodies.shape[row], [&](const ConvexShape<Real>& shape,
+                                                           std::int32_t number, const StoredPiece* piece) {
+            find_on_chain(world, pose, terms, near, row, shape, number, piece, list);
+        });
+    }
+}
+
+/// Finds where a body, or a piece of it, touches the near edges, which are of one chain.
+template <class Real>
+void SurfaceFinder<Real>::find_on_chain(const WorldState<Real>& world, const EdgePose& pose,
+                                        const SubstepTerms& terms, const ContactDistance& near,
+                                        std::size_t row, const ConvexShape<Real>& shape, std::int32_t number,
+                                        const StoredPiece* piece, ManifoldList<Real>& list) {
+    const Bodies<Real>& bodies = world.bodies;
+    const double thickness = shape.inradius;
+    const double margin = near(thickness) + reach_in_step(bodies, row, terms.dt) +
+                          std::sqrt(length_squared(pose.end_position - pose.position)) +
+                          std::fabs(pose.end_angle - pose.angle) * world.edges.body_of(near_edges_[0]).reach;
+    PlacedConvex body = placed_row(world, row, shape);
+    const Vec2 centre = body.centre;
+    const double angle_in_chain =
+        (bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0) - pose.angle;
+    body.centre = rotate_back(pose.turn, body.centre - pose.position);
+    body.turn = {body.turn.cos * pose.turn.cos + body.turn.sin * pose.turn.sin,
+                 body.turn.sin * pose.turn.cos - body.turn.cos * pose.turn.sin};
+    found_.clear();
+    const std::int32_t shape_number = piece ? piece->number : bodies.shape[row];
+    MovingConvex moving = moving_row(world, row, shape_number);  // in the frame of the chain
+    moving.centre = body.centre;
+    moving.velocity =
+        (1 / terms.dt) *
+        (rotate_back(pose.end_turn, centre + terms.dt * moving.velocity - pose.end_position) - body.centre);
+    moving.spin -= (pose.end_angle - pose.angle) / terms.dt;
+    const double met = time_of_meeting_edges(world, moving, angle_in_chain, terms.dt, thickness);
+    PlacedConvex then = body;
+    if (met > 0)
+        then.centre = body.centre + met * moving.velocity,
+        then.turn = rotation_by(angle_in_chain + met * moving.spin);
+    const Vec2 offset = piece ? Vec2{piece->x, piece->y} : Vec2{};
+    if (piece) then = around_own_centre(then, offset);
+    find_chain_manifolds(then, world.edges.edges, near_edges_, margin, found_);
+    for (ChainManifold& found : found_) {
+        if (piece) found.manifold = about_body(found.manifold, rotate(then.turn, offset));
+        if (met > 0) {
+            moving.angle = angle_in_chain;
+            move_back(found.manifold, moving, {}, met);
         }
+        list.add(static_cast<std::int32_t>(row), Partner::edge(found.edge).stored(),
+                 {bodies.id[row], bodies.id[pose.row], ManifoldName::place_of_side(0, number)});
+        manifolds_.push_back(turned(found.manifold, pose.turn)), pieces_.push_back(piece);
     }
 }
 

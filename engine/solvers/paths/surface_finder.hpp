@@ -51,6 +51,9 @@ class SurfaceFinder {
     void find_edges(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
                     const SubstepTerms& terms, const ContactDistance& near, ManifoldList<Real>& list);
 
+    void find_on_chain(const WorldState<Real>& world, const EdgePose& pose, const SubstepTerms& terms,
+                       const ContactDistance& near, std::size_t row, const ConvexShape<Real>& shape,
+                       std::int32_t number, const StoredPiece* piece, ManifoldList<Real>& list);
     double time_of_meeting_edges(const WorldState<Real>& world, MovingConvex body, double angle, double dt,
                                  double thickness) const;
 
@@ -59,6 +62,7 @@ class SurfaceFinder {
     std::vector<std::int32_t> near_edges_;
     std::vector<ChainManifold> found_;
     std::vector<Manifold<double>> manifolds_;  // of the contacts of the list
+    std::vector<const StoredPiece*> pieces_;   // likewise; null: of what is no compound
 };
 
 extern template class SurfaceFinder<float>;

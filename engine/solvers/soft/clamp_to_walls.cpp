@@ -12,7 +12,7 @@ Real reach_along(const WorldState<Real>& world, std::size_t row, Vec2 direction)
     const Bodies<Real>& bodies = world.bodies;
     if (bodies.is_disc(row)) return bodies.radius[row];
     const Rotation turn = bodies.has_rotation ? rotation_by(bodies.angle[row]) : Rotation{};
-    return static_cast<Real>(carom::reach_along(world.shapes[bodies.shape[row]], turn, direction));
+    return static_cast<Real>(world.shapes.reach_along(bodies.shape[row], turn, direction));
 }
 
 /// Puts one coordinate back to where the body touches the wall, and stops what drives it out.

@@ -37,16 +37,22 @@ double SensorFinder<Real>::way_of(std::size_t row) const {
     return dt_ * std::sqrt(length_squared(velocity(row)));
 }
 
-/// A body at the end of the step, whatever its shape but edges.
+/// Calls fn(piece at the end of the step) for all that a body consists of, edges aside, until one is true.
 template <class Real>
-MovingConvex SensorFinder<Real>::moving(std::size_t row) const {
+template <class Fn>
+void SensorFinder<Real>::for_each_piece(std::size_t row, const Fn& fn) const {
     const Bodies<Real>& bodies = world_.bodies;
     const Vec2 at{bodies.position_x[row], bodies.position_y[row]};
     const double angle = bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0;
-    const ConvexShape<double> shape =
-        bodies.has_shapes ? placed(world_.shapes[bodies.shape[row]], at, {}).shape
-                          : convex_shape_of<double>(Disc{static_cast<double>(bodies.radius[row])});
-    return {shape, at, velocity(row), angle, spin(row)};
+    const auto piece = [&](const ConvexShape<double>& shape) {
+        fn(MovingConvex{shape, at, velocity(row), angle, spin(row)});
+    };
+    if (!bodies.has_shapes)
+        return piece(convex_shape_of<double>(Disc{static_cast<double>(bodies.radius[row])}));
+    world_.shapes.for_each_piece(bodies.shape[row],
+                                 [&](const ConvexShape<Real>& shape, std::int32_t, const StoredPiece*) {
+                                     piece(placed(shape, at, {}).shape);
+                                 });
 }
 
 /// Whether the discs around both were apart all the time.
@@ -70,37 +76,58 @@ void SensorFinder<Real>::look(std::size_t sensor, std::size_t body) {
     if (sensor == body || (bodies.flags_of(body) & kNotInGrid) || (!moves(sensor) && !moves(body))) return;
     if (is_apart(sensor, body)) return;
     if (world_.has_filters() && !world_.may_collide(sensor, body)) return;
-    MovingConvex a = moving(sensor), b = moving(body);
     const SensedPair pair{bodies.id[sensor], bodies.id[body]};
+    bool is_inside = false;
+    for_each_piece(sensor, [&](const MovingConvex& a) {
+        for_each_piece(body,
+                       [&](const MovingConvex& b) { is_inside = is_inside || look_at_pieces(a, b, pair); });
+    });
+}
+
+/// @return whether they overlap at the end
+template <class Real>
+bool SensorFinder<Real>::look_at_pieces(const MovingConvex& a, const MovingConvex& b,
+                                        const SensedPair& pair) {
     const double distance = separation_of(at_time(a, 0), at_time(b, 0)).distance;
-    if (distance < 0) {
-        inside.push_back(pair);
-        return;
-    }
+    if (distance < 0) return inside.push_back(pair), true;
     const double thickness = std::min(a.shape.inradius, b.shape.inradius),
                  target = kMeetingTarget * thickness;
     const double way = dt_ * (std::sqrt(length_squared(b.velocity - a.velocity)) +
                               std::fabs(a.spin) * a.shape.extent + std::fabs(b.spin) * b.shape.extent);
-    if (!(way > kFastThicknesses * thickness)) return;
+    if (!(way > kFastThicknesses * thickness)) return false;
     // Back from the end, as they came. What is no farther than the target at either end has not passed: it is
     // about to come in, or was in before.
-    for (MovingConvex* each : {&a, &b}) each->velocity = -each->velocity, each->spin = -each->spin;
-    if (distance > target && separation_of(at_time(a, dt_), at_time(b, dt_)).distance > target &&
-        impact_time(a, b, dt_, target).touches)
+    const auto backwards = [](const MovingConvex& forwards) {
+        MovingConvex body = forwards;
+        body.velocity = -body.velocity, body.spin = -body.spin;
+        return body;
+    };
+    const MovingConvex from_a = backwards(a), from_b = backwards(b);
+    if (distance > target && separation_of(at_time(from_a, dt_), at_time(from_b, dt_)).distance > target &&
+        impact_time(from_a, from_b, dt_, target).touches)
         passed.push_back(pair);
+    return false;
 }
 
 /// A segment or chain is in a sensor if one of its edges is.
 template <class Real>
 void SensorFinder<Real>::look_at_edges(std::size_t sensor) {
     const Bodies<Real>& bodies = world_.bodies;
-    const PlacedConvex placed_sensor = at_time(moving(sensor), 0);
+    const Vec2 place{bodies.position_x[sensor], bodies.position_y[sensor]};
+    const double extent = bodies.radius[sensor];
+    const auto overlaps = [&](const PlacedConvex& line) {
+        bool any = false;
+        for_each_piece(sensor, [&](const MovingConvex& piece) {
+            any = any || separation_of(at_time(piece, 0), line).distance < 0;
+        });
+        return any;
+    };
     for (const EdgeBody& edges : world_.edges.bodies) {
         const std::size_t row = world_.handles.row_of_slot(edges.id.index);
         if ((bodies.flags_of(row) & kDisabled) || (!moves(sensor) && !moves(row))) continue;
         const Vec2 at{bodies.position_x[row], bodies.position_y[row]};
-        const double near = edges.reach + placed_sensor.shape.extent;
-        if (length_squared(at - placed_sensor.centre) >= near * near) continue;
+        const double near = edges.reach + extent;
+        if (length_squared(at - place) >= near * near) continue;
         if (world_.has_filters() && !world_.may_collide(sensor, row)) continue;
         const Rotation turn = rotation_by(bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0);
         for (std::int32_t i = edges.first; i < edges.first + edges.count; ++i) {
@@ -108,12 +135,12 @@ void SensorFinder<Real>::look_at_edges(std::size_t sensor) {
             const Vec2 along = edge.b - edge.a;
             const double length = std::sqrt(length_squared(along));
             const Vec2 middle = at + rotate(turn, 0.5 * (edge.a + edge.b));
-            const double reach = 0.5 * length + placed_sensor.shape.extent;
-            if (length_squared(middle - placed_sensor.centre) >= reach * reach) continue;
+            const double reach = 0.5 * length + extent;
+            if (length_squared(middle - place) >= reach * reach) continue;
             const Vec2 direction = rotate(turn, (1 / length) * along);
             const PlacedConvex line{
                 convex_shape_of<double>(Capsule{length, 0}), middle, {direction.x, direction.y}};
-            if (!(separation_of(placed_sensor, line).distance < 0)) continue;
+            if (!overlaps(line)) continue;
             inside.push_back({bodies.id[sensor], edges.id});
             break;
         }

@@ -32,7 +32,9 @@ class SensorFinder {
 
   private:
     bool is_apart(std::size_t sensor, std::size_t body) const;
-    MovingConvex moving(std::size_t row) const;
+    template <class Fn>
+    void for_each_piece(std::size_t row, const Fn& fn) const;
+    bool look_at_pieces(const MovingConvex& a, const MovingConvex& b, const SensedPair& pair);
     Vec2 velocity(std::size_t row) const;
     double spin(std::size_t row) const;
     bool moves(std::size_t row) const;

@@ -5,7 +5,12 @@ namespace {
 
 template <class Change>
 void change_materials(Scene& scene, const Change& change) {
-    for (Body& body : scene.bodies) change(body.material);
+    for (Body& body : scene.bodies) {
+        change(body.material);
+        if (auto* compound = std::get_if<Compound>(&body.shape))
+            for (Piece& piece : compound->pieces)
+                if (piece.material) change(*piece.material);
+    }
     if (scene.walls) change(scene.walls->material);
 }
 

@@ -81,7 +81,7 @@ void TrajectoryH5::make_datasets(const Scene& scene, const std::vector<double>& 
     make_dataset("velocity", "m/s", 2, &Block::velocity);
     make_dataset("angle", "rad", 1, &Block::angle);
 
-    make_column("radius", "m", scene, [](const Body& body) { return extent_of(body.shape); });
+    make_column("radius", "m", scene, [](const Body& body) { return extent_of(body); });
     make_column("mass", "kg", scene, [](const Body& body) { return mass_of(body); });
     make_column("inertia", "kg m2", scene, [](const Body& body) { return inertia_of(body); });
     if (!shape.empty()) make_column("shape", "number in the settings' shapes, or -1", shape);

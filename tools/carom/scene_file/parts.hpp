@@ -23,7 +23,7 @@ Material read_material(const Node& node, const Materials& materials);
 
 /// Everything but bodies, generators and joints.
 Materials read_settings(const Node& root, Scene& scene);
-Shape read_shape(const Node& node);
+Shape read_shape(const Node& node, const Materials& materials);
 BodyType read_body_type(const Node& node);
 void read_bodies(const Node& root, const Materials& materials, Scene& scene);
 /// Makes the bodies and the joints of one generator.

@@ -41,7 +41,7 @@ Body read_body(const Node& node, const Materials& materials) {
     Body body;
     node.read("name", body.name);
     if (const auto type = node.find("type")) body.type = read_body_type(*type);
-    body.shape = read_shape(node.at("shape"));
+    body.shape = read_shape(node.at("shape"), materials);
     node.read("position", body.position);
     node.read("angle", body.angle);
     node.read("velocity", body.velocity);
@@ -102,6 +102,33 @@ Polygon read_polygon(const Node& shape) {
     return polygon;
 }
 
+Piece read_piece(const Node& node, const Materials& materials) {
+    static constexpr std::array<std::string_view, 4> kKeys{"shape", "position", "angle", "material"};
+    static constexpr std::array<std::string_view, 4> kShapes{"disc", "box", "capsule", "polygon"};
+    node.expect_keys(kKeys);
+    Piece piece;
+    const Node shape = node.at("shape").only_member(kShapes, "shape in a compound");
+    if (shape.key() == "disc") piece.shape = read_disc(shape);
+    if (shape.key() == "box") piece.shape = read_box(shape);
+    if (shape.key() == "capsule") piece.shape = read_capsule(shape);
+    if (shape.key() == "polygon") piece.shape = read_polygon(shape);
+    node.read("position", piece.position);
+    node.read("angle", piece.angle);
+    if (const auto material = node.find("material")) piece.material = read_material(*material, materials);
+    return piece;
+}
+
+Compound read_compound(const Node& shape, const Materials& materials) {
+    static constexpr std::array<std::string_view, 1> kKeys{"shapes"};
+    shape.expect_keys(kKeys);
+    Compound compound;
+    const Node pieces = shape.at("shapes");
+    pieces.expect_array("shapes, each with a place");
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        compound.pieces.push_back(read_piece(pieces[i], materials));
+    return compound;
+}
+
 }  // namespace
 
 BodyType read_body_type(const Node& node) {
@@ -111,10 +138,11 @@ BodyType read_body_type(const Node& node) {
     return kValues[node.one_of(kTypes, "type of body")];
 }
 
-Shape read_shape(const Node& node) {
-    static constexpr std::array<std::string_view, 6> kShapes{"disc",    "box",     "capsule",
-                                                             "polygon", "segment", "chain"};
+Shape read_shape(const Node& node, const Materials& materials) {
+    static constexpr std::array<std::string_view, 7> kShapes{"disc",    "box",   "capsule", "polygon",
+                                                             "segment", "chain", "compound"};
     const Node shape = node.only_member(kShapes, "shape");
+    if (shape.key() == "compound") return read_compound(shape, materials);
     if (shape.key() == "box") return read_box(shape);
     if (shape.key() == "capsule") return read_capsule(shape);
     if (shape.key() == "polygon") return read_polygon(shape);

@@ -30,7 +30,7 @@ struct Pattern {
 Pattern read_pattern(const Node& node, const Materials& materials) {
     Pattern pattern;
     if (const auto shape = node.find("shape")) {
-        pattern.body.shape = read_shape(*shape);
+        pattern.body.shape = read_shape(*shape, materials);
         pattern.has_shape = true;
     }
     if (const auto type = node.find("type")) pattern.body.type = read_body_type(*type);

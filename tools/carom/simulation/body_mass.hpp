@@ -7,13 +7,12 @@ namespace carom::tool {
 
 /// kg: given, or density times area.
 inline double mass_of(const Body& body) {
-    return body.mass.value_or(body.material.density * mass_properties_of(body.shape).area);
+    return body.mass ? *body.mass : body_mass_of(body).mass;
 }
 
 /// kg m², of a solid body about its centre of mass.
 inline double inertia_of(const Body& body) {
-    const MassProperties of = mass_properties_of(body.shape);
-    return of.area > 0 ? mass_of(body) * of.second_moment / of.area : 0;
+    return body_mass_of(body).inertia;
 }
 
 /// Translation and rotation of one solid body [J].

@@ -56,7 +56,7 @@ carom.painter = carom.frames && (() => {
         const angle = frame.angle ? frame.angle[body] * frames.turn : 0, cos = Math.cos(angle) * scale, sin = Math.sin(angle) * scale;
         for (let i = 0; i < shape.x.length; ++i) {
           const toX = px + cos * shape.x[i] - sin * shape.y[i], toY = py - sin * shape.x[i] - cos * shape.y[i];
-          if (i === 0) path.moveTo(toX, toY); else path.lineTo(toX, toY);
+          if (shape.starts.includes(i)) { if (i > 0) path.closePath(); path.moveTo(toX, toY); } else path.lineTo(toX, toY);
         }
         path.closePath();
       }
