@@ -173,7 +173,7 @@ bool JointStore::excludes(BodyId a, BodyId b) const {
 std::size_t JointStore::bytes() const {
     return slots_.capacity() * sizeof(Slot) + free_.capacity() * sizeof(std::uint32_t) +
            excluded_.capacity() * sizeof(std::uint64_t) + is_in_excluded_.capacity() +
-           broken.capacity() * sizeof(JointId);
+           broken.capacity() * sizeof(JointBreak);
 }
 
 }  // namespace carom

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <carom/events.hpp>
 #include <carom/joints.hpp>
 
 #include <array>
@@ -81,7 +82,7 @@ class JointStore {
     /// without any.
     bool excludes(BodyId a, BodyId b) const;
 
-    std::vector<JointId> broken;  ///< in the last step
+    std::vector<JointBreak> broken;  ///< in the last step, or since events were cleared
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {

@@ -188,7 +188,11 @@ JointErrors BasicWorld<Real>::joint_errors() const {
 
 template <class Real>
 std::vector<JointId> BasicWorld<Real>::broken_joints() const {
-    return implementation_->sim().world.joints.broken;
+    const WorldState<Real>& world = implementation_->sim().world;
+    std::vector<JointId> broken;
+    for (const JointBreak& each : world.joints.broken)
+        if (each.time == world.time) broken.push_back(each.joint);  // others are kept events
+    return broken;
 }
 
 // The class is instantiated in world.cpp, without what is defined here.

@@ -121,7 +121,7 @@ void BasicWorld<Real>::step(double dt) {
     validate_dt(dt, "World::step");
     if (dt == 0) return;
     Simulation<Real>& sim = implementation_->sim();
-    if (!sim.world.sensing.keeps) sim.world.sensing.events.clear();
+    if (!sim.world.sensing.keeps) clear_events();
     const double begin = sim.world.time;
     sim.interruption.start();
     const auto step = [&] { sim.step(dt); };
@@ -277,12 +277,14 @@ void BasicWorld<Real>::set_angular_velocity(BodyId body, double angular_velocity
 
 template <class Real>
 Events BasicWorld<Real>::events() const noexcept {
-    return {implementation_->sim().world.sensing.events};
+    const WorldState<Real>& world = implementation_->sim().world;
+    return {world.sensing.events, world.joints.broken};
 }
 
 template <class Real>
 void BasicWorld<Real>::clear_events() noexcept {
-    implementation_->sim().world.sensing.events.clear();
+    WorldState<Real>& world = implementation_->sim().world;
+    world.sensing.events.clear(), world.joints.broken.clear();
 }
 
 template <class Real>

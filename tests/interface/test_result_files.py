@@ -77,6 +77,31 @@ class SummaryTest(ProgramTest):
         self.assertEqual(self.files_in("out/some gas"), ALL_FILES)
 
 
+class EventsTest(ProgramTest):
+    def test_a_joint_that_breaks_is_told_by_every_file_and_drawn_until_then(self):
+        bodies = [{"shape": {"disc": {"radius": 0.1}}, "position": [x, -1], "mass": 1} for x in (0, 1)]
+        joints = [{"distance": {"a": None, "anchor_a": [x, 0], "b": body, "break_force": limit}}
+                  for body, (x, limit) in enumerate(((0, 1000), (1, 9)))]
+        scene = {"carom": 1, "name": "break", "gravity": [0, -10], "bodies": bodies, "joints": joints,
+                 "step": {"dt": 0.01, "count": 5}}
+        results = self.run_scene(self.write_scene(scene), "--events")
+        (broken,) = results.summary["joints_broken"]
+        self.assertEqual((broken["joint"], broken["time"]), (1, 0.01))
+        self.assertAlmostEqual(broken["force"][1], 10, places=3)
+        lines = (self.folder / "out/events.csv").read_text().splitlines()
+        self.assertEqual(lines[0], "time,kind,a,b,x,y,nx,ny,speed,impulse,joint")
+        (row,) = [line.split(",") for line in lines[1:]]
+        self.assertEqual(row[:4] + row[10:], ["0.01", "break", "", "1", "1"])
+        self.assertAlmostEqual(float(row[9]), 0.1, places=4)
+        with h5py.File(self.folder / "out/trajectory.h5") as trajectory:
+            self.assertEqual(json.loads(trajectory.attrs["breaks"]), [[1, 0.01]])
+        page = (self.folder / "out/report.html").read_text()
+        data = json.loads(page.split('id="player-data">')[1].split("</script>")[0])
+        self.assertEqual([joint[6:] for joint in data["joints"]], [[], [0.01]])
+        self.run_scene(self.write_scene(scene))
+        self.assertFalse((self.folder / "out/events.csv").exists())
+
+
 class FinalTest(ProgramTest):
     def check_final_against_trajectory(self, results, dtype):
         frames = results.trajectory()

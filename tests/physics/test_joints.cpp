@@ -412,6 +412,19 @@ TEST_SUITE("physics: joints") {
             world.step(kStep);
             CHECK(world.is_alive(rod) == (limit > 20));
             CHECK(world.broken_joints().size() == (limit > 20 ? 0u : 1u));
+            const std::span<const JointBreak> breaks = world.events().breaks;
+            REQUIRE(breaks.size() == (limit > 20 ? 0u : 1u));
+            for (const JointBreak& each : breaks) {
+                CHECK(each.joint == rod);
+                CHECK(each.a == BodyId{});
+                CHECK(each.b == b);
+                CHECK(each.time == world.time());
+                CHECK(each.point.y == doctest::Approx(-1).epsilon(0.01));
+                CHECK(each.force.y == doctest::Approx(20).epsilon(0.01));
+            }
+            world.step(kStep);
+            CHECK(world.events().breaks.empty());
+            CHECK(world.broken_joints().empty());
             for (int i = 0; i < 30; ++i) world.step(kStep);
             CHECK((world.state(b).position.y < -1.1) == (limit < 20));
         }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <carom/events.hpp>
 #include <carom/ledger.hpp>
 #include <carom/profile.hpp>
 #include <carom/scene.hpp>
@@ -32,6 +33,7 @@ struct RunOutcome {
     bool keeps_ledger = false;
     OverlapReport overlaps;
     JointErrors joints;                           ///< at the end
+    std::vector<JointBreak> breaks;               ///< in the order in which they happened
     std::vector<ContactCourse::Moment> contacts;  ///< during the run
     std::vector<std::size_t> quarantined;
     std::uint64_t state_hash = 0;

@@ -77,6 +77,13 @@ nlohmann::ordered_json joints_json(const Scene& scene) {
     return joints;
 }
 
+/// Which joints broke, and when: [joint, s].
+nlohmann::ordered_json breaks_json(const std::vector<JointBreak>& breaks) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const JointBreak& each : breaks) list.push_back({each.joint.index, each.time});
+    return list;
+}
+
 /// The bodies that are lines, which have no radius: their points, in the body's frame [m].
 nlohmann::ordered_json edges_json(const std::vector<Body>& bodies) {
     nlohmann::ordered_json edges = nlohmann::ordered_json::array();
@@ -160,26 +167,27 @@ class Recorder {
         trajectory_->append(simulation);
     }
 
-    void record(const Simulation& simulation, std::int64_t step) {
+    void record(const Simulation& simulation, const Events& events, double dt, std::int64_t step) {
         append_row(simulation);
+        if (events_) events_->append(events, dt);
         if (trajectory_ && step % every_ == 0) append_frame(simulation, step);
     }
 
     /// The last state is always the last frame, and the last row, also where a step ended early.
-    void close(const Simulation& simulation, std::int64_t step) {
+    /// @param breaks  of joints in the whole run
+    void close(const Simulation& simulation, const std::vector<JointBreak>& breaks, std::int64_t step) {
         const bool is_between = simulation.time() != last_time_;
         if (is_between) append_row(simulation);
         if (ledger_) ledger_->close();
         if (events_) events_->close();
         if (!trajectory_) return;
         if (last_frame_ != step || is_between) append_frame(simulation, step);
-        trajectory_->close();
+        trajectory_->close(breaks_json(breaks).dump());
     }
 
   private:
     void append_row(const Simulation& simulation) {
         if (ledger_) ledger_->append(simulation.ledger(), simulation.profile().impacts);
-        if (events_) events_->append(simulation.events());
         last_time_ = simulation.time();
     }
 
@@ -218,7 +226,9 @@ void take_steps(const Scene& scene, Simulation& simulation, Recorder& recorder, 
         if (!take_step(scene.step.dt, simulation, run)) break;
         const Clock::time_point stepped = Clock::now();
         ++run.steps;
-        recorder.record(simulation, run.steps);
+        const Events events = simulation.events();
+        run.breaks.insert(run.breaks.end(), events.breaks.begin(), events.breaks.end());
+        recorder.record(simulation, events, scene.step.dt, run.steps);
         contacts.look(simulation, run.steps);
         if (run.steps == 1) run.first_step = simulation.ledger();
         const Clock::time_point recorded = Clock::now();
@@ -287,7 +297,7 @@ RunOutcome run_scene(const Scene& scene, Simulation& simulation, ResultFolder& f
                                 final = folder.temporary("final.csv");
     Recorder recorder(scene, simulation, folder, choices);
     take_steps(scene, simulation, recorder, choices.quiet, run);
-    recorder.close(simulation, run.steps);
+    recorder.close(simulation, run.breaks, run.steps);
     describe_end(scene, simulation, run);
     if (!choices.no_report) folder.temporary("report.html");
     run.files = folder.names();

@@ -20,11 +20,14 @@ std::vector<EdgeBody> edge_bodies(const Json& settings) {
     return bodies;
 }
 
-std::vector<JointLine> joint_lines(const Json& settings) {
+std::vector<JointLine> joint_lines(const Json& settings, const Json& breaks) {
     std::vector<JointLine> lines;
     if (!settings.is_object() || !settings.contains("joints")) return lines;
     for (const Json& each : settings["joints"])
         lines.push_back({each[0], each[3], each[1], each[2], each[4], each[5]});
+    if (!breaks.is_array()) return lines;
+    for (const Json& each : breaks)
+        if (const std::size_t joint = each[0]; joint < lines.size()) lines[joint].until = each[1];
     return lines;
 }
 

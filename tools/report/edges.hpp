@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "report/markup.hpp"
@@ -21,10 +22,12 @@ std::vector<EdgeBody> edge_bodies(const Json& settings);
 /// zero, of the world.
 struct JointLine {
     std::ptrdiff_t a, b;
-    double ax, ay, bx, by;  // m
+    double ax, ay, bx, by;                                   // m
+    double until = std::numeric_limits<double>::infinity();  // s: it breaks then
 };
 
 /// Those that a trajectory's settings name.
-std::vector<JointLine> joint_lines(const Json& settings);
+/// @param breaks  [[joint, s], ...]: of a trajectory's attribute, or nothing
+std::vector<JointLine> joint_lines(const Json& settings, const Json& breaks);
 
 }  // namespace carom::report

@@ -54,7 +54,7 @@ Picture::Picture(const std::filesystem::path& trajectory_h5, int width)
       edges_(edge_bodies(settings_)),
       shapes_(drawn_shapes(settings_)),
       shape_(shape_of_bodies(trajectory_)),
-      joints_(joint_lines(settings_)),
+      joints_(joint_lines(settings_, Json::parse(trajectory_.text("breaks"), nullptr, false))),
       trail_(settings_.is_object() ? settings_.value("trail", std::size_t{0}) : 0),
       width_(width) {
     if (time_.empty()) throw ResultError(trajectory_h5.string() + ": has no frames to draw");
@@ -294,6 +294,7 @@ void Picture::draw_joints(std::size_t frame) {
                 y(static_cast<double>(position[2 * body + 1]) + sin * px + cos * py)};
     };
     for (const JointLine& line : joints_) {
+        if (time_[frame] >= line.until) continue;
         const auto from = place(line.a, line.ax, line.ay), to = place(line.b, line.bx, line.by);
         cairo_move_to(pen, from[0], from[1]);
         cairo_line_to(pen, to[0], to[1]);

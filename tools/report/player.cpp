@@ -168,8 +168,9 @@ Json shapes(const H5Reader& trajectory, const Json& settings, const FrameChoice&
     return {{"outlines", outlines}, {"index", base64_of<std::uint32_t>(index)}};
 }
 
-/// Joints whose bodies are both among the chosen: [a, x, y, b, x, y], bodies by their place among the chosen.
-Json joints(const Json& settings, const FrameChoice& choice) {
+/// Joints whose bodies are both among the chosen: [a, x, y, b, x, y], bodies by their place among the chosen;
+/// of those that break, then the time at which they do [s].
+Json joints(const Json& settings, const Json& breaks, const FrameChoice& choice) {
     Json list = Json::array();
     const auto place_of = [&](std::ptrdiff_t body) -> std::ptrdiff_t {
         if (body < 0) return -1;
@@ -177,9 +178,11 @@ Json joints(const Json& settings, const FrameChoice& choice) {
         const auto found = std::lower_bound(choice.bodies.begin(), choice.bodies.end(), wanted);
         return found == choice.bodies.end() || *found != wanted ? -2 : found - choice.bodies.begin();
     };
-    for (const JointLine& line : joint_lines(settings)) {
+    for (const JointLine& line : joint_lines(settings, breaks)) {
         const std::ptrdiff_t a = place_of(line.a), b = place_of(line.b);
-        if (a > -2 && b > -2) list.push_back({a, line.ax, line.ay, b, line.bx, line.by});
+        if (a == -2 || b == -2) continue;
+        list.push_back({a, line.ax, line.ay, b, line.bx, line.by});
+        if (std::isfinite(line.until)) list.back().push_back(line.until);
     }
     return list;
 }
@@ -199,7 +202,7 @@ Json description(const H5Reader& trajectory, const RunFiles& files, const FrameC
         json[key] = settings.is_object() && settings.contains(key) ? settings[key] : Json();
     json["edges"] = edges(settings, choice);
     json["shapes"] = shapes(trajectory, settings, choice);
-    json["joints"] = joints(settings, choice);
+    json["joints"] = joints(settings, Json::parse(trajectory.text("breaks"), nullptr, false), choice);
     return json;
 }
 

@@ -164,7 +164,7 @@ class BasicWorld {
     double joint_torque(JointId joint) const;
     /// How far joints are from what they hold, from positions. Cost: O(joints).
     JointErrors joint_errors() const;
-    /// The joints that broke in the last step, by the handles they had.
+    /// The joints that broke in the last step, by the handles they had; `events` says more of them.
     std::vector<JointId> broken_joints() const;
     /// Where a joint holds a and b now [m], for pictures. @throws Error (stale_handle)
     std::array<Vec2, 2> joint_anchors(JointId joint) const;

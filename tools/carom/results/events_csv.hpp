@@ -9,18 +9,17 @@
 
 namespace carom::tool {
 
-/// What happened in a run, one row an event.
+/// What happened in a run, one row an event, in the order of time.
 class EventsCsv {
   public:
     explicit EventsCsv(const std::filesystem::path& path);
 
-    /// @throws WriteError
-    void append(const Events& events);
+    /// The events of a step. @param dt  s, its length  @throws WriteError
+    void append(const Events& events, double dt);
     void close() { file_.close(); }
 
   private:
     TextFile file_;
-    std::string line_;
 };
 
 }  // namespace carom::tool

@@ -166,6 +166,12 @@ Json summary_of(const RunOutcome& run) {
                         {"overlap_max", run.overlaps.max}};
     json["contacts_over_time"] = contacts_over_time(run);
     json["joints_error"] = {{"mean", run.joints.mean}, {"max", run.joints.max}};
+    json["joints_broken"] = Json::array();
+    for (const JointBreak& each : run.breaks)
+        json["joints_broken"].push_back({{"joint", each.joint.index},
+                                         {"time", each.time},
+                                         {"force", to_json(each.force)},
+                                         {"torque", each.torque}});
     json["counters"] = counters_of(run.profile);
     json["quarantined"] = run.quarantined;
     json["state_hash"] = hash_text(run.state_hash);

@@ -135,7 +135,7 @@ void TrajectoryH5::hand_over() {
     empty_.pop_front();
 }
 
-void TrajectoryH5::close() {
+void TrajectoryH5::close(const std::string& breaks) {
     {
         const std::lock_guard lock(mutex_);
         if (!current_->time.empty()) full_.push_back(std::move(current_));
@@ -144,6 +144,7 @@ void TrajectoryH5::close() {
     changed_.notify_all();
     thread_.join();
     if (failure_) std::rethrow_exception(failure_);
+    file_.set_attribute(file_.root(), "breaks", breaks);
     for (const Dataset& dataset : datasets_) file_.close_dataset(dataset.id);
     file_.close_dataset(time_);
     file_.close();

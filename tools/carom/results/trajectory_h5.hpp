@@ -38,8 +38,8 @@ class TrajectoryH5 {
 
     /// Appends the state of now. @throws WriteError if an earlier frame could not be written.
     void append(const Simulation& simulation);
-    /// Writes what is left. @throws WriteError
-    void close();
+    /// Writes what is left. @param breaks  JSON: joints that broke, and when  @throws WriteError
+    void close(const std::string& breaks);
 
   private:
     struct Block {

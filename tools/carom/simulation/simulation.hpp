@@ -1,5 +1,6 @@
 #pragma once
 
+#include <carom/events.hpp>
 #include <carom/ledger.hpp>
 #include <carom/profile.hpp>
 #include <carom/scene.hpp>

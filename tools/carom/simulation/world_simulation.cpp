@@ -59,8 +59,8 @@ class WorldSimulation final : public Simulation {
     Profile profile() const override { return world_.profile(); }
     Plan plan() const override { return world_.plan(); }
     OverlapReport overlaps() const override { return world_.overlaps(); }
-    Events events() const override { return world_.events(); }
     JointErrors joint_errors() const override { return world_.joint_errors(); }
+    Events events() const override { return world_.events(); }
     std::vector<std::size_t> quarantined() const override {
         std::vector<std::size_t> bodies;
         for (const BodyId id : world_.quarantined()) bodies.push_back(id.index);

@@ -62,7 +62,8 @@ carom.marks = (() => {
     pen.globalAlpha = 0.6;
     pen.lineWidth = 1.25 * carom.view.sharpness();
     pen.beginPath();
-    for (const [a, ax, ay, b, bx, by] of list) {
+    for (const [a, ax, ay, b, bx, by, until] of list) {
+      if (frame.time >= until) continue; // it broke
       const from = ends(a, ax, ay), to = ends(b, bx, by);
       if (!from || !to) continue;
       pen.moveTo(...from);

@@ -125,7 +125,6 @@ void SoftJoints<Real>::find_touching(const JointStep<Real>& step, const StepView
 template <class Real>
 void SoftJoints<Real>::begin_step(const JointStep<Real>& step, const StepView<Real>& contacts,
                                   const PathSolver<Real>& paths, double dt) {
-    step.world.joints.broken.clear();
     find_touching(step, contacts, paths, dt);
     touches_ = false;
     for (std::size_t i = 0; i < direct_.size(); ++i) {
@@ -182,18 +181,41 @@ bool SoftJoints<Real>::end_step(const JointStep<Real>& step, Books& books, doubl
         group.store(joints, dt);
     }
     if (!swept_.empty()) swept_.store(joints, step.terms.substep_dt);
-    bool any = false;
+    const std::size_t before = joints.broken.size();
     for (std::size_t slot = 0; slot < joints.slots(); ++slot) {
         if (!joints.has(slot)) continue;
         const StoredJoint& joint = joints[slot];
         if (length_squared(joint.force) <= joint.break_force * joint.break_force &&
             std::fabs(joint.torque) <= joint.break_torque)
             continue;
-        joints.broken.push_back(joints.id_of(slot));
-        any = true;
+        joints.broken.push_back(break_of(step, slot, dt));
     }
-    for (const JointId broken : joints.broken) joints.remove(broken.index);
-    return any;
+    for (std::size_t i = before; i < joints.broken.size(); ++i) joints.remove(joints.broken[i].joint.index);
+    return joints.broken.size() > before;
+}
+
+template <class Real>
+JointBreak SoftJoints<Real>::break_of(const JointStep<Real>& step, std::size_t slot, double dt) {
+    const StoredJoint& joint = step.world.joints[slot];
+    JointBreak broken{.joint = step.world.joints.id_of(slot),
+                      .a = joint.a,
+                      .b = joint.b,
+                      .time = step.world.time + dt,
+                      .point = {},
+                      .force = joint.force,
+                      .torque = joint.torque};
+    const Bodies<Real>& bodies = step.world.bodies;
+    const std::size_t row = step.world.handles.row_of_slot(joint.b.index);
+    broken.point = {bodies.position_x[row], bodies.position_y[row]};
+    double angle = bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0;
+    if (row < bodies.count) {  // columns have the start of the step
+        const Column<Real>& displacement = step.records.displacement;
+        broken.point += Vec2{displacement[2 * row], displacement[2 * row + 1]};
+        if (const Real* turn = step.records.turn())
+            angle += static_cast<double>(turn[row]) / rim_of(bodies, row);
+    }
+    broken.point += rotate(rotation_by(angle), joint.anchor_b);
+    return broken;
 }
 
 template <class Real>

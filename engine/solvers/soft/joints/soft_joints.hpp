@@ -49,6 +49,7 @@ class SoftJoints {
     std::string describe() const;
 
   private:
+    static JointBreak break_of(const JointStep<Real>& step, std::size_t slot, double dt);
     void find_touching(const JointStep<Real>& step, const StepView<Real>& contacts,
                        const PathSolver<Real>& paths, double dt);
 
