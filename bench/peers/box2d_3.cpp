@@ -1,5 +1,6 @@
 #include <box2d/box2d.h>
 
+#include <cmath>
 #include <variant>
 
 #include "measure/text.hpp"
@@ -38,6 +39,7 @@ class Box2d3Peer : public Peer {
                        bench.scene.bodies.at(0).material);
         }
         for (const Body& body : bench.scene.bodies) add_body(body, bench.scene.drag);
+        for (const Joint& joint : bench.scene.joints) add_joint(joint, bench.scene);
     }
     ~Box2d3Peer() override { b2DestroyWorld(world_); }
     Box2d3Peer(const Box2d3Peer&) = delete;
@@ -81,7 +83,7 @@ class Box2d3Peer : public Peer {
     }
     void add_body(const Body& description, const Drag& drag) {
         b2BodyDef definition = b2DefaultBodyDef();
-        definition.type = b2_dynamicBody;
+        definition.type = description.type == BodyType::static_body ? b2_staticBody : b2_dynamicBody;
         definition.position = as_b2(description.position);
         definition.rotation = b2MakeRot(static_cast<float>(description.angle));
         definition.linearVelocity = as_b2(description.velocity);
@@ -90,6 +92,7 @@ class Box2d3Peer : public Peer {
         definition.angularDamping = static_cast<float>(drag.angular);
         const b2BodyId body = b2CreateBody(world_, &definition);
         b2ShapeDef shape = shape_of(description.material);
+        shape.filter.groupIndex = description.group;
         shape.density = static_cast<float>(density_of(description));
         add_shape(body, shape, description.shape);
         if (description.fixed_rotation) {  // every 3.x has this; how a rotation is locked changed in 3.2
@@ -98,6 +101,31 @@ class Box2d3Peer : public Peer {
             b2Body_SetMassData(body, mass);
         }
         bodies_.push_back(body);
+    }
+    /// Rods and hinges of two bodies, the anchors of rods at the centres.
+    void add_joint(const Joint& joint, const Scene& scene) {
+        const b2BodyId a = bodies_.at(joint.a->index), b = bodies_.at(joint.b->index);
+        const Vec2 from = scene.bodies[joint.a->index].position, to = scene.bodies[joint.b->index].position;
+        if (std::holds_alternative<DistanceJoint>(joint.kind)) {
+            b2DistanceJointDef rod = b2DefaultDistanceJointDef();
+            rod.bodyIdA = a, rod.bodyIdB = b;
+            rod.length = static_cast<float>(std::hypot(to.x - from.x, to.y - from.y));
+            rod.collideConnected = joint.collide;
+            b2CreateDistanceJoint(world_, &rod);
+            return;
+        }
+        const auto& hinge = std::get<RevoluteJoint>(joint.kind);
+        b2RevoluteJointDef same = b2DefaultRevoluteJointDef();
+        same.bodyIdA = a, same.bodyIdB = b;
+        const b2Vec2 anchor = as_b2(hinge.anchor.value_or(to));
+        same.localAnchorA = b2Body_GetLocalPoint(a, anchor),
+        same.localAnchorB = b2Body_GetLocalPoint(b, anchor);
+        same.referenceAngle = b2Rot_GetAngle(b2Body_GetRotation(b)) - b2Rot_GetAngle(b2Body_GetRotation(a));
+        same.enableLimit = hinge.lower && hinge.upper;
+        same.lowerAngle = static_cast<float>(hinge.lower.value_or(0));
+        same.upperAngle = static_cast<float>(hinge.upper.value_or(0));
+        same.collideConnected = joint.collide;
+        b2CreateRevoluteJoint(world_, &same);
     }
     static void add_shape(b2BodyId body, const b2ShapeDef& definition, const Shape& shape) {
         if (const auto* disc = std::get_if<Disc>(&shape)) {
@@ -152,7 +180,7 @@ class Box2d3Peer : public Peer {
 };
 
 std::unique_ptr<Peer> make(const BenchScene& scene, const PeerSettings& settings) {
-    require_dynamic_solids(scene.scene);
+    require_solids_and_plain_joints(scene.scene);
     return std::make_unique<Box2d3Peer>(scene, settings);
 }
 

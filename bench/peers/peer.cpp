@@ -112,18 +112,25 @@ bool is_disc(const Body& body) {
 }
 
 void require_dynamic_discs(const Scene& scene) {
+    if (!scene.joints.empty())
+        throw Error(ErrorCode::not_built_yet, "the adapter of this engine makes no joints");
     for (std::size_t i = 0; i < scene.bodies.size(); ++i)
         if (scene.bodies[i].type != BodyType::dynamic_body || !is_disc(scene.bodies[i]))
             throw Error(ErrorCode::not_built_yet, "the adapter of this engine makes moving discs; body " +
                                                       std::to_string(i) + " is none");
 }
 
-void require_dynamic_solids(const Scene& scene) {
-    for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-        if (scene.bodies[i].type != BodyType::dynamic_body ||
-            mass_properties_of(scene.bodies[i].shape).area == 0)
-            throw Error(ErrorCode::not_built_yet, "the adapter of this engine makes moving solids; body " +
-                                                      std::to_string(i) + " is none");
+void require_solids_and_plain_joints(const Scene& scene) {
+    for (const Body& body : scene.bodies)
+        if (body.type == BodyType::kinematic_body || mass_properties_of(body.shape).area == 0)
+            throw Error(ErrorCode::not_built_yet, "the adapter of this engine makes solids, moving or still");
+    for (const Joint& joint : scene.joints) {
+        const auto* rod = std::get_if<DistanceJoint>(&joint.kind);
+        const auto* hinge = std::get_if<RevoluteJoint>(&joint.kind);
+        if (!joint.a || !joint.b || !(rod || hinge) || (rod && (rod->length || rod->min || rod->max)))
+            throw Error(ErrorCode::not_built_yet,
+                        "the adapter of this engine makes rods and hinges of two bodies");
+    }
 }
 
 }  // namespace carom::bench

@@ -91,10 +91,11 @@ double density_of(const Body& body);  ///< kg/m², that gives the body's mass
 
 bool is_disc(const Body& body);
 
-/// @throws carom::Error if there is a body that is no disc, or that its own rules move
+/// @throws carom::Error if there is a body that is no disc, or that its own rules move, or a joint
 void require_dynamic_discs(const Scene& scene);
 
-/// @throws carom::Error if there is a body without area, or that its own rules move
-void require_dynamic_solids(const Scene& scene);
+/// @throws carom::Error if there is a body without area, or a joint that is no rod between centres of two
+/// bodies and no hinge of two bodies
+void require_solids_and_plain_joints(const Scene& scene);
 
 }  // namespace carom::bench

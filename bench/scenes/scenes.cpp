@@ -8,6 +8,7 @@
 
 #include "measure/gas.hpp"
 #include "measure/text.hpp"
+#include "scenes/joint_scenes.hpp"
 #include "scenes/shape_scenes.hpp"
 
 namespace carom::bench {
@@ -101,9 +102,9 @@ BenchScene tumbler(std::int64_t bodies) {
 }  // namespace
 
 const std::vector<std::string>& scene_names() {
-    static const std::vector<std::string> names{"gas",        "rough-gas", "pile",          "packed",
-                                                "tumbler",    "pyramid",   "pyramid-start", "box-pile",
-                                                "mixed-pile", "smash",     "planks"};
+    static const std::vector<std::string> names{
+        "gas",      "rough-gas",  "pile",  "packed", "tumbler", "pyramid", "pyramid-start",
+        "box-pile", "mixed-pile", "smash", "planks", "net",     "ragdolls"};
     return names;
 }
 
@@ -119,6 +120,8 @@ BenchScene make_scene(const std::string& name, std::int64_t bodies) {
     if (name == "mixed-pile") return mixed_pile(bodies);
     if (name == "smash") return smash(bodies);
     if (name == "planks") return planks(bodies);
+    if (name == "net") return net(bodies);
+    if (name == "ragdolls") return ragdolls(bodies);
     throw std::invalid_argument(measure::joined("no benchmark scene is called ", name));
 }
 

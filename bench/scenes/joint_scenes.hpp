@@ -1,0 +1,17 @@
+#pragma once
+
+#include "scenes/scenes.hpp"
+
+// Scenes of joints; scenes.hpp names them.
+
+namespace carom::bench {
+
+/// A square net of small discs on rods that hangs by its two upper corners, from the moment at which it is
+/// let go. `bodies` is rounded down to a square.
+BenchScene net(std::int64_t bodies);
+
+/// Ragdolls of eleven bodies and ten hinges with limits, dropped into an open box; `bodies` is rounded down
+/// to whole ones.
+BenchScene ragdolls(std::int64_t bodies);
+
+}  // namespace carom::bench
