@@ -56,7 +56,8 @@ struct KernelTable {
     std::size_t (*find_contacts)(const FindContacts<Real>&, std::size_t first, std::size_t last);
     // smooth; rough; rough, and some bodies do not turn; the last two with rolling resistance
     std::array<ContactKernels<Real>, 5> contacts;
-    std::array<JointKernels<Real>, 3> joints;  // rods between centres, between anchors; hinges
+    // rods between centres, between anchors; hinges; springs and ropes; what acts on angles
+    std::array<JointKernels<Real>, 5> joints;
     // The last three: without and with rotation; then the same where some bodies have joints.
     std::array<void (*)(const BeginSubsteps<Real>&, std::size_t first, std::size_t last), 2> begin_substeps;
     std::array<void (*)(const AdvanceBodies<Real>&, std::size_t first, std::size_t last), 4> advance_bodies;

@@ -12,6 +12,7 @@
 #include "kernels/find_impacts.hpp"
 #include "kernels/find_near.hpp"
 #include "kernels/solve_contacts.hpp"
+#include "kernels/sweep_drives.hpp"
 #include "kernels/sweep_joints.hpp"
 #include "simd/lanes.hpp"
 
@@ -59,12 +60,14 @@ constexpr KernelTable<Real> make_table(std::string_view isa, const ConvexKernels
                      make_contact_kernels<kRough | kFixedAngles, Real, Isa>(),
                      make_contact_kernels<kRough | kRolling, Real, Isa>(),
                      make_contact_kernels<kRough | kFixedAngles | kRolling, Real, Isa>()},
-        .joints = {{{&give_rods<false, Real, Isa>, &sweep_rods<false, true, Real, Isa>,
-                     &sweep_rods<false, false, Real, Isa>},
-                    {&give_rods<true, Real, Isa>, &sweep_rods<true, true, Real, Isa>,
-                     &sweep_rods<true, false, Real, Isa>},
-                    {&give_hinges<Real, Isa>, &sweep_hinges<true, Real, Isa>,
-                     &sweep_hinges<false, Real, Isa>}}},
+        .joints =
+            {{{&give_rods<false, Real, Isa>, &sweep_rods<false, true, Real, Isa>,
+               &sweep_rods<false, false, Real, Isa>},
+              {&give_rods<true, Real, Isa>, &sweep_rods<true, true, Real, Isa>,
+               &sweep_rods<true, false, Real, Isa>},
+              {&give_hinges<Real, Isa>, &sweep_hinges<true, Real, Isa>, &sweep_hinges<false, Real, Isa>},
+              {&give_springs<Real, Isa>, &sweep_springs<true, Real, Isa>, &sweep_springs<false, Real, Isa>},
+              {&give_angles<Real, Isa>, &sweep_angles<true, Real, Isa>, &sweep_angles<false, Real, Isa>}}},
         .begin_substeps = {&begin_substeps<false, Real, Isa>, &begin_substeps<true, Real, Isa>},
         .advance_bodies = {&advance_bodies<false, false, Real, Isa>, &advance_bodies<true, false, Real, Isa>,
                            &advance_bodies<false, true, Real, Isa>, &advance_bodies<true, true, Real, Isa>},

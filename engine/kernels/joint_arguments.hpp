@@ -4,8 +4,9 @@
 #include <cstdint>
 
 // Plain arguments of the kernels that sweep over joints (solver `soft`): rods between centres, rods between
-// anchors, hinges. Columns are padded and 64-byte aligned; `first` and `last` are multiples of kRowPadding.
-// Records of bodies are those of contact_arguments.hpp; the world is a row beyond the bodies, at rest.
+// anchors, hinges; springs and ropes; limits, motors and springs of angles. Columns are padded and 64-byte
+// aligned; `first` and `last` are multiples of kRowPadding. Records of bodies are those of
+// contact_arguments.hpp; the world is a row beyond the bodies, at rest.
 
 namespace carom {
 
@@ -28,6 +29,14 @@ struct JointColumns {
     Real *arm_a_x, *arm_a_y;              // m, in the last substep
     Real *arm_b_x, *arm_b_y;              //
     Real *per_rim_a, *per_rim_b;          // 1/m, of the rims of the bodies
+    // Only where something springs, drives or has ends: lengths [m] or angles [rad], impulses in N s or N m
+    // s. Of these joints impulse_x is that of the spring, impulse_y of the motor; start_x of angles is the
+    // angle.
+    Real *impulse_z, *impulse_w;  // of the lower and of the upper end
+    Real* value;                  // the length or angle in this substep
+    Real *alpha, *gamma;          // 1/s, no unit: constraints/joints/spring_law.hpp; 0, 0: no spring
+    Real *lower, *upper;          // beyond all numbers where there is no end
+    Real *speed, *most;           // m/s or rad/s; N s or N m s in a substep, 0 where there is no motor
 };
 
 /// One Gauss-Seidel sweep over joints of a kind.
@@ -41,7 +50,7 @@ struct SweepJoints {
     Real half_h;         // s
     Real per_h;          // 1/s
     Real recovery;       // share of an error that the first sweep takes away, by displacement
-    Real most;           // largest correction, in lengths of the rod; of hinges, m
+    Real most;           // largest correction, in lengths of the rod; of hinges, m; of angles, rad
     Real over_relaxation;
 };
 

@@ -138,6 +138,19 @@ template <class Lanes, bool kArms, class Real>
     return d;
 }
 
+/// Turns the bodies of a batch by an angular impulse of displacement [kg m²].
+template <class Lanes, class Real, bool kArms>
+[[gnu::always_inline]] inline void turn_by_displacement(Real* turn, const std::int32_t* rows,
+                                                        const JointSide<Lanes, kArms>& side,
+                                                        typename Lanes::Batch torque) {
+    using F = typename Lanes::Batch;
+    const F turning = simd::max(side.record[3], F(0));
+    alignas(64) Real added[Lanes::size];
+    Lanes::store(added, (turning + turning) * side.per_rim * torque);
+    for (std::size_t lane = 0; lane < Lanes::size; ++lane)
+        if (added[lane] != Real(0)) turn[rows[lane]] += added[lane];
+}
+
 /// Displaces the bodies by an impulse (px, py) [kg m] on b, and the other way on a.
 template <class Lanes, bool kArms, class Real>
 [[gnu::always_inline]] inline void displace(const SweepJoints<Real>& k, std::size_t c,
@@ -152,15 +165,11 @@ template <class Lanes, bool kArms, class Real>
     Lanes::store_rows2(k.displacement, k.joints.a + c, moved_a);
     Lanes::store_rows2(k.displacement, k.joints.b + c, moved_b);
     if constexpr (kArms) {
-        const auto turn = [&](const std::int32_t* rows, const JointSide<Lanes, kArms>& side, F sign) {
-            const F turning = simd::max(side.record[3], F(0));
-            const F by = sign * (turning + turning) * side.per_rim * (side.arm.x * p.y - side.arm.y * p.x);
-            alignas(64) Real added[Lanes::size];
-            Lanes::store(added, by);
-            for (std::size_t lane = 0; lane < Lanes::size; ++lane)
-                if (added[lane] != Real(0)) k.turn[rows[lane]] += added[lane];
+        const auto moment = [&](const JointSide<Lanes, kArms>& side, F sign) {
+            return sign * (side.arm.x * p.y - side.arm.y * p.x);
         };
-        turn(k.joints.a + c, a, F(-1)), turn(k.joints.b + c, b, F(1));
+        turn_by_displacement<Lanes>(k.turn, k.joints.a + c, a, moment(a, F(-1)));
+        turn_by_displacement<Lanes>(k.turn, k.joints.b + c, b, moment(b, F(1)));
     }
 }
 

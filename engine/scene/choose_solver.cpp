@@ -3,6 +3,7 @@
 #include "scene/event_limits.hpp"
 #include "scene/mass.hpp"
 #include "scene/validation.hpp"
+#include "shapes/convex_geometry.hpp"
 
 namespace carom {
 namespace {
@@ -15,7 +16,7 @@ bool is_inelastic(const Body& body) {
 
 std::optional<Problem> find_roughness_problem(const Item& item, const Material& material, Vec2 gravity,
                                               Solver solver) {
-    if (solver == Solver::soft) return std::nullopt;
+    if (solver == Solver::soft || solver == Solver::rattle) return std::nullopt;  // this one has no contacts
     if (material.rolling_resistance > 0)
         return problem(ErrorCode::inconsistent, item, "/material/rolling_resistance", "rolling resistance ",
                        material.rolling_resistance, ", but the solver ", quoted(name_of(solver)),
@@ -42,6 +43,14 @@ std::optional<Problem> find_filter_problem(const Item& item, const Body& body) {
     if (body.category != kDefaultCategory) return refuse("category", body.category);
     if (body.mask != kDefaultMask) return refuse("mask", body.mask);
     return std::nullopt;
+}
+
+/// Lines are there to be touched alone.
+std::optional<Problem> find_rattle_problem(const Item& item, const Body& body) {
+    if (is_disc(body.shape) || is_convex(body.shape)) return std::nullopt;
+    return problem(ErrorCode::inconsistent, item, join("/shape/", name_of(body.shape)), "the shape ",
+                   quoted(name_of(body.shape)),
+                   ", but the solver \"rattle\" has joints alone, no contacts. Use \"soft\" or \"auto\".");
 }
 
 }  // namespace
@@ -127,6 +136,7 @@ std::optional<Problem> find_solver_problem(const EffectOverrides& effects, Solve
 }
 
 std::optional<Problem> find_solver_problem(const Item& item, const Body& body, Vec2 gravity, Solver solver) {
+    if (solver == Solver::rattle) return find_rattle_problem(item, body);
     if (!is_disc(body.shape) && solver != Solver::soft)
         return problem(ErrorCode::inconsistent, item, join("/shape/", name_of(body.shape)), "the shape ",
                        quoted(name_of(body.shape)), ", but the solver ", quoted(name_of(solver)),
@@ -140,7 +150,7 @@ std::optional<Problem> find_solver_problem(const Item& item, const Body& body, V
 }
 
 std::optional<Problem> find_joint_solver_problem(std::size_t joints, Solver solver) {
-    if (joints == 0 || solver == Solver::soft) return std::nullopt;
+    if (joints == 0 || solver == Solver::soft || solver == Solver::rattle) return std::nullopt;
     return problem(ErrorCode::inconsistent, {"the scene has", "/joints", -1, ""}, "", joints,
                    joints == 1 ? " joint" : " joints", ", but the solver ", quoted(name_of(solver)),
                    " knows none. Use \"soft\" or \"auto\", or take the joints out.");
@@ -151,6 +161,10 @@ std::optional<Problem> find_solver_problem(const Scene& scene, Solver solver) {
     if (auto found = find_joint_solver_problem(scene.joints.size(), solver)) return found;
     if (solver == Solver::event)
         if (auto found = find_event_problem(scene)) return found;
+    if (scene.walls && solver == Solver::rattle)
+        return problem(ErrorCode::inconsistent, {"the scene has", "/walls", -1, ""}, "",
+                       "walls, but the solver \"rattle\" has joints alone, no contacts. Use \"soft\" or "
+                       "\"auto\", or take the walls out.");
     if (scene.walls)
         if (auto found = find_roughness_problem({"the walls have", "/walls", -1, ""}, scene.walls->material,
                                                 scene.gravity, solver))
@@ -163,7 +177,7 @@ std::optional<Problem> find_solver_problem(const Scene& scene, Solver solver) {
 }
 
 int default_substeps(Solver solver) {
-    return solver == Solver::soft ? 4 : 1;
+    return solver == Solver::soft || solver == Solver::rattle ? 4 : 1;
 }
 
 }  // namespace carom

@@ -128,6 +128,17 @@ struct FindProblem {
         return check(item, join(kKind, "/damping_ratio"), kind.damping_ratio, kDampingRatio);
     }
 
+    std::optional<Problem> operator()(const GearJoint& kind) const {
+        constexpr std::string_view kKind = "/gear";
+        static constexpr Quantity kRatio{"ratio", "", -kLargestGearRatio, kLargestGearRatio,
+                                         "It is the turn of the second over that of the first."};
+        if (auto found = check(item, join(kKind, "/ratio"), kind.ratio, kRatio)) return found;
+        if (std::fabs(kind.ratio) * kLargestGearRatio >= 1) return std::nullopt;
+        return problem(ErrorCode::out_of_range, item, join(kKind, "/ratio"), "ratio ", kind.ratio,
+                       "; expected at least ", 1 / kLargestGearRatio, " or at most ", -1 / kLargestGearRatio,
+                       ". Exchange first and second for its inverse.");
+    }
+
   private:
     std::optional<Problem> check_anchor(std::string_view kind, const std::optional<Vec2>& anchor) const {
         return anchor ? check_point(item, join(kind, "/anchor"), *anchor) : std::nullopt;
@@ -135,8 +146,8 @@ struct FindProblem {
 };
 
 std::string_view key_of(const Joint& joint) {
-    static constexpr std::string_view kKeys[] = {"/distance", "/revolute", "/prismatic",
-                                                 "/weld",     "/wheel",    "/target"};
+    static constexpr std::string_view kKeys[] = {"/distance", "/revolute", "/prismatic", "/weld",
+                                                 "/wheel",    "/target",   "/gear"};
     return kKeys[joint.kind.index()];
 }
 
@@ -161,7 +172,22 @@ std::optional<Problem> find_length_problem(const Item& item, const Joint& joint,
 }  // namespace
 
 std::optional<Problem> find_joint_problem(const Item& item, const Joint& joint) {
-    if (!joint.a && !joint.b)
+    const auto* gear = std::get_if<GearJoint>(&joint.kind);
+    if (gear && gear->first.has_value() != gear->second.has_value())
+        return problem(ErrorCode::missing, item, gear->first ? "/gear/second" : "/gear/first",
+                       "one joint that it couples; expected two, \"first\" and \"second\", or two bodies.");
+    const bool is_of_joints = gear && gear->first;
+    if (is_of_joints && (joint.a || joint.b))
+        return problem(ErrorCode::inconsistent, item, "/gear/first",
+                       "joints and bodies to couple; expected one of both. Leave \"a\" and \"b\" out.");
+    if (is_of_joints && *gear->first == *gear->second)
+        return problem(ErrorCode::inconsistent, item, "/gear/second", "joint ", gear->second->index,
+                       " as first and as second; expected two joints.");
+    if (gear && !is_of_joints && (!joint.a || !joint.b))
+        return problem(
+            ErrorCode::missing, item, joint.a ? "/gear/b" : "/gear/a",
+            "no two bodies to couple; expected \"a\" and \"b\", or two joints \"first\" and \"second\".");
+    if (!is_of_joints && !joint.a && !joint.b)
         return problem(ErrorCode::missing, item, key_of(joint),
                        "no body; expected one at \"a\" or \"b\" at least, and null for the world.");
     if (joint.a && joint.b && joint.a->index == joint.b->index)
@@ -185,7 +211,30 @@ std::optional<Problem> find_joint_mobility_problem(const Item& item, bool moves_
         "them dynamic.");
 }
 
+/// The joints that a gear couples: listed before it, with a coordinate.
+std::optional<Problem> find_gear_problem(const Item& item, const GearJoint& gear, const Scene& scene) {
+    const auto own = static_cast<std::size_t>(item.index);
+    for (const auto& [key, id] :
+         {std::pair{"/gear/first", *gear.first}, std::pair{"/gear/second", *gear.second}}) {
+        if (id.index >= own || id.generation != 0)
+            return problem(
+                ErrorCode::unknown_name, item, key, "joint ", id.index,
+                ", which does not come before it; expected a joint that is listed above the gear.");
+        const Joint& coupled = scene.joints[id.index];
+        const bool has_coordinate = std::holds_alternative<RevoluteJoint>(coupled.kind) ||
+                                    std::holds_alternative<PrismaticJoint>(coupled.kind) ||
+                                    std::holds_alternative<WheelJoint>(coupled.kind);
+        if (has_coordinate && coupled.b) continue;
+        return problem(
+            ErrorCode::inconsistent, item, key, "joint ", id.index,
+            ", which it cannot couple; expected a revolute, prismatic or wheel joint with a body b.");
+    }
+    return std::nullopt;
+}
+
 std::optional<Problem> find_joint_bodies_problem(const Item& item, const Joint& joint, const Scene& scene) {
+    if (const auto* gear = std::get_if<GearJoint>(&joint.kind); gear && gear->first)
+        return find_gear_problem(item, *gear, scene);
     bool moves[2] = {false, false};
     for (int end = 0; end < 2; ++end) {
         const std::optional<BodyId>& id = end == 0 ? joint.a : joint.b;

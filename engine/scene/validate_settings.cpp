@@ -12,7 +12,7 @@ constexpr Item kAccuracyItem{"the accuracy has", "/accuracy", -1, ""};
 
 constexpr bool is_built(Solver solver) {
     return solver == Solver::automatic || solver == Solver::pairwise || solver == Solver::impulse ||
-           solver == Solver::event || solver == Solver::soft;
+           solver == Solver::event || solver == Solver::soft || solver == Solver::rattle;
 }
 
 }  // namespace

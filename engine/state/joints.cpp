@@ -82,6 +82,13 @@ struct Describe {
         stored.anchor_b = kind.anchor, stored.target = kind.target, stored.max_force = kind.max_force;
         stored.frequency = kind.frequency, stored.damping_ratio = kind.damping_ratio;
     }
+    void operator()(const GearJoint& kind) const {
+        stored.type = JointType::gear;
+        stored.ratio = kind.ratio;
+        stored.angle = b.angle - kind.ratio * a.angle;
+        if (kind.first) stored.first = kind.first->index;
+        if (kind.second) stored.second = kind.second->index;
+    }
 };
 
 }  // namespace
@@ -91,7 +98,8 @@ StoredJoint stored_joint(const Joint& joint, const JointBody& a, const JointBody
     StoredJoint stored;
     std::visit(Describe{stored, a, b, !joint.b}, joint.kind);
     stored.a = joint.a.value_or(BodyId{}), stored.b = joint.b.value_or(BodyId{});
-    if (!joint.b) {
+    if (!joint.b && stored.type != JointType::gear) {
+        stored.is_exchanged = true;
         std::swap(stored.a, stored.b);
         std::swap(stored.anchor_a, stored.anchor_b);
         stored.axis = -rotate(rotation_by(a.angle), stored.axis);
@@ -134,6 +142,12 @@ void JointStore::remove(std::size_t slot) {
     slots_[slot].is_used = false, ++slots_[slot].generation;
     slots_[slot].joint = {};
     free_.push_back(static_cast<std::uint32_t>(slot));
+    for (std::size_t other = 0; other < slots_.size(); ++other) {
+        const StoredJoint& gear = slots_[other].joint;
+        if (slots_[other].is_used && gear.type == JointType::gear &&
+            (gear.first == slot || gear.second == slot))
+            remove(other);
+    }
     list_excluded();
 }
 

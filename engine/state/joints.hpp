@@ -14,7 +14,10 @@
 
 namespace carom {
 
-enum class JointType : std::uint8_t { distance, revolute, prismatic, weld, wheel, target };
+enum class JointType : std::uint8_t { distance, revolute, prismatic, weld, wheel, target, gear };
+
+/// In place of the slot of a joint: none.
+inline constexpr std::uint32_t kNoJoint = UINT32_MAX;
 
 /// A joint as a world keeps it: what was asked for, as numbers, and what it did last. The solver makes
 /// columns of those that it solves by lanes (solvers/soft/joints/).
@@ -25,13 +28,17 @@ struct StoredJoint {
     bool is_held = true;                      // whether the length of a distance joint is: a rope's is not
     Vec2 anchor_a, anchor_b;                  // m, in the frame of the body, or of the world
     Vec2 axis{1, 0};                          // of length 1, in the frame of a
-    double angle = 0;                         // rad, of b against a, at which its angle counts as 0
+    double angle = 0;                         // rad, of b against a, at which its angle counts as 0; of
+                                              // a gear, what constraints/joints/gear_joint.hpp says
     double length = 0;                        // m
     double lower = 0, upper = 0;              // m or rad
     double motor_speed = 0, max_motor = 0;    // m/s or rad/s; N or N m
     double frequency = 0, damping_ratio = 0;  // Hz; 0: rigid
-    Vec2 target;                              // m
-    double max_force = 0;                     // N
+    double ratio = 1;                         // of a gear
+    std::uint32_t first = kNoJoint, second = kNoJoint;  // slots of the joints that a gear couples, or none
+    bool is_exchanged = false;                          // whether a is what was given as b
+    Vec2 target;                                        // m
+    double max_force = 0;                               // N
     double break_force = std::numeric_limits<double>::infinity();
     double break_torque = std::numeric_limits<double>::infinity();
     // What it did last.
@@ -60,6 +67,7 @@ class JointStore {
     }
 
     JointId add(const StoredJoint& joint);
+    /// Removes a joint, and the gears that couple it.
     void remove(std::size_t slot);
     /// Removes the joints of a body that is removed.
     void remove_of(BodyId body);

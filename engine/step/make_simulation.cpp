@@ -5,6 +5,7 @@ namespace carom {
 template <class Real>
 std::unique_ptr<Simulation<Real>> make_simulation(Solver solver) {
     if (solver == Solver::soft) return make_soft_simulation<Real>();
+    if (solver == Solver::rattle) return make_rattle_simulation<Real>();
     if (solver == Solver::event) return make_event_simulation<Real>();
     return make_impulse_simulation<Real>();
 }

@@ -7,7 +7,7 @@
 namespace carom {
 
 /// A simulation with an empty world and the step of a solver.
-/// @param solver  impulse, soft or event
+/// @param solver  impulse, soft, rattle or event
 template <class Real>
 std::unique_ptr<Simulation<Real>> make_simulation(Solver solver);
 
@@ -16,6 +16,9 @@ template <class Real>
 std::unique_ptr<Simulation<Real>> make_impulse_simulation();
 template <class Real>
 std::unique_ptr<Simulation<Real>> make_soft_simulation();
+/// The step of `soft` without contacts.
+template <class Real>
+std::unique_ptr<Simulation<Real>> make_rattle_simulation();
 template <class Real>
 std::unique_ptr<Simulation<Real>> make_event_simulation();
 

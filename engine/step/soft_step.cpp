@@ -20,12 +20,12 @@ class SoftStep final : public SoftSimulation<Real> {
     using Sim = SoftSimulation<Real>;
 
     static constexpr auto always = [](const Sim&) { return true; };
-    static constexpr auto can_meet = [](const Sim& sim) { return sim.can_meet(); };
+    static constexpr auto can_meet = [](const Sim& sim) { return sim.can_touch(); };
     static constexpr auto sleeps = [](const Sim& sim) {
-        return sim.world.effects.sleeping && sim.can_meet();
+        return sim.world.effects.sleeping && sim.can_touch();
     };
     static constexpr auto bounces = [](const Sim& sim) {
-        return sim.world.effects.restitution && sim.can_meet();
+        return sim.world.effects.restitution && sim.can_touch();
     };
     static constexpr auto has_edges = [](const Sim& sim) {
         return !sim.world.edges.empty() && sim.can_meet();
@@ -40,15 +40,17 @@ class SoftStep final : public SoftSimulation<Real> {
         return sim.world.effects.gravity && sim.world.bodies.count >= CoarseCorrection<Real>::kFewestLoaded;
     };
     static constexpr auto has_masses = [](const Sim& sim) {
-        return sim.can_meet() && (!sim.world.bodies.mass.is_uniform() || sim.world.bodies.has_flags);
+        return sim.can_touch() && (!sim.world.bodies.mass.is_uniform() || sim.world.bodies.has_flags);
     };
-    static constexpr auto has_shapes = [](const Sim& sim) { return sim.world.bodies.has_shapes; };
+    static constexpr auto has_shapes = [](const Sim& sim) {
+        return sim.world.bodies.has_shapes && !sim.soft.joints.is_rattle;
+    };
     static constexpr auto shapes_bounce = [](const Sim& sim) {
-        return sim.world.bodies.has_shapes && sim.world.effects.restitution;
+        return has_shapes(sim) && sim.world.effects.restitution;
     };
     static constexpr auto has_joints = [](const Sim& sim) { return !sim.world.joints.empty(); };
     static constexpr auto has_joints_in_contact = [](const Sim& sim) {
-        return !sim.world.joints.empty() && sim.soft.joints.touches() && sim.can_meet();
+        return !sim.world.joints.empty() && sim.soft.joints.touches() && sim.can_touch();
     };
     static constexpr auto has_sensors = [](const Sim& sim) { return sim.world.sensing.is_called_for(); };
     static constexpr auto has_lost_bodies = [](const Sim& sim) { return !sim.lost.empty(); };
@@ -158,6 +160,7 @@ class SoftStep final : public SoftSimulation<Real> {
     static_assert(kFirstOfEnd + std::size(kEnd) <= StageTimes::kMostStages);
 
     int substeps_against_gravity(double dt) const {
+        if (this->soft.joints.is_rattle) return 1;
         const Radii* known = this->candidates.known_radii();
         const double usual = known ? known->usual : measure_radii(this->world.bodies).usual;
         if (!(usual > 0)) return 0;
@@ -167,6 +170,8 @@ class SoftStep final : public SoftSimulation<Real> {
     }
 
   public:
+    explicit SoftStep(bool is_rattle = false) { this->soft.joints.is_rattle = is_rattle; }
+
     void step(double dt) override {
         if (this->has_anything_to_move()) {
             this->flight_dt = dt;
@@ -203,6 +208,15 @@ std::unique_ptr<Simulation<float>> make_soft_simulation() {
 template <>
 std::unique_ptr<Simulation<double>> make_soft_simulation() {
     return std::make_unique<SoftStep<double>>();
+}
+
+template <>
+std::unique_ptr<Simulation<float>> make_rattle_simulation() {
+    return std::make_unique<SoftStep<float>>(true);
+}
+template <>
+std::unique_ptr<Simulation<double>> make_rattle_simulation() {
+    return std::make_unique<SoftStep<double>>(true);
 }
 
 }  // namespace carom

@@ -51,7 +51,17 @@ JointId BasicWorld<Real>::add(const Joint& joint) {
         const std::size_t row = own.row_of(*id, kWhere);
         moves[end] = !own.bodies().is_immovable(row);
     }
-    raise_if(kWhere, find_joint_mobility_problem(kJoint, moves[0], moves[1]));
+    if (const auto* gear = std::get_if<GearJoint>(&joint.kind); gear && gear->first) {
+        for (const JointId coupled : {*gear->first, *gear->second}) {
+            const StoredJoint& of = own.world().joints[own.world().joints.slot_of(coupled, kWhere)];
+            if (of.is_exchanged || (of.type != JointType::revolute && of.type != JointType::prismatic &&
+                                    of.type != JointType::wheel))
+                refuse(kWhere, "coordinate that a gear could couple",
+                       "revolute, prismatic or wheel with a body b for both ends of a gear");
+        }
+    } else {
+        raise_if(kWhere, find_joint_mobility_problem(kJoint, moves[0], moves[1]));
+    }
     if (own.world().joints.count() >= kLargestJointCount)
         throw Error(ErrorCode::too_large, join(kWhere, ": the world has ", own.world().joints.count(),
                                                " joints, which is the limit. Remove some first."));
@@ -71,8 +81,8 @@ JointId BasicWorld<Real>::add(const Joint& joint) {
     if (turns_bodies(joint)) own.turn_rotation_on();
     own.world().effects.joints = true;
     own.report_on("joints", "a joint was added");
-    for (const std::optional<BodyId>& id : {joint.a, joint.b})
-        if (id) own.wake_around(own.row_of(*id, kWhere));
+    for (const BodyId id : {stored.a, stored.b})
+        if (id != BodyId{}) own.wake_around(own.row_of(id, kWhere));
     const JointId id = own.world().joints.add(stored);
     own.sim().forget_derived_state();
     return id;
@@ -105,7 +115,7 @@ void BasicWorld<Real>::set_motor(JointId joint, double speed, double most) {
     check_number(kWhere, "speed", speed, -kLargestSpeed), check_number(kWhere, "most", most, 0);
     StoredJoint& stored = own.world().joints[slot];
     if (stored.type == JointType::distance || stored.type == JointType::weld ||
-        stored.type == JointType::target)
+        stored.type == JointType::target || stored.type == JointType::gear)
         refuse(kWhere, "motor", "revolute, prismatic or wheel");
     own.wake_joint(slot);
     stored.has_motor = most > 0, stored.motor_speed = speed, stored.max_motor = most;
@@ -178,6 +188,10 @@ JointErrors BasicWorld<Real>::joint_errors() const {
                                : row.law == RowLaw::stop ? std::fmax(-row.value, 0)
                                                          : 0;
             worst = std::fmax(worst, row.n == Vec2{} ? off * apart : off);
+        }
+        if (joint.type == JointType::gear) {
+            const double off = gear_value(world.joints, joint, [&](BodyId id) { return pose_of(world, id); });
+            worst = std::fabs(off) * std::fmax(apart, 0);
         }
         ++errors.joints;
         sum += worst, errors.max = std::fmax(errors.max, worst);

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "constraints/joints/gear_joint.hpp"
 #include "isa/select_isa.hpp"
 #include "scene/choose_solver.hpp"
 #include "scene/validation.hpp"
@@ -49,7 +50,21 @@ StoredJoint joint_of(const WorldState<Real>& world, const Joint& joint) {
         return {{b.position_x[row], b.position_y[row]},
                 b.has_rotation ? static_cast<double>(b.angle[row]) : 0};
     };
-    return stored_joint(joint, state_of(joint.a), state_of(joint.b));
+    StoredJoint stored = stored_joint(joint, state_of(joint.a), state_of(joint.b));
+    if (stored.first == kNoJoint) return stored;
+    const auto mover_of = [&](std::uint32_t slot) {
+        const StoredJoint& of = world.joints[slot];
+        const bool is_held = world.bodies.is_immovable(world.handles.row_of_slot(of.b.index));
+        return is_held ? of.a : of.b;
+    };
+    stored.a = mover_of(stored.first), stored.b = mover_of(stored.second);
+    stored.angle = 0;
+    stored.angle = gear_value(world.joints, stored, [&](BodyId id) -> JointPose {
+        if (id == BodyId{}) return {};
+        const JointBody body = state_of(id);
+        return {body.position, rotation_by(body.angle), body.angle};
+    });
+    return stored;
 }
 
 template StoredJoint joint_of(const WorldState<float>&, const Joint&);

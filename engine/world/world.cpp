@@ -210,10 +210,10 @@ BodyId BasicWorld<Real>::add(const Body& body) {
 template <class Real>
 void BasicWorld<Real>::set_solver(Solver solver) {
     Simulation<Real>& sim = implementation_->sim();
-    if (solver == Solver::pairwise || solver == Solver::rigid || solver == Solver::rattle)
+    if (solver == Solver::pairwise || solver == Solver::rigid)
         throw Error(ErrorCode::inconsistent,
                     "World::set_solver: solver \"" + std::string(name_of(solver)) +
-                        "\" steps no World. Use \"auto\", \"impulse\", \"soft\" or \"event\".");
+                        "\" steps no World. Use \"auto\", \"impulse\", \"soft\", \"event\" or \"rattle\".");
     const Solver before = sim.solver();
     const std::string reason_before = implementation_->called.solver_reason;
     SolverChoice choice{solver, "asked for"};

@@ -154,6 +154,7 @@ VALID = [
     joint("prismatic", axis=[1, 0], anchor=[0, 0], lower=0, upper=2, motor_speed=1, max_motor_force=10),
     joint("weld", anchor=[0, 0], frequency=0, damping_ratio=0, collide=True),
     joint("wheel", anchor=[0, 0], axis=[0, 1], frequency=4, damping_ratio=0.7, motor_speed=9, max_motor_torque=5),
+    joint("gear", a=0, b=1, ratio=-2),
     joint("target", a=None, anchor=[0, 0], target=[1, 1], max_force=100, frequency=5, damping_ratio=0.7),
     joint("revolute", frequency=2, damping_ratio=0.5, break_force=10, break_torque=5),
     body(filter={"group": -3}),
@@ -168,6 +169,7 @@ VALID = [
     scene(accuracy={"solver": "auto", "substeps": 4, "iterations": 1, "precision": "float"}),
     scene(accuracy={"solver": "impulse", "substeps": 1024, "precision": "double"}),
     scene(accuracy={"solver": "pairwise"}),
+    scene(accuracy={"solver": "rattle"}),
     scene(effects={}),
     scene(effects={"sleep": False, "continuous": True, "ledger": True}),
     scene(effects={"gravity": False, "drag": True, "rotation": True, "restitution": False}),
@@ -180,7 +182,6 @@ VALID = [
 # Valid for the schema; the reader says that the part is not built yet.
 NOT_BUILT_YET = [
     scene(accuracy={"solver": "rigid"}),
-    scene(accuracy={"solver": "rattle"}),
 ]
 
 INVALID = [

@@ -50,23 +50,21 @@ void JointSystem::list_extras() {
     for (std::size_t i = 0; i < count; ++i) {
         const Extra& extra = extras_[i];
         const auto j = static_cast<std::size_t>(extra.joint);
-        const JointRow& row = rows_[j].row[static_cast<std::size_t>(extra.row)];
-        const SystemBody &a = bodies[static_cast<std::size_t>(joints[j].a)],
-                         &b = bodies[static_cast<std::size_t>(joints[j].b)];
-        const double alone = length_squared(row.n) * (a.inverse_mass + b.inverse_mass) +
-                             a.inverse_inertia * row.ja * row.ja + b.inverse_inertia * row.jb * row.jb;
+        double alone = 0;
+        for_each_part(j, extra.row, [&](std::size_t body, const Vector& part) {
+            alone += bodies[body].inverse_mass * (part[0] * part[0] + part[1] * part[1]) +
+                     bodies[body].inverse_inertia * part[2] * part[2];
+        });
         matrix_[i * count + i] += kLoopSoftness * alone + softness_[j][static_cast<std::size_t>(extra.row)];
         if (!(alone > 0)) matrix_[i * count + i] = 1;
     }
 }
 
 void JointSystem::push_row(const Extra& extra, double impulse) {
-    const auto j = static_cast<std::size_t>(extra.joint);
-    const Vector of_a = row_of_body(j, extra.row, false), of_b = row_of_body(j, extra.row, true);
-    for (std::size_t c = 0; c < 3; ++c) {
-        pushed_[static_cast<std::size_t>(joints[j].a)][c] += impulse * of_a[c];
-        pushed_[static_cast<std::size_t>(joints[j].b)][c] += impulse * of_b[c];
-    }
+    for_each_part(static_cast<std::size_t>(extra.joint), extra.row,
+                  [&](std::size_t body, const Vector& part) {
+                      for (std::size_t c = 0; c < 3; ++c) pushed_[body][c] += impulse * part[c];
+                  });
 }
 
 void JointSystem::add_column(std::size_t extra) {
@@ -78,12 +76,11 @@ void JointSystem::add_column(std::size_t extra) {
 
 /// change holds nothing for bodies that do not move.
 double JointSystem::change_of_row(const Extra& extra, const std::vector<Vector>& change) const {
-    const auto j = static_cast<std::size_t>(extra.joint);
     double sum = 0;
-    for (const bool of_b : {false, true}) {
-        const auto body = static_cast<std::size_t>(of_b ? joints[j].b : joints[j].a);
-        if (bodies[body].inverse_mass > 0) sum += dot3(row_of_body(j, extra.row, of_b), change[body]);
-    }
+    for_each_part(static_cast<std::size_t>(extra.joint), extra.row,
+                  [&](std::size_t body, const Vector& part) {
+                      if (bodies[body].inverse_mass > 0) sum += dot3(part, change[body]);
+                  });
     return sum;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "constraints/joints/distance_joint.hpp"
+#include "constraints/joints/gear_joint.hpp"
 #include "constraints/joints/prismatic_joint.hpp"
 #include "constraints/joints/revolute_joint.hpp"
 #include "constraints/joints/target_joint.hpp"
@@ -9,7 +10,7 @@
 
 namespace carom {
 
-/// The rows of a joint of any kind; a target has none.
+/// The rows of a joint of any kind; a target has none, and that of a gear takes more than two bodies.
 inline JointRows rows_of(const StoredJoint& joint, const JointPose& a, const JointPose& b) {
     const JointArms arms = arms_of(joint, a, b);
     JointRows rows;
@@ -30,6 +31,7 @@ inline JointRows rows_of(const StoredJoint& joint, const JointPose& a, const Joi
             add_wheel_rows(joint, a, arms, rows);
             break;
         case JointType::target:
+        case JointType::gear:
             break;
     }
     return rows;

@@ -24,6 +24,8 @@ void JointSystem::plan() {
         const StoredJoint& joint = *joints[j].joint;
         return joint.type != JointType::target && (joint.type != JointType::distance || joint.is_held);
     };
+    // A gear over more than two bodies has no place in a tree.
+    const auto fits_tree = [&](std::size_t j) { return has_rows(j) && joints[j].gear < 0; };
     for (std::size_t j = 0; j < joints.size(); ++j) {
         joints_of[static_cast<std::size_t>(joints[j].a)].push_back(static_cast<std::int32_t>(j));
         joints_of[static_cast<std::size_t>(joints[j].b)].push_back(static_cast<std::int32_t>(j));
@@ -37,7 +39,7 @@ void JointSystem::plan() {
             const auto joint = static_cast<std::size_t>(j);
             const std::int32_t child = joints[joint].a == parent ? joints[joint].b : joints[joint].a;
             const auto body = static_cast<std::size_t>(child);
-            if (is_used[joint] || !has_rows(joint) || !moves(body) || is_seen[body]) continue;
+            if (is_used[joint] || !fits_tree(joint) || !moves(body) || is_seen[body]) continue;
             is_used[joint] = is_seen[body] = 1;
             Link link;
             link.body = child, link.joint = j, link.parent = parent;
@@ -67,7 +69,7 @@ void JointSystem::plan() {
             loops_.push_back(static_cast<std::int32_t>(j));
             const JointRows rows = rows_of(joint, bodies[static_cast<std::size_t>(joints[j].a)].pose,
                                            bodies[static_cast<std::size_t>(joints[j].b)].pose);
-            loop_rows_ += static_cast<std::size_t>(rows.firm);
+            loop_rows_ += joints[j].gear < 0 ? static_cast<std::size_t>(rows.firm) : 1;
         }
         drive_rows_ += std::size_t{joint.has_motor} + (joint.has_lower || joint.has_upper);
     }
@@ -76,6 +78,45 @@ void JointSystem::plan() {
     stiffness_.resize(bodies.size());
     moved_.resize(bodies.size()), inertia_.resize(bodies.size());
     pushed_.resize(bodies.size()), change_.resize(bodies.size());
+}
+
+void JointSystem::add_gear(std::size_t joint, std::int32_t first, std::int32_t second) {
+    Member& member = joints[joint];
+    member.gear = static_cast<std::int32_t>(gears_.size());
+    const auto coordinate = [&](std::int32_t of, std::int32_t body) {
+        if (of < 0) return Coordinate{-1, 0, body, {}};
+        const Member& coupled = joints[static_cast<std::size_t>(of)];
+        return Coordinate{of, coupled.a, coupled.b, {}};
+    };
+    gears_.push_back(
+        {static_cast<std::int32_t>(joint), {coordinate(first, member.a), coordinate(second, member.b)}});
+}
+
+/// @param pose_of  JointPose of a body by its number
+template <class PoseOf>
+double JointSystem::value_of_gear(const Gear& gear, const PoseOf& pose_of) const {
+    const auto value = [&](const Coordinate& of) {
+        if (of.joint < 0) return coordinate_of_body(pose_of(of.b)).value;
+        return coordinate_of(*joints[static_cast<std::size_t>(of.joint)].joint, pose_of(of.a), pose_of(of.b))
+            .value;
+    };
+    return gear_value(*joints[static_cast<std::size_t>(gear.joint)].joint, value(gear.coordinates[0]),
+                      value(gear.coordinates[1]));
+}
+
+/// Its row takes the place of one of two bodies, that of its second coordinate.
+void JointSystem::measure_gear(Gear& gear) {
+    const auto pose_of = [&](std::int32_t body) -> const JointPose& {
+        return bodies[static_cast<std::size_t>(body)].pose;
+    };
+    for (Coordinate& of : gear.coordinates)
+        of.row = of.joint < 0 ? coordinate_of_body(pose_of(of.b))
+                              : coordinate_of(*joints[static_cast<std::size_t>(of.joint)].joint,
+                                              pose_of(of.a), pose_of(of.b));
+    JointRows& rows = rows_[static_cast<std::size_t>(gear.joint)];
+    rows = {};
+    const JointRow& second = gear.coordinates[1].row;
+    rows.add(second.n, second.ja, second.jb, value_of_gear(gear, pose_of), RowLaw::hold, 0);
 }
 
 void JointSystem::set_substep(double h) {
@@ -99,7 +140,10 @@ void JointSystem::measure_rows() {
         Member& member = joints[j];
         const SystemBody &a = bodies[static_cast<std::size_t>(member.a)],
                          &b = bodies[static_cast<std::size_t>(member.b)];
-        rows_[j] = rows_of(*member.joint, a.pose, b.pose);
+        if (member.gear < 0)
+            rows_[j] = rows_of(*member.joint, a.pose, b.pose);
+        else
+            measure_gear(gears_[static_cast<std::size_t>(member.gear)]);
         const SpringTerms& terms = part_ == Part::half ? member.half : member.whole;
         for (int k = 0; k < rows_[j].count; ++k) {
             const auto i = static_cast<std::size_t>(k);
@@ -140,16 +184,22 @@ void JointSystem::give_impulses() {
     for (std::size_t j = 0; j < joints.size(); ++j)
         for (int k = 0; k < rows_[j].firm; ++k) {
             const double impulse = joints[j].impulse[static_cast<std::size_t>(k)];
-            for (const bool of_b : {false, true}) {
-                SystemBody& body = bodies[static_cast<std::size_t>(of_b ? joints[j].b : joints[j].a)];
-                const Vector row = row_of_body(j, k, of_b);
+            for_each_part(j, k, [&](std::size_t number, const Vector& row) {
+                SystemBody& body = bodies[number];
                 body.velocity += (impulse * body.inverse_mass) * Vec2{row[0], row[1]};
                 body.spin += impulse * body.seen_inverse_inertia * row[2];
-            }
+            });
         }
 }
 
 double JointSystem::row_velocity(std::size_t joint, int number) const {
+    if (joints[joint].gear >= 0) {
+        double sum = 0;
+        for_each_part(joint, number, [&](std::size_t body, const Vector& row) {
+            sum += dot3(row, {bodies[body].velocity.x, bodies[body].velocity.y, bodies[body].spin});
+        });
+        return sum;
+    }
     const JointRow& row = rows_[joint].row[static_cast<std::size_t>(number)];
     const SystemBody &a = bodies[static_cast<std::size_t>(joints[joint].a)],
                      &b = bodies[static_cast<std::size_t>(joints[joint].b)];
@@ -188,7 +238,10 @@ void JointSystem::find_right_sides(bool is_curved) {
     for (std::size_t j = 0; j < joints.size(); ++j) {
         const Member& member = joints[j];
         const JointRows& rows = rows_[j];
-        if (is_curved) values_of(*member.joint, pose_of(member.a), pose_of(member.b), rows.firm, values);
+        if (is_curved && member.gear < 0)
+            values_of(*member.joint, pose_of(member.a), pose_of(member.b), rows.firm, values);
+        if (is_curved && member.gear >= 0)
+            values[0] = value_of_gear(gears_[static_cast<std::size_t>(member.gear)], pose_of);
         for (std::size_t i = 0; i < static_cast<std::size_t>(rows.firm); ++i) {
             const double speed =
                 is_curved ? per_h * (values[i] - rows.row[i].value) : row_velocity(j, static_cast<int>(i));
@@ -265,12 +318,13 @@ void JointSystem::restore_velocities() {
 
 /// Where paths bend so much that the method does not come nearer, rows along the tangents do: they take
 /// energy.
-void JointSystem::solve_curved(int rounds) {
+void JointSystem::solve_curved(int rounds, double least) {
     double before = 0;
     if (rounds > 1) keep_velocities();
     for (int round = 0; round < rounds; ++round) {
         find_right_sides(true);
         const double now = largest_right_side();
+        if (now < least) return;
         if (round > 0 && now > kLeastProgress * before) {
             restore_velocities();
             return solve_flat();
@@ -398,7 +452,13 @@ bool JointSystem::correct_positions(double least, double most) {
         const JointPose &a = bodies[static_cast<std::size_t>(joints[j].a)].pose,
                         &b = bodies[static_cast<std::size_t>(joints[j].b)].pose;
         JointRows& rows = rows_[j];
-        values_of(*joints[j].joint, a, b, rows.firm, values);
+        if (joints[j].gear < 0)
+            values_of(*joints[j].joint, a, b, rows.firm, values);
+        else
+            values[0] = value_of_gear(gears_[static_cast<std::size_t>(joints[j].gear)],
+                                      [&](std::int32_t body) -> const JointPose& {
+                                          return bodies[static_cast<std::size_t>(body)].pose;
+                                      });
         for (std::size_t k = 0; k < static_cast<std::size_t>(rows.firm); ++k) rows.row[k].value = values[k];
         if (rows.count == rows.firm) continue;
         const JointRows now = rows_of(*joints[j].joint, a, b);

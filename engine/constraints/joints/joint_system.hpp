@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "constraints/joints/joint_rows.hpp"
@@ -50,12 +51,16 @@ class JointSystem {
     struct Member {
         const StoredJoint* joint = nullptr;
         std::int32_t a = 0, b = 0;
+        std::int32_t gear = -1;           // number among the gears, if it is one
         SpringTerms whole, half;          // of the springs, for the length of a substep
         std::array<double, 3> impulse{};  // N s, of this substep, by slot; what it has given so far
         Vec2 force;                       // N s, on b: sum of all impulses of this step
         double torque = 0;                // N m s, on b, about its anchor
     };
     std::vector<Member> joints;
+
+    /// Makes joint number `joint` a gear of two others by their numbers; below zero: of its own bodies.
+    void add_gear(std::size_t joint, std::int32_t first, std::int32_t second);
 
     /// Finds the order of elimination. To be called when bodies or joints have changed.
     void plan();
@@ -86,7 +91,8 @@ class JointSystem {
     void pull();
     /// Velocities that end on what is held after h; adds to the impulses.
     /// @param rounds  of Newton's method, >= 1
-    void solve_curved(int rounds);
+    /// @param least  m/s: of what rows lack, at which no further round is made
+    void solve_curved(int rounds, double least = 0);
     /// Velocities along what is held now: J v = 0.
     void solve_flat();
     /// Adds what the joints have given since `prepare` to their forces.
@@ -126,6 +132,16 @@ class JointSystem {
         double low, high;    // N s, of its impulse in this substep
         double impulse = 0;  // N s, so far
     };
+    /// A gear, gear_joint.hpp: what it couples, and the rows of that at the present positions.
+    struct Coordinate {
+        std::int32_t joint;  // below zero: the angle of body b
+        std::int32_t a, b;   // bodies
+        JointRow row{};
+    };
+    struct Gear {
+        std::int32_t joint;  // its own number
+        std::array<Coordinate, 2> coordinates;
+    };
     enum class End : std::uint8_t { none, low, high };  // where the impulse of an extra row is
 
     /// What taut joints add to the inertia that a substep sees.
@@ -161,6 +177,12 @@ class JointSystem {
     void list_extras();
     void add_column(std::size_t extra);
     void push_row(const Extra& extra, double impulse);
+    /// Calls fn(body, its part of a row): for both bodies of a joint, up to four of a gear.
+    template <class Fn>
+    void for_each_part(std::size_t joint, int row, const Fn& fn) const;
+    void measure_gear(Gear& gear);
+    template <class PoseOf>
+    double value_of_gear(const Gear& gear, const PoseOf& pose_of) const;
     double change_of_row(const Extra& extra, const std::vector<Vector>& change) const;
     void solve_bounded();
     void solve_free();
@@ -174,6 +196,7 @@ class JointSystem {
 
     std::vector<Link> links_;          // parents before children
     std::vector<std::int32_t> loops_;  // joints that are no part of the tree
+    std::vector<Gear> gears_;
     std::size_t loop_rows_ = 0, drive_rows_ = 0;
     double h_ = 0;  // s
     Part part_ = Part::whole;
@@ -196,5 +219,21 @@ class JointSystem {
     std::vector<double> stiffness_;  // by body: sum of arm · impulse, m N s
     std::vector<std::size_t> free_;
 };
+
+template <class Fn>
+void JointSystem::for_each_part(std::size_t joint, int row, const Fn& fn) const {
+    const Member& member = joints[joint];
+    if (member.gear < 0) {
+        fn(static_cast<std::size_t>(member.a), row_of_body(joint, row, false));
+        fn(static_cast<std::size_t>(member.b), row_of_body(joint, row, true));
+        return;
+    }
+    const auto& [first, second] = gears_[static_cast<std::size_t>(member.gear)].coordinates;
+    for (const auto& [of, by] : {std::pair{&first, -member.joint->ratio}, std::pair{&second, 1.0}}) {
+        const JointRow& r = of->row;
+        fn(static_cast<std::size_t>(of->a), Vector{-by * r.n.x, -by * r.n.y, -by * r.ja});
+        fn(static_cast<std::size_t>(of->b), Vector{by * r.n.x, by * r.n.y, by * r.jb});
+    }
+}
 
 }  // namespace carom

@@ -14,7 +14,7 @@ enum class Solver : std::uint8_t {
     soft,       ///< contacts at rest, friction, rotation: piles
     rigid,      ///< not built yet
     event,      ///< from impact to impact at exact times: discs and walls, nothing at rest, no drag
-    rattle,     ///< not built yet
+    rattle,     ///< joints alone: mechanisms that touch nothing, solved to round-off
 };
 
 enum class Precision : std::uint8_t { single_, double_ };

@@ -76,8 +76,18 @@ struct TargetJoint {
     double damping_ratio = 1;  ///< >= 0
 };
 
+/// Couples what two joints leave free: the second coordinate changes by `ratio` times what the first one
+/// does. The coordinate of a revolute or wheel joint is its angle [rad], that of a prismatic joint its way
+/// [m]; both joints have a body b. Without joints the coordinates are the angles of the gear's own bodies a
+/// and b. A gear goes with either of its joints.
+struct GearJoint {
+    std::optional<JointId> first{};   ///< left out: the angle of a
+    std::optional<JointId> second{};  ///< left out: the angle of b; either both are given or none is
+    double ratio = 1;                 ///< second over first, not 0; below zero: the other way round
+};
+
 using JointKind =
-    std::variant<DistanceJoint, RevoluteJoint, PrismaticJoint, WeldJoint, WheelJoint, TargetJoint>;
+    std::variant<DistanceJoint, RevoluteJoint, PrismaticJoint, WeldJoint, WheelJoint, TargetJoint, GearJoint>;
 
 /// What holds two bodies together, or a body to the world. Needs solver `soft`.
 struct Joint {
@@ -102,5 +112,6 @@ struct JointErrors {
 inline constexpr double kLargestFrequency = 1e6;     // Hz
 inline constexpr double kLargestDampingRatio = 1e3;  // no unit
 inline constexpr double kShortestRod = 1e-9;         // m
+inline constexpr double kLargestGearRatio = 1e6;     // and its inverse the smallest
 
 }  // namespace carom

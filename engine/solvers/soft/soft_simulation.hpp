@@ -15,7 +15,9 @@ class SoftSimulation : public Simulation<Real> {
   public:
     SoftSimulation() : Simulation<Real>(MarginRule::own) {}
 
-    Solver solver() const override { return Solver::soft; }
+    Solver solver() const override { return soft.joints.is_rattle ? Solver::rattle : Solver::soft; }
+    /// Whether contacts are looked for: under `rattle` never.
+    bool can_touch() const { return !soft.joints.is_rattle && this->can_meet(); }
     bool has_long_loops() const override {
         return soft.graph.groups.chunks > 1 || soft.joints.has_long_loops();
     }
@@ -37,7 +39,7 @@ class SoftSimulation : public Simulation<Real> {
     int substeps_for_joints() const override {
         if (this->has_asked_for_substeps || this->world.joints.empty()) return 1;
         soft.joints.find_groups(this->world);
-        return soft.joints.has_swept() ? SweptJoints<Real>::kSubsteps : 1;
+        return soft.joints.has_nets() ? SweptJoints<Real>::kSubsteps : 1;
     }
 
     std::string describe_joints() const override {

@@ -13,8 +13,10 @@ namespace {
 constexpr int kFirstSweeps = 32;
 /// Likewise along paths of contacts, which take loads farther.
 constexpr int kFirstPasses = 8;
-/// Turns of joints and contacts a substep where they bear on each other.
+/// Turns of joints and contacts a substep where they bear on each other: of groups that are solved exactly,
+/// of crowds that are swept.
 constexpr int kTurns = 4;
+constexpr int kTurnsOfCrowd = 1;
 constexpr std::size_t kRowsPerTask = 1024;  // where there is but one group
 
 static_assert(kContactBlock == kRowPadding);
@@ -108,7 +110,7 @@ void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
 template <class Real>
 void SoftSolver<Real>::solve_joints_and_contacts(WorldState<Real>& world) {
     const auto next = Sweeps::next(view(), Sweeps::Blocks::all, 1);
-    for (int turn = 0; turn < kTurns; ++turn) {
+    for (int turn = 0; turn < (joints.touches_exactly() ? kTurns : kTurnsOfCrowd); ++turn) {
         joints.solve_again(joint_step(world), loops_);
         if (world.bodies.has_shapes) paths.solve(terms_, records_, loops_, 1, true);
         sweeps_.run(view(), {next.data(), next.size()});

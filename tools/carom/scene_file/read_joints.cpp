@@ -5,8 +5,8 @@
 namespace carom::tool {
 namespace {
 
-constexpr std::array<std::string_view, 6> kJointKinds{"distance", "revolute", "prismatic",
-                                                      "weld",     "wheel",    "target"};
+constexpr std::array<std::string_view, 7> kJointKinds{"distance", "revolute", "prismatic", "weld",
+                                                      "wheel",    "target",   "gear"};
 
 /// A body by index or by name; null is the world.
 std::optional<BodyId> read_reference(const Node& joint, std::string_view key, const Scene& scene) {
@@ -100,6 +100,21 @@ TargetJoint read_target(const Node& node) {
     return kind;
 }
 
+GearJoint read_gear(const Node& node) {
+    GearJoint kind;
+    for (const auto& [key, into] : {std::pair{"first", &kind.first}, std::pair{"second", &kind.second}})
+        if (const auto number = node.find(key)) {
+            const std::int64_t index = number->integer();
+            if (index < 0 || index > std::int64_t{UINT32_MAX})
+                number->fail(ErrorCode::unknown_name, "joint " + std::to_string(index) +
+                                                          "; expected the index of a joint that is listed "
+                                                          "above the gear.");
+            *into = JointId::of(static_cast<std::uint32_t>(index));
+        }
+    kind.ratio = node.at("ratio").number();
+    return kind;
+}
+
 /// The keys of each kind, after those that all have.
 Node::Names keys_of(std::string_view kind) {
     static constexpr std::array<std::string_view, 12> kDistance{
@@ -123,7 +138,10 @@ Node::Names keys_of(std::string_view kind) {
     if (kind == "revolute") return kRevolute;
     if (kind == "prismatic") return kPrismatic;
     if (kind == "weld") return kWeld;
-    return kind == "wheel" ? Node::Names(kWheel) : Node::Names(kTarget);
+    static constexpr std::array<std::string_view, 8> kGear{
+        "a", "b", "collide", "break_force", "break_torque", "first", "second", "ratio"};
+    if (kind == "wheel") return kWheel;
+    return kind == "gear" ? Node::Names(kGear) : Node::Names(kTarget);
 }
 
 JointKind read_kind(const Node& node) {
@@ -134,6 +152,7 @@ JointKind read_kind(const Node& node) {
     if (kind == "prismatic") return read_prismatic(node);
     if (kind == "weld") return read_weld(node);
     if (kind == "wheel") return read_wheel(node);
+    if (kind == "gear") return read_gear(node);
     return read_target(node);
 }
 

@@ -9,6 +9,8 @@ namespace {
 
 /// Rounds of Newton's method a substep: a second one takes what the bend of the path leaves.
 constexpr int kRounds = 2;
+/// As many as it can take to round-off, at most.
+constexpr int kMostRounds = 20;
 /// Largest correction of a joint in a substep, in lengths of the group's joints.
 constexpr double kLargestCorrection = 0.1;
 
@@ -46,6 +48,13 @@ DirectJoints<Real>::DirectJoints(const WorldState<Real>& world, const std::vecto
         if (!joint.is_on_world()) longest = std::max(longest, std::sqrt(length_squared(joint.anchor_a)));
         system_.joints.push_back(member);
     }
+    const auto number_in_system = [&](std::uint32_t slot) {
+        const auto place = std::find(slots_.begin(), slots_.end(), slot);
+        return place == slots_.end() ? std::int32_t{-1} : static_cast<std::int32_t>(place - slots_.begin());
+    };
+    for (std::size_t j = 0; j < slots_.size(); ++j)
+        if (const StoredJoint& joint = world.joints[slots_[j]]; joint.type == JointType::gear)
+            system_.add_gear(j, number_in_system(joint.first), number_in_system(joint.second));
     for (const double rim : rim_) longest = std::max(longest, rim);
     most_error_ = kLargestCorrection * longest;
     system_.plan();
@@ -53,8 +62,9 @@ DirectJoints<Real>::DirectJoints(const WorldState<Real>& world, const std::vecto
 }
 
 template <class Real>
-void DirectJoints<Real>::begin_step(const JointStep<Real>& step, bool touches, bool is_beside) {
-    touches_ = touches, is_beside_ = is_beside;
+void DirectJoints<Real>::begin_step(const JointStep<Real>& step, bool touches, bool is_beside,
+                                    bool converges) {
+    touches_ = touches, is_beside_ = is_beside, converges_ = converges;
     const Bodies<Real>& bodies = step.world.bodies;
     system_.set_substep(step.terms.substep_dt);
     system_.begin_step();
@@ -102,7 +112,7 @@ template <class Real>
 void DirectJoints<Real>::read_poses(const JointStep<Real>& step) {
     const Bodies<Real>& bodies = step.world.bodies;
     const Column<Real>& displacement = step.records.displacement;
-    const Real* turn = step.records.turn();
+    const Real* turn = bodies.has_rotation ? step.records.turn() : nullptr;
     for (std::size_t i = 1; i < rows_.size(); ++i) {
         const auto row = static_cast<std::size_t>(rows_[i]);
         JointPose& pose = system_.bodies[i].pose;
@@ -127,7 +137,7 @@ template <class Real>
 void DirectJoints<Real>::write_poses(const JointStep<Real>& step) {
     const Bodies<Real>& bodies = step.world.bodies;
     Column<Real>& displacement = step.records.displacement;
-    Real* turn = step.records.turn();
+    Real* turn = bodies.has_rotation ? step.records.turn() : nullptr;
     for (std::size_t i = 1; i < rows_.size(); ++i) {
         const SystemBody& body = system_.bodies[i];
         if (!(body.inverse_mass > 0)) continue;
@@ -185,7 +195,10 @@ void DirectJoints<Real>::solve_first(const JointStep<Real>& step, int substep) {
         system_.prepare(!touches_ && substep == 0 ? JointSystem::Part::half : JointSystem::Part::whole);
         correct(step);
         system_.pull();
-        system_.solve_curved(kRounds);
+        if (converges_)
+            system_.solve_curved(kMostRounds, least_error_ / step.terms.substep_dt);
+        else
+            system_.solve_curved(kRounds);
     }
     write_velocities(step);
 }

@@ -23,7 +23,8 @@ class DirectJoints {
 
     /// @param touches  whether one of its bodies can touch something in this step
     /// @param is_beside  whether it is solved in turns with joints that are swept
-    void begin_step(const JointStep<Real>& step, bool touches, bool is_beside);
+    /// @param converges  whether Newton's method goes on to round-off
+    void begin_step(const JointStep<Real>& step, bool touches, bool is_beside, bool converges);
     /// Velocities of a substep, before contacts are solved.
     void solve_first(const JointStep<Real>& step, int substep);
     /// What contacts have changed since.
@@ -61,7 +62,7 @@ class DirectJoints {
     std::vector<SystemBody> before_;                   // that were read
     std::vector<std::array<double, 3>> last_impulse_;  // N s, by joint: of the last substep of a step
     double least_error_ = 0, most_error_ = 0;          // m
-    bool touches_ = false, is_beside_ = false;
+    bool touches_ = false, is_beside_ = false, converges_ = false;
 };
 
 extern template class DirectJoints<float>;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "scene/wording.hpp"
 #include "sleeping/islands.hpp"
@@ -11,6 +12,12 @@ namespace {
 
 /// Work of a substep on a joint that is solved exactly, on one thread: for the executor.
 constexpr double kNanosecondsToSolve = 400;
+/// A crowd: so many groups or more that could be swept as well as solved exactly.
+constexpr std::size_t kFewestOfCrowd = 64;
+/// Joints of such a group at least, so that a crowd of pendulums is none; and the largest ratio of masses in
+/// it.
+constexpr std::size_t kFewestJoints = 4;
+constexpr double kLargestMassRatio = 16;
 
 }  // namespace
 
@@ -53,24 +60,48 @@ void SoftJoints<Real>::find_groups(const WorldState<Real>& world) {
                           of_right = first_slot[static_cast<std::size_t>(right.island)];
         return of_left != of_right ? of_left < of_right : left.slot < right.slot;
     });
-    std::vector<std::size_t> to_sweep, slots;
+    std::vector<std::size_t> to_sweep, slots, of_crowd;
     std::vector<DirectJoints<Real>> beside;
+    std::vector<std::size_t> crowd;  // of direct_
     for (std::size_t i = 0; i < members.size();) {
         slots.clear();
         const std::int32_t island = members[i].island;
         for (; i < members.size() && members[i].island == island; ++i) slots.push_back(members[i].slot);
         DirectJoints<Real> group(world, slots);
-        if (group.is_small_enough()) {
+        if (is_rattle || group.is_small_enough()) {
+            if (!is_rattle && is_fit_for_crowd(world, slots)) {
+                crowd.push_back(direct_.size());
+                of_crowd.insert(of_crowd.end(), slots.begin(), slots.end());
+            }
             direct_.push_back(std::move(group));
             continue;
         }
         ++swept_groups_;
+        // Gears are solved with all that they couple.
+        std::vector<std::size_t> geared;
         for (const std::size_t slot : slots) {
+            const StoredJoint& joint = world.joints[slot];
+            if (joint.type != JointType::gear) continue;
+            geared.push_back(slot);
+            for (const std::uint32_t coupled : {joint.first, joint.second})
+                if (coupled != kNoJoint) geared.push_back(coupled);
+        }
+        std::sort(geared.begin(), geared.end());
+        geared.erase(std::unique(geared.begin(), geared.end()), geared.end());
+        if (!geared.empty()) beside.emplace_back(world, geared);
+        for (const std::size_t slot : slots) {
+            if (std::binary_search(geared.begin(), geared.end(), slot)) continue;
             if (SweptJoints<Real>::knows(world.joints[slot]))
                 to_sweep.push_back(slot);
             else
                 beside.emplace_back(world, std::vector<std::size_t>{slot});
         }
+    }
+    crowd_groups_ = crowd.size() >= kFewestOfCrowd ? crowd.size() : 0;
+    if (crowd_groups_ > 0) {
+        for (std::size_t i = crowd.size(); i-- > 0;)
+            direct_.erase(direct_.begin() + static_cast<std::ptrdiff_t>(crowd[i]));
+        to_sweep.insert(to_sweep.end(), of_crowd.begin(), of_crowd.end());
     }
     for (const std::size_t slot : swept_.sort(world, to_sweep))
         beside.emplace_back(world, std::vector<std::size_t>{slot});
@@ -81,6 +112,26 @@ void SoftJoints<Real>::find_groups(const WorldState<Real>& world) {
         for (const std::int32_t row : direct_[i].rows())
             if (row >= 0 && moves(static_cast<std::size_t>(row)))
                 group_of_[static_cast<std::size_t>(row)] = static_cast<std::int32_t>(i);
+}
+
+/// Whether sweeps hold a group of joints in a heap as well as an exact solve: bodies of like masses, and
+/// kinds that the kernels know.
+template <class Real>
+bool SoftJoints<Real>::is_fit_for_crowd(const WorldState<Real>& world,
+                                        const std::vector<std::size_t>& slots) {
+    if (slots.size() < kFewestJoints) return false;
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+    for (const std::size_t slot : slots) {
+        const StoredJoint& joint = world.joints[slot];
+        if (!SweptJoints<Real>::knows(joint) || joint.is_on_world()) return false;
+        for (const BodyId id : {joint.a, joint.b}) {
+            const std::size_t row = world.handles.row_of_slot(id.index);
+            if (row >= world.bodies.count || world.bodies.is_immovable(row)) return false;
+            const auto mass = static_cast<double>(world.bodies.mass[row]);
+            least = std::fmin(least, mass), most = std::fmax(most, mass);
+        }
+    }
+    return most <= kLargestMassRatio * least;
 }
 
 /// Marks groups of which a body can touch something in this step.
@@ -130,7 +181,7 @@ void SoftJoints<Real>::begin_step(const JointStep<Real>& step, const StepView<Re
     for (std::size_t i = 0; i < direct_.size(); ++i) {
         const bool touches = i >= first_beside_ || group_touches_[i];
         touches_ = touches_ || (group_touches_[i] && i < first_beside_);
-        direct_[i].begin_step(step, touches, i >= first_beside_);
+        direct_[i].begin_step(step, touches, i >= first_beside_, is_rattle);
     }
     if (!swept_.empty()) swept_.begin_step(step, contacts.loops);
 }
@@ -190,7 +241,9 @@ bool SoftJoints<Real>::end_step(const JointStep<Real>& step, Books& books, doubl
             continue;
         joints.broken.push_back(break_of(step, slot, dt));
     }
-    for (std::size_t i = before; i < joints.broken.size(); ++i) joints.remove(joints.broken[i].joint.index);
+    // A gear goes with its joints, also where both broke.
+    for (std::size_t i = before; i < joints.broken.size(); ++i)
+        if (joints.is_alive(joints.broken[i].joint)) joints.remove(joints.broken[i].joint.index);
     return joints.broken.size() > before;
 }
 
@@ -211,7 +264,7 @@ JointBreak SoftJoints<Real>::break_of(const JointStep<Real>& step, std::size_t s
     if (row < bodies.count) {  // columns have the start of the step
         const Column<Real>& displacement = step.records.displacement;
         broken.point += Vec2{displacement[2 * row], displacement[2 * row + 1]};
-        if (const Real* turn = step.records.turn())
+        if (const Real* turn = bodies.has_rotation ? step.records.turn() : nullptr)
             angle += static_cast<double>(turn[row]) / rim_of(bodies, row);
     }
     broken.point += rotate(rotation_by(angle), joint.anchor_b);
@@ -230,8 +283,11 @@ std::string SoftJoints<Real>::describe() const {
                             " solved exactly, leaves first");
     if (loops > 0) text += join(" (", loops, " of them close loops)");
     if (swept_.joints() > 0)
-        text += join("; ", swept_.joints(), " in ", swept_groups_, swept_groups_ == 1 ? " group" : " groups",
-                     " with too many loops for that swept by lanes in ", swept_.colours(), " colours");
+        text += join("; ", swept_.joints(), " in ", swept_groups_ + crowd_groups_,
+                     swept_groups_ + crowd_groups_ == 1 ? " group" : " groups", " swept by lanes in ",
+                     swept_.colours(), " colours");
+    if (swept_groups_ > 0) text += join(" (", swept_groups_, " with too many loops to be solved exactly)");
+    if (crowd_groups_ > 0) text += join(" (", crowd_groups_, " of a crowd of small ones)");
     if (beside > 0) text += join("; ", beside, " one by one beside these");
     return text;
 }

@@ -15,10 +15,13 @@ namespace carom {
 /// The joints of a world under solver `soft`. Bodies that joints connect are a group. A group that is a tree,
 /// or nearly one, is solved exactly (direct_joints.hpp); one with many loops, a net, is swept
 /// (swept_joints.hpp), but for its joints that the kernels do not know, which are solved exactly beside the
-/// sweeps.
+/// sweeps. A crowd of small groups of bodies of like masses, a heap of ragdolls, is swept, too.
 template <class Real>
 class SoftJoints {
   public:
+    /// Solver `rattle`: joints alone, each group solved exactly, to round-off, whatever its size.
+    bool is_rattle = false;
+
     /// Rows, masses or joints have changed: what was derived from them is made anew.
     void forget() { is_known_ = false; }
     /// Finds the groups if they are not known. Cost: O(bodies + joints) then.
@@ -34,14 +37,17 @@ class SoftJoints {
     /// Once more, after contacts have changed velocities.
     void solve_again(const JointStep<Real>& step, const StepLoops<Real>& loops);
     /// Whether contacts and joints are to be solved in turns in this step.
-    bool touches() const { return touches_; }
+    bool touches() const { return touches_ || crowd_groups_ > 0; }
+    /// Whether a group that is solved exactly touches something.
+    bool touches_exactly() const { return touches_; }
     void end_substep(const JointStep<Real>& step, Books& books);
     /// @return whether a joint broke
     bool end_step(const JointStep<Real>& step, Books& books, double dt);
 
     /// [rows], above zero for bodies that have joints.
     const Real* joined() const { return joined_.data(); }
-    bool has_swept() const { return !swept_.empty(); }
+    /// Whether there are groups with many loops, which want more substeps.
+    bool has_nets() const { return swept_groups_ > 0; }
     bool has_long_loops() const { return swept_.groups().chunks > 1; }
     std::size_t bytes() const;
 
@@ -49,6 +55,7 @@ class SoftJoints {
     std::string describe() const;
 
   private:
+    static bool is_fit_for_crowd(const WorldState<Real>& world, const std::vector<std::size_t>& slots);
     static JointBreak break_of(const JointStep<Real>& step, std::size_t slot, double dt);
     void find_touching(const JointStep<Real>& step, const StepView<Real>& contacts,
                        const PathSolver<Real>& paths, double dt);
@@ -58,7 +65,7 @@ class SoftJoints {
     std::vector<DirectJoints<Real>> direct_;
     std::size_t first_beside_ = 0;  // of direct_, that are solved beside sweeps
     SweptJoints<Real> swept_;
-    std::size_t swept_groups_ = 0;
+    std::size_t swept_groups_ = 0, crowd_groups_ = 0;
     Column<Real> joined_;
     std::vector<std::int32_t> group_of_;  // by row; -1: none
     std::vector<std::uint8_t> group_touches_;

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <tuple>
+
+#include "constraints/joints/spring_law.hpp"
 
 namespace carom {
 namespace {
@@ -14,6 +17,11 @@ constexpr double kLargestCorrection = 1;
 /// Factor by which the first sweep over rods goes farther. Hinges take 1: more pumps energy into them.
 constexpr double kOverRelaxation = 1.3;
 
+/// Likewise of an angle [rad].
+constexpr double kLargestTurn = 0.5;
+/// In place of an end that there is not: its impulse stays 0, and what is computed with it finite.
+constexpr double kNoEnd = 1e30;
+
 constexpr std::size_t kColours = 64;
 constexpr std::size_t kFewestChunks = 8;         // or one: four tasks for the threads to share
 constexpr std::size_t kFewestRowsOfChunk = 512;  // fewer: too many short colours
@@ -23,34 +31,53 @@ constexpr double kNanosecondsToSweep = 5;        // a joint on one thread, for t
 
 template <class Real>
 bool SweptJoints<Real>::knows(const StoredJoint& joint) {
-    if (joint.has_lower || joint.has_upper || joint.has_motor || joint.is_spring()) return false;
-    return (joint.type == JointType::distance && joint.is_held) || joint.type == JointType::revolute;
+    return joint.type == JointType::distance || joint.type == JointType::revolute ||
+           joint.type == JointType::weld;
 }
 
 template <class Real>
 std::size_t SweptJoints<Real>::kind_of(const StoredJoint& joint) {
-    if (joint.type == JointType::revolute) return kHinges;
+    if (joint.type != JointType::distance) return kHinges;
+    if (joint.is_spring() || joint.has_lower || joint.has_upper) return kSprings;
     const bool has_arms = joint.anchor_b != Vec2{} || (!joint.is_on_world() && joint.anchor_a != Vec2{});
     return has_arms ? kRodsOfAnchors : kRods;
 }
 
 template <class Real>
-template <class Fn>
-void SweptJoints<Real>::Kind::for_each_column(const Fn& fn) {
-    for (Column<Real>* column :
-         {&start_x, &start_y, &length, &impulse_x, &impulse_y, &normal_x, &normal_y, &per_length})
-        fn(*column, false);
-    for (Column<Real>* column : {&start_arm_a_x, &start_arm_a_y, &start_arm_b_x, &start_arm_b_y, &arm_a_x,
-                                 &arm_a_y, &arm_b_x, &arm_b_y, &per_rim_a, &per_rim_b})
-        fn(*column, true);
+bool SweptJoints<Real>::has_angle_part(const StoredJoint& joint) {
+    return joint.type == JointType::weld ||
+           (joint.type == JointType::revolute &&
+            (joint.has_lower || joint.has_upper || joint.has_motor || joint.is_spring()));
 }
 
 template <class Real>
-void SweptJoints<Real>::Kind::resize(std::size_t places, bool has_arms) {
+unsigned SweptJoints<Real>::needs_of(std::size_t kind) {
+    constexpr unsigned kNeeds[kKinds] = {kPoints, kPoints | kArms | kRims, kPoints | kArms | kRims,
+                                         kPoints | kArms | kRims | kDrives, kRims | kDrives};
+    return kNeeds[kind];
+}
+
+template <class Real>
+template <class Fn>
+void SweptJoints<Real>::Kind::for_each_column(const Fn& fn) {
+    for (Column<Real>* column : {&start_x, &impulse_x, &impulse_y}) fn(*column, 0u);
+    for (Column<Real>* column : {&start_y, &length, &normal_x, &normal_y, &per_length})
+        fn(*column, unsigned{kPoints});
+    for (Column<Real>* column : {&start_arm_a_x, &start_arm_a_y, &start_arm_b_x, &start_arm_b_y, &arm_a_x,
+                                 &arm_a_y, &arm_b_x, &arm_b_y})
+        fn(*column, unsigned{kArms});
+    for (Column<Real>* column : {&per_rim_a, &per_rim_b}) fn(*column, unsigned{kRims});
+    for (Column<Real>* column :
+         {&impulse_z, &impulse_w, &value, &alpha, &gamma, &lower, &upper, &speed, &most})
+        fn(*column, unsigned{kDrives});
+}
+
+template <class Real>
+void SweptJoints<Real>::Kind::resize(std::size_t places, unsigned needs) {
     a.resize(places), b.resize(places), slot.resize(places);
-    for_each_column([&](Column<Real>& column, bool is_of_arms) {
+    for_each_column([&](Column<Real>& column, unsigned bit) {
         column.clear();
-        column.resize(is_of_arms && !has_arms ? 0 : places);
+        column.resize((needs & bit) == bit ? places : 0);
     });
 }
 
@@ -75,14 +102,24 @@ JointColumns<Real> SweptJoints<Real>::Kind::columns() {
             arm_b_x.data(),
             arm_b_y.data(),
             per_rim_a.data(),
-            per_rim_b.data()};
+            per_rim_b.data(),
+            impulse_z.data(),
+            impulse_w.data(),
+            value.data(),
+            alpha.data(),
+            gamma.data(),
+            lower.data(),
+            upper.data(),
+            speed.data(),
+            most.data()};
 }
 
 template <class Real>
 std::vector<std::size_t> SweptJoints<Real>::sort(const WorldState<Real>& world,
                                                  const std::vector<std::size_t>& slots) {
     const std::size_t rows = world.bodies.count;
-    first_beyond_ = static_cast<std::int32_t>(rows), joints_ = 0, colours_ = 0, longest_ = 0;
+    first_beyond_ = static_cast<std::int32_t>(rows), joints_ = parts_of_joints_ = 0, colours_ = 0,
+    longest_ = 0;
     groups_ = {};
     // Nets have their rows in order, so that joints reach into the next chunk at most: as long as a chunk has
     // so many rows that most do.
@@ -122,6 +159,7 @@ std::vector<std::size_t> SweptJoints<Real>::sort(const WorldState<Real>& world,
                                   : !moves(b) ? a
                                               : std::max(a, b);
         entries.push_back({groups_.group_of(low, high), 0, kind_of(joint), slot, a, b});
+        if (has_angle_part(joint)) entries.push_back({groups_.group_of(low, high), 0, kAngles, slot, a, b});
     }
     const auto by_group = [](const Entry& left, const Entry& right) { return left.group < right.group; };
     std::stable_sort(entries.begin(), entries.end(), by_group);
@@ -140,7 +178,8 @@ std::vector<std::size_t> SweptJoints<Real>::sort(const WorldState<Real>& world,
             left_over.push_back(entry.slot);
             continue;
         }
-        ++joints_;
+        ++parts_of_joints_;
+        joints_ += entry.kind != kAngles;
         colours_ = std::max(colours_, entry.colour + 1);
         for (const std::int32_t row : {entry.a, entry.b})
             if (moves(row)) of(row) |= std::uint64_t{1} << entry.colour;
@@ -166,7 +205,7 @@ std::vector<std::size_t> SweptJoints<Real>::sort(const WorldState<Real>& world,
         }
         place = padded(place);
         for (std::size_t g = of_group + 1; g < own.begin.size(); ++g) own.begin[g] = place;
-        own.resize(place, kind != kRods);
+        own.resize(place, needs_of(kind));
         std::fill(own.slot.begin(), own.slot.end(), -1);
         for (std::size_t g = 0; g < groups_.count(); ++g)
             for (std::size_t at = own.begin[g]; at < own.begin[g + 1]; ++at)
@@ -196,7 +235,7 @@ void SweptJoints<Real>::begin_step(const JointStep<Real>& step, const StepLoops<
             if (id == BodyId{}) return {anchor, {}, 0};
             const std::size_t row = step.world.handles.row_of_slot(id.index);
             End end{{bodies.position_x[row], bodies.position_y[row]}, {}, 0};
-            if (anchor == Vec2{} && kind != kHinges) return end;
+            if (anchor == Vec2{} && (kind == kRods || kind == kRodsOfAnchors)) return end;
             const double angle = bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0;
             end.arm = rotate(rotation_by(angle), anchor);
             end.per_rim = 1 / rim_of(bodies, row);
@@ -208,9 +247,21 @@ void SweptJoints<Real>::begin_step(const JointStep<Real>& step, const StepLoops<
             const StoredJoint& joint = step.world.joints[static_cast<std::size_t>(own.slot[i])];
             const End a = end_of(own.a[i], joint.a, joint.anchor_a),
                       b = end_of(own.b[i], joint.b, joint.anchor_b);
+            if ((needs_of(kind) & kDrives) != 0) begin_drive(own, i, kind, joint, step.terms.substep_dt);
+            if (kind == kAngles) {
+                const auto angle_of = [&](BodyId id) {
+                    return id == BodyId{} || !bodies.has_rotation
+                               ? 0.0
+                               : static_cast<double>(bodies.angle[step.world.handles.row_of_slot(id.index)]);
+                };
+                own.start_x[i] = real(angle_of(joint.b) - angle_of(joint.a) - joint.angle);
+                own.per_rim_a[i] = real(a.per_rim), own.per_rim_b[i] = real(b.per_rim);
+                continue;
+            }
             own.start_x[i] = real(b.place.x - a.place.x), own.start_y[i] = real(b.place.y - a.place.y);
             own.length[i] = real(joint.length);
-            own.impulse_x[i] = real(joint.impulse[0]), own.impulse_y[i] = real(joint.impulse[1]);
+            if (kind != kSprings)
+                own.impulse_x[i] = real(joint.impulse[0]), own.impulse_y[i] = real(joint.impulse[1]);
             if (kind == kRods) continue;
             own.start_arm_a_x[i] = real(a.arm.x), own.start_arm_a_y[i] = real(a.arm.y);
             own.start_arm_b_x[i] = real(b.arm.x), own.start_arm_b_y[i] = real(b.arm.y);
@@ -221,12 +272,55 @@ void SweptJoints<Real>::begin_step(const JointStep<Real>& step, const StepLoops<
         SweepJoints<Real>& k = arguments_[kind];
         k.joints = own.columns();
         k.velocity = step.records.velocity.data(), k.displacement = step.records.displacement.data();
-        k.turn = step.records.turn();
+        k.turn = turn_of(step.records);
         const double h = step.terms.substep_dt;
         k.h = real(h), k.half_h = real(h / 2), k.per_h = real(1 / h);
         k.recovery = real(kRecovery);
-        k.most = real(kind == kHinges ? kLargestCorrection * longest_ : kLargestCorrection);
+        k.most = real(kind == kHinges   ? kLargestCorrection * longest_
+                      : kind == kAngles ? kLargestTurn
+                                        : kLargestCorrection);
     }
+}
+
+template <class Real>
+Real* SweptJoints<Real>::turn_of(BodyRecords<Real>& records) {
+    if (Real* const turn = records.turn()) return turn;
+    no_turn_.resize(padded(records.rows()));
+    return no_turn_.data();
+}
+
+/// What springs, drives and bounds a length or an angle. Of its impulses the store keeps the sum: a motor has
+/// as much of it as it can, the rest is of the end that pushes that way.
+template <class Real>
+void SweptJoints<Real>::begin_drive(Kind& own, std::size_t i, std::size_t kind, const StoredJoint& joint,
+                                    double h) {
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    constexpr double kTwoPi = 6.28318530717958647693;
+    // A spring that is too stiff for the substep holds as a rod does: as a spring it would close its gap by
+    // velocities, and sweeps that have not converged make energy of that.
+    const bool is_stiff = joint.is_spring() && kTwoPi * joint.frequency * h > 1;
+    const bool is_held = is_stiff || (joint.type == JointType::weld && !joint.is_spring());
+    const double rest_at = kind == kAngles ? 0 : joint.length;
+    own.lower[i] = real(is_held ? rest_at : joint.has_lower ? joint.lower : -kNoEnd);
+    own.upper[i] = real(is_held ? rest_at : joint.has_upper ? joint.upper : kNoEnd);
+    const bool springs = joint.is_spring() && !is_stiff;
+    const SpringTerms terms = springs ? spring_terms(joint.frequency, joint.damping_ratio, h) : SpringTerms{};
+    own.alpha[i] = real(terms.alpha), own.gamma[i] = real(terms.gamma);
+    const double most = joint.has_motor ? joint.max_motor * h : 0;
+    own.speed[i] = real(joint.motor_speed), own.most[i] = real(most);
+    double rest = joint.impulse[kind == kAngles ? 2 : 0];
+    own.impulse_x[i] = real(springs ? rest : 0);
+    if (springs) rest = 0;
+    const double of_motor = std::clamp(rest, -most, most);
+    rest -= of_motor;
+    own.impulse_y[i] = real(of_motor);
+    own.impulse_z[i] = real(std::fmax(rest, 0)), own.impulse_w[i] = real(std::fmin(rest, 0));
+}
+
+template <class Real>
+double SweptJoints<Real>::sum_of_impulses(const Kind& own, std::size_t i) {
+    return static_cast<double>(own.impulse_x[i]) + static_cast<double>(own.impulse_y[i]) +
+           static_cast<double>(own.impulse_z[i]) + static_cast<double>(own.impulse_w[i]);
 }
 
 template <class Real>
@@ -236,7 +330,7 @@ void SweptJoints<Real>::run_group(std::size_t group, Kernel kernel) const {
         if (first == last) continue;
         SweepJoints<Real> k = arguments_[kind];
         k.over_relaxation =
-            static_cast<Real>(kind == kHinges || kernel == Kernel::last ? 1 : kOverRelaxation);
+            static_cast<Real>(kind >= kHinges || kernel == Kernel::last ? 1 : kOverRelaxation);
         const JointKernels<Real>& kernels = kernels_->joints[kind];
         const auto run = kernel == Kernel::give    ? kernels.give
                          : kernel == Kernel::first ? kernels.first
@@ -249,7 +343,7 @@ template <class Real>
 void SweptJoints<Real>::sweep(const JointStep<Real>& step, const StepLoops<Real>& loops, Begin begin) {
     for (SweepJoints<Real>& k : arguments_) {
         k.velocity = step.records.velocity.data(), k.displacement = step.records.displacement.data();
-        k.turn = step.records.turn();
+        k.turn = turn_of(step.records);
     }
     bool any_far = false;
     for (const Kind& kind : kinds_)
@@ -266,7 +360,7 @@ void SweptJoints<Real>::sweep(const JointStep<Real>& step, const StepLoops<Real>
     if (begin == Begin::step) add_sweep(Kernel::give);
     add_sweep(begin == Begin::nothing ? Kernel::next : Kernel::first);
     add_sweep(Kernel::last);
-    const double work = kNanosecondsToSweep * static_cast<double>(joints_) * 2;
+    const double work = kNanosecondsToSweep * static_cast<double>(parts_of_joints_) * 2;
     loops.executor->for_each_phase(phases_, groups_.tasks(), work, [&](std::size_t phase, std::size_t task) {
         const auto [kernel, part] = parts_[phase];
         const std::size_t chunk = 2 * task;
@@ -283,15 +377,32 @@ void SweptJoints<Real>::sweep(const JointStep<Real>& step, const StepLoops<Real>
     });
 }
 
+/// Of the part of a joint that is about points [N s].
+template <class Real>
+Vec2 SweptJoints<Real>::impulse_on_b(const Kind& own, std::size_t i, std::size_t kind) {
+    if (kind == kHinges) return {own.impulse_x[i], own.impulse_y[i]};
+    const double along = kind == kSprings ? sum_of_impulses(own, i) : static_cast<double>(own.impulse_x[i]);
+    return along * Vec2{own.normal_x[i], own.normal_y[i]};
+}
+
 template <class Real>
 void SweptJoints<Real>::book(const JointStep<Real>& step, Books& books) const {
     for (std::size_t kind = 0; kind < kKinds; ++kind) {
         const Kind& own = kinds_[kind];
         for (std::size_t i = 0; i < own.slot.size(); ++i) {
             if (own.slot[i] < 0) continue;
-            const Vec2 j = kind == kHinges ? Vec2{own.impulse_x[i], own.impulse_y[i]}
-                                           : static_cast<double>(own.impulse_x[i]) *
-                                                 Vec2{own.normal_x[i], own.normal_y[i]};
+            if (kind == kAngles) {
+                for (const auto& [number, per_rim, sign] : {std::tuple{own.a[i], own.per_rim_a[i], -0.5},
+                                                            std::tuple{own.b[i], own.per_rim_b[i], 0.5}}) {
+                    const Real* record = &step.records.velocity[4 * static_cast<std::size_t>(number)];
+                    if (number >= first_beyond_ || !(record[3] > Real(0))) continue;
+                    books.joints +=
+                        sign * sum_of_impulses(own, i) * static_cast<double>(per_rim) *
+                        (step.records.start_of_substep(number)[2] + static_cast<double>(record[2]));
+                }
+                continue;
+            }
+            const Vec2 j = impulse_on_b(own, i, kind);
             const auto work_on = [&](std::int32_t number, Vec2 impulse, Vec2 arm, double per_rim) {
                 if (number >= first_beyond_) return -1 * impulse;
                 const auto row = static_cast<std::size_t>(number);
@@ -319,10 +430,15 @@ void SweptJoints<Real>::store(JointStore& joints, double substep_dt) const {
         for (std::size_t i = 0; i < own.slot.size(); ++i) {
             if (own.slot[i] < 0) continue;
             StoredJoint& joint = joints[static_cast<std::size_t>(own.slot[i])];
-            joint.impulse = {own.impulse_x[i], own.impulse_y[i], 0};
-            joint.force = kind == kHinges ? (1 / substep_dt) * Vec2{own.impulse_x[i], own.impulse_y[i]}
-                                          : (static_cast<double>(own.impulse_x[i]) / substep_dt) *
-                                                Vec2{own.normal_x[i], own.normal_y[i]};
+            if (kind == kAngles) {  // after the part of its points
+                joint.impulse[2] = sum_of_impulses(own, i);
+                joint.torque = joint.impulse[2] / substep_dt;
+                continue;
+            }
+            joint.impulse = {
+                kind == kSprings ? sum_of_impulses(own, i) : static_cast<double>(own.impulse_x[i]),
+                own.impulse_y[i], 0};
+            joint.force = (1 / substep_dt) * impulse_on_b(own, i, kind);
             joint.torque = 0;
         }
     }
@@ -330,10 +446,11 @@ void SweptJoints<Real>::store(JointStore& joints, double substep_dt) const {
 
 template <class Real>
 std::size_t SweptJoints<Real>::bytes() const {
-    std::size_t bytes = 0;
+    std::size_t bytes = no_turn_.bytes();
     for (const Kind& kind : kinds_) {
         bytes += kind.a.bytes() + kind.b.bytes() + kind.slot.bytes();
-        const_cast<Kind&>(kind).for_each_column([&](Column<Real>& column, bool) { bytes += column.bytes(); });
+        const_cast<Kind&>(kind).for_each_column(
+            [&](Column<Real>& column, unsigned) { bytes += column.bytes(); });
     }
     return bytes;
 }

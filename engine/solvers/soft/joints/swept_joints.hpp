@@ -10,8 +10,9 @@
 
 namespace carom {
 
-/// Rods and hinges of groups that are too entangled to be solved exactly: swept by lanes, with the impulses
-/// of the step before to start from.
+/// Joints of groups that are too entangled to be solved exactly, or so many and small that it is not worth
+/// it: swept by lanes, with the impulses of the step before to start from. A joint is swept in up to two
+/// parts, that of its points and that of its angle: a weld is a hinge whose angle has both its ends at 0.
 ///
 /// They have task groups of their own (constraints/task_groups.hpp), by rows alone: bodies in the order of
 /// their rows. In each the joints of a kind are sorted by colour, and a run over a group is one call of a
@@ -31,7 +32,7 @@ class SweptJoints {
     /// Rows beyond the bodies that joints name: the world, and what never moves, once for each group, so that
     /// no two tasks write to one.
     std::size_t rows_beyond() const { return groups_.count(); }
-    bool empty() const { return joints_ == 0; }
+    bool empty() const { return parts_of_joints_ == 0; }
     std::size_t joints() const { return joints_; }
     std::size_t colours() const { return colours_; }
     const TaskGroups& groups() const { return groups_; }
@@ -63,21 +64,33 @@ class SweptJoints {
         Column<Real> start_x, start_y, length, impulse_x, impulse_y, normal_x, normal_y, per_length;
         Column<Real> start_arm_a_x, start_arm_a_y, start_arm_b_x, start_arm_b_y;
         Column<Real> arm_a_x, arm_a_y, arm_b_x, arm_b_y, per_rim_a, per_rim_b;
+        Column<Real> impulse_z, impulse_w, value, alpha, gamma, lower, upper, speed, most;
         std::vector<std::size_t> begin;  // of each group, and the end
 
-        void resize(std::size_t places, bool has_arms);
+        /// @param needs  which columns, bits of Needs
+        void resize(std::size_t places, unsigned needs);
         JointColumns<Real> columns();
         template <class Fn>
         void for_each_column(const Fn& fn);
     };
-    enum : std::size_t { kRods, kRodsOfAnchors, kHinges, kKinds };
+    enum : std::size_t { kRods, kRodsOfAnchors, kHinges, kSprings, kAngles, kKinds };
+    enum Needs : unsigned { kPoints = 1, kArms = 2, kRims = 4, kDrives = 8 };
+    static unsigned needs_of(std::size_t kind);
+    /// The part of a joint that is about points, and whether it has one about its angle.
     static std::size_t kind_of(const StoredJoint& joint);
+    static bool has_angle_part(const StoredJoint& joint);
+    Real* turn_of(BodyRecords<Real>& records);
+    void begin_drive(Kind& own, std::size_t i, std::size_t kind, const StoredJoint& joint, double h);
+    /// Of springs, ropes and angles: along the length [N s] or of the angle [N m s].
+    static double sum_of_impulses(const Kind& own, std::size_t i);
+    static Vec2 impulse_on_b(const Kind& own, std::size_t i, std::size_t kind);
 
     std::array<Kind, kKinds> kinds_;
     TaskGroups groups_;
-    std::size_t joints_ = 0, colours_ = 0;
+    std::size_t joints_ = 0, parts_of_joints_ = 0, colours_ = 0;
     std::int32_t first_beyond_ = 0;             // row
     double longest_ = 0;                        // m, arm of hinges
+    Column<Real> no_turn_;                      // in place of turns in worlds where nothing turns
     std::vector<SweepJoints<Real>> arguments_;  // by kind
     const KernelTable<Real>* kernels_ = nullptr;
     enum class Kernel : std::uint8_t { give, first, next, last };

@@ -1,0 +1,181 @@
+// Nets of springs, ropes, limits and motors, and crowds of small mechanisms, which are swept by lanes.
+#include "support/joints.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <doctest/doctest.h>
+
+using namespace carom;
+using namespace carom::test;
+
+namespace {
+
+constexpr double kStep = 1.0 / 60;
+
+/// A net whose whole upper row hangs.
+Scene curtain(int count, const JointKind& link) {
+    Scene scene = hanging_net(count);
+    for (int x = 0; x < count; ++x)
+        scene.bodies[static_cast<std::size_t>((count - 1) * count + x)].type = BodyType::static_body;
+    std::erase_if(scene.joints, [&](const Joint& joint) {
+        return scene.bodies[joint.a->index].type == BodyType::static_body;
+    });
+    for (Joint& joint : scene.joints) joint.kind = link;
+    return scene;
+}
+
+void check_swept(const Scene& scene) {
+    CHECK(World(scene).plan().joints.find("one by one") == std::string::npos);
+    CHECK(World(scene).plan().joints.find("swept") != std::string::npos);
+}
+
+/// A heap of `count` figures of a trunk and four limbs on hinges with limits, over a floor.
+Scene figures(int count) {
+    Scene scene;
+    scene.gravity = {0, -10};
+    scene.walls.emplace();
+    scene.walls->max = {8, 1000};
+    scene.walls->top = false;
+    scene.walls->material.friction = 0.5;
+    for (int i = 0; i < count; ++i) {
+        const double x = 1 + 1.5 * (i % 5) + 0.1 * (i / 5 % 2), y = 1 + 1.5 * (i / 5);
+        const auto limb = [&](Vec2 at) {
+            return scene.add({.shape = Disc{0.2},
+                              .position = at,
+                              .mass = 1,
+                              .material = {.friction = 0.5},
+                              .group = -1 - i});
+        };
+        const BodyId trunk = limb({x, y});
+        for (const Vec2 way : {Vec2{1, 1}, Vec2{-1, 1}, Vec2{1, -1}, Vec2{-1, -1}}) {
+            const BodyId b = limb({x + 0.3 * way.x, y + 0.3 * way.y});
+            scene.add(
+                Joint{.a = trunk,
+                      .b = b,
+                      .kind = RevoluteJoint{
+                          .anchor = Vec2{x + 0.15 * way.x, y + 0.15 * way.y}, .lower = -0.5, .upper = 0.5}});
+        }
+    }
+    return scene;
+}
+
+}  // namespace
+
+TEST_SUITE("hard cases: nets of joints") {
+    TEST_CASE_TEMPLATE("a curtain of springs hangs as far as its weight draws it", Real, float, double) {
+        constexpr int kCount = 12;
+        constexpr double kFrequency = 5;
+        const Scene scene = curtain(kCount, DistanceJoint{.frequency = kFrequency, .damping_ratio = 0.2});
+        check_swept(scene);
+        BasicWorld<Real> world(scene);
+        for (int i = 0; i < 900; ++i) world.step(kStep);
+        // k of a spring = reduced mass · w²: 1/2 between bobs of 1 kg, 1 at the top.
+        const double w = 2 * std::numbers::pi * kFrequency;
+        const auto y_of = [&](int row) {
+            return world.state({static_cast<std::uint32_t>(row * kCount + kCount / 2), 0}).position.y;
+        };
+        for (int row = 0; row + 1 < kCount; ++row) {
+            CAPTURE(row);
+            const double below = row + 1, k = (row + 2 == kCount ? 1.0 : 0.5) * w * w;
+            CHECK(y_of(row + 1) - y_of(row) - 1 == doctest::Approx(10 * below / k).epsilon(0.05));
+        }
+        CHECK(std::hypot(world.state({0, 0}).velocity.x, world.state({0, 0}).velocity.y) < 1e-3);
+    }
+
+    TEST_CASE_TEMPLATE("no stiffness and no damping makes a curtain explode", Real, float, double) {
+        for (const double frequency : {1.0, 30.0, 1e3, 1e6})
+            for (const double ratio : {0.0, 1.0, 100.0}) {
+                CAPTURE(frequency);
+                CAPTURE(ratio);
+                BasicWorld<Real> world(
+                    curtain(10, DistanceJoint{.frequency = frequency, .damping_ratio = ratio}));
+                const double start = world.ledger().energy.total();
+                for (int i = 0; i < 200; ++i) world.step(kStep);
+                const Energy energy = world.ledger().energy;
+                CHECK(energy.kinetic + energy.rotational < 200 * 10);
+                CHECK(energy.potential <= start + 1);
+            }
+    }
+
+    TEST_CASE("a net of ropes falls until they are taut and no farther") {
+        const Scene scene = curtain(10, DistanceJoint{.max = 1.2});
+        check_swept(scene);
+        World world(scene);
+        for (int i = 0; i < 600; ++i) world.step(kStep);
+        // The lowest bob of the middle column hangs on nine ropes.
+        CHECK(world.state({5, 0}).position.y == doctest::Approx(9 - 9 * 1.2).epsilon(0.01));
+        CHECK(world.joint_errors().max < 0.02);
+    }
+
+    TEST_CASE_TEMPLATE("a plate of welds bends as little as its weight makes it", Real, float, double) {
+        Scene scene = hanging_net(8);
+        for (Body& body : scene.bodies) body.shape = Disc{0.4};
+        for (Joint& joint : scene.joints) joint.kind = WeldJoint{};
+        check_swept(scene);
+        BasicWorld<Real> world(scene);
+        for (int i = 0; i < 300; ++i) world.step(kStep);
+        for (std::uint32_t i = 0; i < 64; ++i) CHECK(std::fabs(world.state({i, 0}).angle) < 0.03);
+        CHECK(world.joint_errors().max < 0.03);
+    }
+
+    TEST_CASE_TEMPLATE("hinges in a net stop at their limits, and motors turn at their speed", Real, float,
+                       double) {
+        Scene scene = hanging_net(8);
+        for (Body& body : scene.bodies) body.shape = Disc{0.4};
+        for (Joint& joint : scene.joints) joint.kind = RevoluteJoint{.lower = -0.2, .upper = 0.1};
+        const BodyId wheel = scene.add(bob({3.5, -1}, 0.2, 0.2));
+        scene.add(Joint{
+            .a = BodyId{3, 0}, .b = wheel, .kind = RevoluteJoint{.motor_speed = 6, .max_motor_torque = 5}});
+        check_swept(scene);
+        BasicWorld<Real> world(scene);
+        for (int i = 0; i < 300; ++i) world.step(kStep);
+        for (std::size_t j = 0; j + 1 < scene.joints.size(); ++j) {
+            const double turn = world.state(*scene.joints[j].b).angle - world.state(*scene.joints[j].a).angle;
+            CHECK(turn > -0.25);
+            CHECK(turn < 0.15);
+        }
+        CHECK(world.state(wheel).angular_velocity - world.state({3, 0}).angular_velocity ==
+              doctest::Approx(6).epsilon(0.01));
+    }
+
+    TEST_CASE("a crowd of figures is swept, comes to rest and holds together") {
+        World few(figures(20)), many(figures(80));
+        CHECK(few.plan().joints.find("swept") == std::string::npos);
+        CHECK(many.plan().joints.find("80 of a crowd") != std::string::npos);
+        CHECK(many.plan().substeps == 4);
+        double worst = 0;
+        for (int i = 0; i < 600; ++i) {
+            many.step(kStep);
+            worst = std::max(worst, many.joint_errors().max);
+        }
+        CHECK(worst < 0.05);
+        CHECK(many.joint_errors().max < 0.008);  // 2 % of a limb of 0.4 m
+        CHECK(many.ledger().energy.kinetic < 1);
+        CHECK(many.overlaps().mean < 0.02);
+    }
+
+    TEST_CASE_TEMPLATE("nets of all that lanes know give the same bits for every instruction set and thread",
+                       Real, float, double) {
+        Scene mixed = hanging_net(10);
+        const JointKind kinds[] = {DistanceJoint{.frequency = 4, .damping_ratio = 0.3},
+                                   DistanceJoint{.max = 1.1},
+                                   RevoluteJoint{.lower = -0.1, .upper = 0.1},
+                                   RevoluteJoint{.motor_speed = 1, .max_motor_torque = 2},
+                                   WeldJoint{},
+                                   WeldJoint{.frequency = 3},
+                                   DistanceJoint{.anchor_a = {0.1, 0}, .min = 0.9}};
+        for (std::size_t j = 0; j < mixed.joints.size(); ++j) mixed.joints[j].kind = kinds[j % 7];
+        for (const Scene& scene : {mixed, figures(70)}) {
+            const auto hash = [&](const std::string& isa, int threads) {
+                BasicWorld<Real> world(scene, {.isa = isa, .threads = threads});
+                for (int i = 0; i < 40; ++i) world.step(kStep);
+                return world.state_hash();
+            };
+            const std::uint64_t expected = hash("scalar", 1);
+            for (const std::string& isa : runnable_instruction_sets()) CHECK(hash(isa, 2) == expected);
+        }
+    }
+}
