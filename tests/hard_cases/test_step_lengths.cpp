@@ -1,4 +1,5 @@
-// B10 of docs/hard-cases.md: no step, tiny steps, one huge step, steps of changing length.
+// B10 and B35 of docs/hard-cases.md: no step, tiny steps, one huge step, steps of changing length.
+#include "math/random.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"
 #include "support/trial.hpp"
@@ -68,9 +69,88 @@ void check_survival(const std::vector<double>& steps, double still = 1e-3) {
         }
 }
 
+/// Rough discs in a box open at the top, let go; `settled` is 20 s later.
+Scene rough_pile() {
+    constexpr int kDiscs = 400, kColumns = 15;
+    const Material rough{.friction = 0.5};
+    Scene scene;
+    scene.accuracy.solver = Solver::soft;
+    scene.gravity = {0, -10};
+    scene.walls = Walls{.min = {0, 0}, .max = {20, 400}, .top = false, .material = rough};
+    Random random(1);
+    for (int i = 0; i < kDiscs; ++i)
+        scene.add({.shape = Disc{random.uniform(0.4, 0.6)},
+                   .position = {0.65 + 1.25 * (i % kColumns) + random.uniform(0, 0.04),
+                                0.7 + 1.25 * (i / kColumns)},
+                   .material = rough});
+    return scene;
+}
+
+template <class Real>
+BasicWorld<Real> settled(const Scene& scene) {
+    BasicWorld<Real> world(scene, {.threads = 1});
+    for (int i = 0; i < 1200; ++i) world.step(1.0 / 60);
+    return world;
+}
+
+template <class Real>
+double rms_speed(const BasicWorld<Real>& world) {
+    const auto bodies = world.bodies();
+    double sum = 0;
+    for (std::size_t i = 0; i < bodies.count; ++i) {
+        const double x = bodies.velocity_x[i], y = bodies.velocity_y[i];
+        sum += x * x + y * y;
+    }
+    return std::sqrt(sum / static_cast<double>(bodies.count));
+}
+
+constexpr double kCalm = 2e-3;  // m/s, root mean square in a pile at rest
+
 }  // namespace
 
 TEST_SUITE("hard cases/step lengths") {
+    TEST_CASE_TEMPLATE("B35: one step of 0.1 to 30 times the usual length leaves a pile at rest", Real, float,
+                       double) {
+        const BasicWorld<Real> start = settled<Real>(rough_pile());
+        REQUIRE(rms_speed(start) < kCalm);
+        for (const double times : {0.1, 0.5, 2.1, 5.0, 30.0}) {
+            CAPTURE(times);
+            BasicWorld<Real> world(start);
+            double most = 0;
+            for (int i = 0; i < 60; ++i) {
+                world.step((i == 0 ? times : 1) / 60);
+                most = std::max(most, rms_speed(world));
+            }
+            report("one step of ", times, " times the usual: rms ", most, " m/s");
+            CHECK(most < kCalm);
+        }
+    }
+
+    TEST_CASE_TEMPLATE("B35: a pile at rest stays so under random steps of 1 to 50 ms", Real, float, double) {
+        const BasicWorld<Real> start = settled<Real>(rough_pile());
+        for (const double shortest : {1.0 / 240, 1e-3}) {
+            const double longest = shortest > 2e-3 ? 1.0 / 30 : 0.05;
+            BasicWorld<Real> world(start);
+            Random random(5);
+            double most = 0;
+            for (int i = 0; i < 600; ++i) {
+                world.step(random.uniform(shortest, longest));
+                most = std::max(most, rms_speed(world));
+            }
+            report("steps of ", shortest, " to ", longest, " s: rms ", most, " m/s");
+            CHECK(most < kCalm);
+        }
+    }
+
+    TEST_CASE("B35: a pile falls asleep under random steps of 1 to 50 ms") {
+        Scene scene = rough_pile();
+        scene.effects.sleep = true;
+        World world(scene, {.threads = 1});
+        Random random(5);
+        for (int i = 0; i < 2400 && world.profile().asleep < 400; ++i) world.step(random.uniform(1e-3, 0.05));
+        CHECK(world.profile().asleep == 400);
+    }
+
     TEST_CASE_TEMPLATE("a step of length zero changes no bit of any body, nor the time", Real, float,
                        double) {
         Scene scene = gas_scene({.count = 50, .smallest_radius = 0.1, .largest_radius = 0.8});
@@ -115,8 +195,6 @@ TEST_SUITE("hard cases/step lengths") {
                        double) {
         std::vector<double> steps;
         for (int i = 0; i < 600; ++i) steps.push_back(i % 2 == 0 ? 1.0 / 30 : 1.0 / 240);
-        // Solver `soft`, which takes the scenes without restitution, finds its impulses anew whenever
-        // substeps become eight times longer or shorter: the stack stands, but trembles.
         check_survival<Real>(steps, 0.3);
     }
 

@@ -54,7 +54,7 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const EdgeCa
     motion.resize(4 * padded(records_.count() + ContactGraph<Real>::padding_rows(graph.groups)));
     terms_.dt = dt;
     settings_.set_lengths(terms_);
-    warm_start_.begin_step(graph, terms_.substep_dt);
+    warm_start_.begin_step(graph, terms_.substep_dt, dt);
     const bool is_new = pair_finder_.find(view(), world.bodies, masses_, motion);
     if (is_new && masses_.are_uneven()) uneven_.find(graph.pairs, masses_.inverse_column(), records_.count());
     support_finder_.find(view(), world, edges);
@@ -160,6 +160,7 @@ void SoftSolver<Real>::end_contacts() {
         if (settings_.effects.rolling)
             graph.supports.rolling_impulse[candidate] = supports_.rolling_impulse[i];
     });
+    warm_start_.end_step(graph);
 }
 
 template <class Real>

@@ -5,25 +5,42 @@
 namespace carom {
 namespace {
 
-/// Impulses of substeps that were longer or shorter by this factor are of no use.
-constexpr double kOtherLength = 2;
+/// Steps count as varying until their length has been the same for so long.
+constexpr double kVarying = 0.5;  // s
+/// While they vary, forces of contacts are means over so long: what a short step needed to stop a slow
+/// approach would be a kick in a long one.
+constexpr double kMeanOver = 0.1;  // s
 
 }  // namespace
 
 /// What lasts from step to step is force: after substeps of another length the impulses are of another size.
-/// If that differs much, what was noise would become a kick: better to start from nothing, with more sweeps.
 template <class Real>
-void WarmStart<Real>::begin_step(ContactGraph<Real>& graph, double substep_dt) {
+void WarmStart<Real>::begin_step(ContactGraph<Real>& graph, double substep_dt, double dt) {
     is_rebalanced_ = false;
-    are_known_ = substep_dt < kOtherLength * substep_dt_ && substep_dt_ < kOtherLength * substep_dt;
+    are_known_ = substep_dt_ > 0;
     kept_ = are_known_ ? substep_dt / substep_dt_ : 0;
-    if (substep_dt == substep_dt_) return;
+    dt_ = dt;
+    varying_left_ = are_known_ && substep_dt != substep_dt_ ? kVarying : std::max(0.0, varying_left_ - dt);
     const auto kept = static_cast<Real>(kept_);
-    for (ContactRows<Real>* rows : {&graph.pairs, &graph.supports})
-        for (Column<Real>* impulses :
-             {&rows->normal_impulse, &rows->friction_impulse, &rows->rolling_impulse})
-            for (Real& impulse : *impulses) impulse *= kept;
+    const std::array<Column<Real>*, 6> impulses = impulses_of(graph);
+    if (substep_dt != substep_dt_)
+        for (Column<Real>* column : impulses)
+            for (Real& impulse : *column) impulse *= kept;
     substep_dt_ = substep_dt;
+    if (!(varying_left_ > 0) || !(dt < kMeanOver)) return;
+    for (std::size_t i = 0; i < impulses.size(); ++i) before_[i] = *impulses[i];
+}
+
+template <class Real>
+void WarmStart<Real>::end_step(ContactGraph<Real>& graph) {
+    if (!(varying_left_ > 0) || !(dt_ < kMeanOver)) return;
+    const auto share = static_cast<Real>(dt_ / kMeanOver);
+    const std::array<Column<Real>*, 6> impulses = impulses_of(graph);
+    for (std::size_t i = 0; i < impulses.size(); ++i)
+        for (std::size_t k = 0; k < std::min(impulses[i]->size(), before_[i].size()); ++k) {
+            Real& impulse = (*impulses[i])[k];
+            impulse = before_[i][k] + share * (impulse - before_[i][k]);
+        }
 }
 
 template <class Real>

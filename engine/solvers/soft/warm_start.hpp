@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "solvers/shared/rebalance.hpp"
 #include "solvers/soft/step_view.hpp"
 
@@ -9,8 +11,11 @@ namespace carom {
 template <class Real>
 class WarmStart {
   public:
-    /// Rescales the impulses of the graph to the substeps of this step, or forgets them.
-    void begin_step(ContactGraph<Real>& graph, double substep_dt);
+    /// Rescales the impulses of the graph to the substeps of this step.
+    void begin_step(ContactGraph<Real>& graph, double substep_dt, double dt);
+    /// While steps vary in length: what the contacts keep is a mean over time. To be called when the impulses
+    /// of the step are in the graph. Cost: O(contacts) then, else nothing.
+    void end_step(ContactGraph<Real>& graph);
     /// Spreads what removed bodies carried over other contacts.
     void rebalance(const StepView<Real>& step, const Bodies<Real>& bodies);
 
@@ -23,17 +28,30 @@ class WarmStart {
     /// Length of the substep that the impulses of contacts belong to [s].
     double substep_dt() const { return substep_dt_; }
 
-    std::size_t bytes() const { return rebalance_.bytes(); }
+    std::size_t bytes() const {
+        std::size_t bytes = rebalance_.bytes();
+        for (const Column<Real>& column : before_) bytes += column.bytes();
+        return bytes;
+    }
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.substep_dt_);
+        archive(self.substep_dt_, self.varying_left_);
     }
 
   private:
+    static std::array<Column<Real>*, 6> impulses_of(ContactGraph<Real>& graph) {
+        ContactRows<Real>&pairs = graph.pairs, &supports = graph.supports;
+        return {&pairs.normal_impulse,    &pairs.friction_impulse,    &pairs.rolling_impulse,
+                &supports.normal_impulse, &supports.friction_impulse, &supports.rolling_impulse};
+    }
+
     double substep_dt_ = 0;  // s, 0: there are no impulses
     double kept_ = 1;
+    double dt_ = 0;            // s, of the step
+    double varying_left_ = 0;  // s, for which steps count as varying
     bool are_known_ = false, is_rebalanced_ = false;
+    std::array<Column<Real>, 6> before_;  // N s, impulses at the start of the step, while steps vary
     Rebalance<Real> rebalance_;
 };
 
