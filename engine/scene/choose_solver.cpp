@@ -136,14 +136,14 @@ std::optional<Problem> find_solver_problem(const EffectOverrides& effects, Solve
 }
 
 std::optional<Problem> find_solver_problem(const Item& item, const Body& body, Vec2 gravity, Solver solver) {
+    if (body.sensor && solver != Solver::soft)
+        return problem(ErrorCode::inconsistent, item, "/sensor", "sensor true, but the solver ",
+                       quoted(name_of(solver)), " knows no sensors. Use \"soft\" or \"auto\".");
     if (solver == Solver::rattle) return find_rattle_problem(item, body);
     if (!is_disc(body.shape) && solver != Solver::soft)
         return problem(ErrorCode::inconsistent, item, join("/shape/", name_of(body.shape)), "the shape ",
                        quoted(name_of(body.shape)), ", but the solver ", quoted(name_of(solver)),
                        " knows discs only. Use \"soft\" or \"auto\".");
-    if (body.sensor && solver != Solver::soft)
-        return problem(ErrorCode::inconsistent, item, "/sensor", "sensor true, but the solver ",
-                       quoted(name_of(solver)), " knows no sensors. Use \"soft\" or \"auto\".");
     if (solver == Solver::event)
         if (auto found = find_filter_problem(item, body)) return found;
     return find_roughness_problem(item, body.material, gravity, solver);
