@@ -97,15 +97,15 @@ void read_record(const Node& node, Record& record) {
 
 /// The kinds of events that are wanted; those left out are not told.
 void read_events(const Node& node, EventChoices& events) {
-    static constexpr std::array<std::string_view, 6> kKinds{"sensor", "begin", "end",
-                                                            "hit",    "break", "sleep"};
+    static constexpr std::array<std::string_view, 6> kEventKinds{"sensor", "begin", "end",
+                                                                 "hit",    "break", "sleep"};
     node.expect_array("kinds of events, e.g. [\"sensor\"]");
     events.sensor = false;
     for (std::size_t i = 0; i < node.size(); ++i) {
         const Node kind = node[i];
-        const std::size_t which = kind.one_of(kKinds, "kind of event");
+        const std::size_t which = kind.one_of(kEventKinds, "kind of event");
         if (which > 0)
-            kind.fail(ErrorCode::not_built_yet, "events \"" + std::string(kKinds[which]) +
+            kind.fail(ErrorCode::not_built_yet, "events \"" + std::string(kEventKinds[which]) +
                                                     "\" are not built in this version; expected \"sensor\".");
         events.sensor = true;
     }
