@@ -39,8 +39,11 @@ void SoftJoints<Real>::find_groups(const WorldState<Real>& world) {
     };
     std::vector<Member> members;
     joined_.clear(), joined_.resize(rows);
-    world.joints.for_each([&](std::size_t, const StoredJoint& joint) {
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    breakable_.clear();
+    world.joints.for_each([&](std::size_t slot, const StoredJoint& joint) {
         const std::size_t a = row_of(joint.a), b = row_of(joint.b);
+        if (joint.break_force < kNever || joint.break_torque < kNever) breakable_.push_back(slot);
         if (moves(a) && moves(b)) islands.join(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
     });
     world.joints.for_each([&](std::size_t slot, const StoredJoint& joint) {
@@ -233,8 +236,7 @@ bool SoftJoints<Real>::end_step(const JointStep<Real>& step, Books& books, doubl
     }
     if (!swept_.empty()) swept_.store(joints, step.terms.substep_dt);
     const std::size_t before = joints.broken.size();
-    for (std::size_t slot = 0; slot < joints.slots(); ++slot) {
-        if (!joints.has(slot)) continue;
+    for (const std::size_t slot : breakable_) {
         const StoredJoint& joint = joints[slot];
         if (length_squared(joint.force) <= joint.break_force * joint.break_force &&
             std::fabs(joint.torque) <= joint.break_torque)

@@ -66,6 +66,7 @@ class SoftJoints {
     std::size_t first_beside_ = 0;  // of direct_, that are solved beside sweeps
     SweptJoints<Real> swept_;
     std::size_t swept_groups_ = 0, crowd_groups_ = 0;
+    std::vector<std::size_t> breakable_;  // slots of joints that can break
     Column<Real> joined_;
     std::vector<std::int32_t> group_of_;  // by row; -1: none
     std::vector<std::uint8_t> group_touches_;

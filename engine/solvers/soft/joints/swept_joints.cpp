@@ -118,8 +118,8 @@ template <class Real>
 std::vector<std::size_t> SweptJoints<Real>::sort(const WorldState<Real>& world,
                                                  const std::vector<std::size_t>& slots) {
     const std::size_t rows = world.bodies.count;
-    first_beyond_ = static_cast<std::int32_t>(rows), joints_ = parts_of_joints_ = 0, colours_ = 0,
-    longest_ = 0;
+    first_beyond_ = static_cast<std::int32_t>(rows), joints_ = parts_of_joints_ = 0, colours_ = 0;
+    longest_ = 0, is_loaded_ = false;
     groups_ = {};
     // Nets have their rows in order, so that joints reach into the next chunk at most: as long as a chunk has
     // so many rows that most do.
@@ -224,45 +224,41 @@ void SweptJoints<Real>::begin_step(const JointStep<Real>& step, const StepLoops<
     const auto real = [](double value) { return static_cast<Real>(value); };
     const Bodies<Real>& bodies = step.world.bodies;
     kernels_ = loops.kernels;
+    if (!is_loaded_) load(step.world);
     arguments_.assign(kKinds, {});
     for (std::size_t kind = 0; kind < kKinds; ++kind) {
         Kind& own = kinds_[kind];
         struct End {
             Vec2 place, arm;
-            double per_rim;
+            double per_rim, angle;
         };
-        const auto end_of = [&](std::int32_t number, BodyId id, Vec2 anchor) -> End {
-            if (id == BodyId{}) return {anchor, {}, 0};
-            const std::size_t row = step.world.handles.row_of_slot(id.index);
-            End end{{bodies.position_x[row], bodies.position_y[row]}, {}, 0};
+        const bool has_arms = kind != kRods;
+        const auto end_of = [&](std::int32_t number, std::int32_t of, Vec2 anchor) -> End {
+            if (of < 0) return {anchor, {}, 0, 0};
+            const auto row = static_cast<std::size_t>(of);
+            End end{{bodies.position_x[row], bodies.position_y[row]}, {}, 0, 0};
             if (anchor == Vec2{} && (kind == kRods || kind == kRodsOfAnchors)) return end;
-            const double angle = bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0;
-            end.arm = rotate(rotation_by(angle), anchor);
+            end.angle = bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0;
+            end.arm = rotate(rotation_by(end.angle), anchor);
             end.per_rim = 1 / rim_of(bodies, row);
             if (number >= first_beyond_) end.place += end.arm, end.arm = {}, end.per_rim = 0;
             return end;
         };
         for (std::size_t i = 0; i < own.slot.size(); ++i) {
             if (own.slot[i] < 0) continue;
-            const StoredJoint& joint = step.world.joints[static_cast<std::size_t>(own.slot[i])];
-            const End a = end_of(own.a[i], joint.a, joint.anchor_a),
-                      b = end_of(own.b[i], joint.b, joint.anchor_b);
-            if ((needs_of(kind) & kDrives) != 0) begin_drive(own, i, kind, joint, step.terms.substep_dt);
+            const typename Kind::Source& source = own.sources[i];
+            const End a = end_of(own.a[i], source.row_a, source.anchor_a),
+                      b = end_of(own.b[i], source.row_b, source.anchor_b);
+            if ((needs_of(kind) & kDrives) != 0)
+                begin_drive(own, i, kind, step.world.joints[static_cast<std::size_t>(own.slot[i])],
+                            step.terms.substep_dt);
             if (kind == kAngles) {
-                const auto angle_of = [&](BodyId id) {
-                    return id == BodyId{} || !bodies.has_rotation
-                               ? 0.0
-                               : static_cast<double>(bodies.angle[step.world.handles.row_of_slot(id.index)]);
-                };
-                own.start_x[i] = real(angle_of(joint.b) - angle_of(joint.a) - joint.angle);
+                own.start_x[i] = real(b.angle - a.angle - source.angle);
                 own.per_rim_a[i] = real(a.per_rim), own.per_rim_b[i] = real(b.per_rim);
                 continue;
             }
             own.start_x[i] = real(b.place.x - a.place.x), own.start_y[i] = real(b.place.y - a.place.y);
-            own.length[i] = real(joint.length);
-            if (kind != kSprings)
-                own.impulse_x[i] = real(joint.impulse[0]), own.impulse_y[i] = real(joint.impulse[1]);
-            if (kind == kRods) continue;
+            if (!has_arms) continue;
             own.start_arm_a_x[i] = real(a.arm.x), own.start_arm_a_y[i] = real(a.arm.y);
             own.start_arm_b_x[i] = real(b.arm.x), own.start_arm_b_y[i] = real(b.arm.y);
             own.per_rim_a[i] = real(a.per_rim), own.per_rim_b[i] = real(b.per_rim);
@@ -279,6 +275,28 @@ void SweptJoints<Real>::begin_step(const JointStep<Real>& step, const StepLoops<
         k.most = real(kind == kHinges   ? kLargestCorrection * longest_
                       : kind == kAngles ? kLargestTurn
                                         : kLargestCorrection);
+    }
+}
+
+/// What does not change from step to step, and the impulses of the last one.
+template <class Real>
+void SweptJoints<Real>::load(const WorldState<Real>& world) {
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    const auto row_of = [&](BodyId id) {
+        return id == BodyId{} ? -1 : static_cast<std::int32_t>(world.handles.row_of_slot(id.index));
+    };
+    is_loaded_ = true;
+    for (std::size_t kind = 0; kind < kKinds; ++kind) {
+        Kind& own = kinds_[kind];
+        own.sources.resize(own.slot.size());
+        for (std::size_t i = 0; i < own.slot.size(); ++i) {
+            if (own.slot[i] < 0) continue;
+            const StoredJoint& joint = world.joints[static_cast<std::size_t>(own.slot[i])];
+            own.sources[i] = {row_of(joint.a), row_of(joint.b), joint.anchor_a, joint.anchor_b, joint.angle};
+            if ((needs_of(kind) & kPoints) != 0) own.length[i] = real(joint.length);
+            if ((needs_of(kind) & kDrives) == 0)
+                own.impulse_x[i] = real(joint.impulse[0]), own.impulse_y[i] = real(joint.impulse[1]);
+        }
     }
 }
 
@@ -448,7 +466,8 @@ template <class Real>
 std::size_t SweptJoints<Real>::bytes() const {
     std::size_t bytes = no_turn_.bytes();
     for (const Kind& kind : kinds_) {
-        bytes += kind.a.bytes() + kind.b.bytes() + kind.slot.bytes();
+        bytes += kind.a.bytes() + kind.b.bytes() + kind.slot.bytes() +
+                 kind.sources.capacity() * sizeof(typename Kind::Source);
         const_cast<Kind&>(kind).for_each_column(
             [&](Column<Real>& column, unsigned) { bytes += column.bytes(); });
     }

@@ -66,6 +66,13 @@ class SweptJoints {
         Column<Real> arm_a_x, arm_a_y, arm_b_x, arm_b_y, per_rim_a, per_rim_b;
         Column<Real> impulse_z, impulse_w, value, alpha, gamma, lower, upper, speed, most;
         std::vector<std::size_t> begin;  // of each group, and the end
+        /// What a joint is made of, in the order of the columns: joints themselves lie apart in memory.
+        struct Source {
+            std::int32_t row_a, row_b;  // below zero: the world
+            Vec2 anchor_a, anchor_b;    // m, in the frame of the body, or of the world
+            double angle;               // rad, at which the angle counts as 0
+        };
+        std::vector<Source> sources;
 
         /// @param needs  which columns, bits of Needs
         void resize(std::size_t places, unsigned needs);
@@ -80,6 +87,7 @@ class SweptJoints {
     static std::size_t kind_of(const StoredJoint& joint);
     static bool has_angle_part(const StoredJoint& joint);
     Real* turn_of(BodyRecords<Real>& records);
+    void load(const WorldState<Real>& world);
     void begin_drive(Kind& own, std::size_t i, std::size_t kind, const StoredJoint& joint, double h);
     /// Of springs, ropes and angles: along the length [N s] or of the angle [N m s].
     static double sum_of_impulses(const Kind& own, std::size_t i);
@@ -89,6 +97,7 @@ class SweptJoints {
     TaskGroups groups_;
     std::size_t joints_ = 0, parts_of_joints_ = 0, colours_ = 0;
     std::int32_t first_beyond_ = 0;             // row
+    bool is_loaded_ = false;                    // whether columns have what the store keeps
     double longest_ = 0;                        // m, arm of hinges
     Column<Real> no_turn_;                      // in place of turns in worlds where nothing turns
     std::vector<SweepJoints<Real>> arguments_;  // by kind
