@@ -27,7 +27,8 @@ struct BenchScene {
 };
 
 /// The kinds there are: "gas", "rough-gas", "pile", "packed", "tumbler" of discs, then "pyramid",
-/// "pyramid-start", "box-pile", "mixed-pile", "smash", "planks" of other shapes, "net" and "ragdolls" of joints.
+/// "pyramid-start", "box-pile", "mixed-pile", "smash", "planks" of other shapes, "net" and "ragdolls" of
+/// joints.
 const std::vector<std::string>& scene_names();
 
 /// @param name    one of `scene_names`
