@@ -82,8 +82,10 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
                               const KernelTable<Real>& kernels, const Executor& executor) {
     strays_.clear(), overshoot_ = 0;
     new_pairs_.clear();
-    if (rule_ == MarginRule::own && is_valid_ && may_renew(displaced.size(), bodies.count)) {
+    if (rule_ == MarginRule::own && is_valid_ &&
+        may_renew(displaced.size() + fresh_rows_.size(), bodies.count)) {
         strays_.assign(displaced.begin(), displaced.end());
+        add_fresh_strays();
         renew_margins(bodies, end, gravity);
         return;
     }
@@ -105,6 +107,7 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
         choose_own_margins(bodies, end, gravity, executor);
     else
         choose_margins(bodies, end, gravity, fastest);
+    forget_names();
     grid_.build({bodies.count, bodies.position_x.data(), bodies.position_y.data(), reach_.data(),
                  bodies.has_flags ? bodies.flags.data() : nullptr},
                 kernels, executor);
@@ -117,9 +120,9 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
 
 template <class Real>
 std::size_t Candidates<Real>::bytes() const {
-    return grid_.bytes() + stray_rows_.bytes() + reach_.bytes() + own_x_.bytes() + own_y_.bytes() +
-           first_reach_.bytes() + drift_x_.bytes() + drift_y_.bytes() + flow_x_.bytes() + flow_y_.bytes() +
-           rate_.bytes() + flow_.bytes() +
+    return grid_.bytes() + stray_rows_.bytes() + bytes_of_names() + reach_.bytes() + own_x_.bytes() +
+           own_y_.bytes() + first_reach_.bytes() + drift_x_.bytes() + drift_y_.bytes() + flow_x_.bytes() +
+           flow_y_.bytes() + rate_.bytes() + flow_.bytes() +
            (new_pairs_.capacity() + added_pairs_.capacity() + spare_pairs_.capacity()) * sizeof(Pair);
 }
 

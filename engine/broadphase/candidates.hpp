@@ -46,6 +46,20 @@ class Candidates {
     /// Forgets the pairs alone.
     void invalidate_pairs() { is_valid_ = false; }
 
+    /// Rule `own`: follows rows that changed since the last step without making the pairs void. Bodies that
+    /// came or were put elsewhere are looked for by `update`, those that are gone are in no pair any more.
+    /// pair_a and pair_b stay those of the rows before.
+    /// @param now  present row of each former one, or negative
+    /// @param is_elsewhere  a present row, whether its body was put elsewhere
+    /// Cost: O(bodies), about 1 ns each, and O(bodies) in `update` for each that came or was put elsewhere.
+    void follow_rows(const Bodies<Real>& bodies, std::span<const std::int32_t> now,
+                     std::span<const std::uint8_t> is_elsewhere);
+    /// Whether so many rows may change without the pairs being void.
+    bool may_follow(std::size_t changed, std::size_t count) const {
+        return rule_ == MarginRule::own && is_valid_ && changed * count <= kMostComparisons &&
+               may_renew(changed, count) && loose_rows_.size() + changed <= kMostLoose;
+    }
+
     /// Finds the pairs anew if they are void or if too many bodies leave their margins on the flights that
     /// begin now.
     /// @param displaced  rows whose flight leaves the margin
@@ -98,11 +112,24 @@ class Candidates {
     }
     /// How far a body's place and reach go beyond those it had first, but for what it drifted [m].
     double farther_than_first(std::size_t row) const {
+        if (is_loose(row)) return HUGE_VAL;
         const Vec2 drift = drift_of(row);
-        const double x = own_x_[row] - drift.x - grid_.built_x()[row],
-                     y = own_y_[row] - drift.y - grid_.built_y()[row];
+        const double x = own_x_[row] - drift.x - first_x(row), y = own_y_[row] - drift.y - first_y(row);
         return std::sqrt(x * x + y * y) + static_cast<double>(reach_[row] - first_reach_[row]);
     }
+    /// Where a row was when the pairs were found anew [m]; not of one that came since.
+    Real first_x(std::size_t row) const { return grid_.built_x()[name_of(row)]; }
+    Real first_y(std::size_t row) const { return grid_.built_y()[name_of(row)]; }
+    /// Whether a body came, or was put elsewhere, since the pairs were found anew.
+    bool is_loose(std::size_t row) const { return !loose_rows_.empty() && is_loose_[row]; }
+    /// How far places may have drifted since then [m].
+    double largest_drift_so_far() const { return largest_drift() - drift_left_; }
+    /// Rule `own`: rows of all bodies whose margins are within `reach` of a place, and some besides.
+    /// @return how many rows are in `out`.
+    std::size_t find_margins_near(Vec2 place, double reach, Column<std::int32_t>& out) const {
+        return find_rows_near(place, reach + farthest_ + largest_drift_so_far(), out);
+    }
+
     /// How far places, built_x and built_y, may go with the mean flow of the bodies before the pairs are void
     /// [m]. Lists of what a body reaches besides other bodies, as walls and edges, have to look farther by
     /// that.
@@ -135,8 +162,10 @@ class Candidates {
     bool wants_sorted_rows() const;
     /// To be called when rows were sorted.
     void note_sorted_rows();
-    /// Row of each place in the order of the cells.
-    const std::int32_t* order() const { return grid_.order().data(); }
+    /// Row of each place in the order of the cells; rows that came since the pairs were found are the last.
+    const std::int32_t* order() const { return is_renamed() ? sorted_rows_.data() : grid_.order().data(); }
+    /// To be called before `order` where rows have changed.
+    void prepare_order(std::size_t count);
 
     std::int64_t rebuild_count() const { return rebuild_count_; }
     std::size_t bytes() const;
@@ -148,6 +177,7 @@ class Candidates {
         archive(self.new_pairs_, self.added_pairs_, self.renewed_count_, self.farthest_, self.steepness_);
         archive(self.drift_left_, self.largest_reach_, self.flow_, self.since_flow_, self.may_flow_);
         archive(self.flows_, self.flow_is_local_, self.failed_follows_, self.follows_left_out_, self.radii_);
+        archive(self.row_of_name_, self.name_of_, self.is_loose_, self.loose_rows_, self.fresh_rows_);
         archive(self.is_valid_, self.radii_are_known_, self.rebuild_count_, self.rebuilds_until_sorted_);
     }
     /// To be called after the state was read.
@@ -161,6 +191,23 @@ class Candidates {
     static constexpr std::size_t kBodiesPerRenewal = 8;
     /// A body's own margin is at most this many of the largest radius, unless 1.25 steps of it are more.
     static constexpr double kLargestOwnMargin = 1;
+
+    /// Bodies that come in a step are compared with all others, and later, while the pairs last, with all
+    /// that leave their margins: at most so many comparisons and bodies.
+    static constexpr std::size_t kMostComparisons = 2'000'000, kMostLoose = 2048;
+    static constexpr std::int32_t kNoName = -1;
+
+    /// Rows have changed since the grid was built: it knows bodies by the rows they had then, their names.
+    bool is_renamed() const { return !row_of_name_.empty(); }
+    std::size_t name_of(std::size_t row) const {
+        return is_renamed() ? static_cast<std::size_t>(name_of_[row]) : row;
+    }
+    std::size_t find_rows_near(Vec2 place, double reach, Column<std::int32_t>& out) const;
+    std::size_t bytes_of_names() const;
+    void add_fresh_strays();
+    void forget_names() {
+        row_of_name_.clear(), name_of_.clear(), is_loose_.clear(), loose_rows_.clear(), fresh_rows_.clear();
+    }
 
     bool may_renew(std::size_t strays, std::size_t count) const {
         return (renewed_count_ + strays) * kBodiesPerRenewal <= count;
@@ -199,6 +246,11 @@ class Candidates {
     Column<Real> drift_x_, drift_y_;            // m, way of a place up to where it began to follow this flow
     Column<Real> flow_x_, flow_y_, rate_;       // m/s, velocity of a place; 1/s, share of reach it loses
     std::vector<Pair> new_pairs_, added_pairs_, spare_pairs_;
+    // Rows that changed since the grid was built; empty if none did.
+    std::vector<std::int32_t> row_of_name_, name_of_;    // negative: gone; came since
+    std::vector<std::uint8_t> is_loose_;                 // a row
+    std::vector<std::int32_t> loose_rows_, fresh_rows_;  // of the fresh ones pairs are yet to be found
+    std::vector<std::int32_t> old_rows_, sorted_rows_;
     std::size_t renewed_count_ = 0;
     double farthest_ = 0;    // m, most that a renewed margin reaches beyond the first one, drift aside
     double steepness_ = 0;   // no unit: difference of the drifts of two places over their distance, at most

@@ -23,10 +23,16 @@ constexpr double kAllowance = 0.5;
 // An edge that is long beside the discs is looked at in pieces, so that the search stays near it. More pieces
 // than this share of the bodies would cost more than to look at all of them.
 constexpr double kBodiesPerPiece = 4;
+constexpr double kMostPieces = 1024;  // of an edge that has left its margin
 
 // Positions are rounded to Real where the grid sees them.
 template <class Real>
 constexpr double kRoundingOfPlace = sizeof(Real) == sizeof(float) ? 2e-7 : 1e-15;
+
+template <class Real>
+double rounding_of(Vec2 a, Vec2 b) {
+    return kRoundingOfPlace<Real> * (std::fabs(a.x) + std::fabs(a.y) + std::fabs(b.x) + std::fabs(b.y));
+}
 
 /// Farthest that a point of the body is from where it was.
 double way_between(Vec2 from, double from_angle, Vec2 to, double to_angle, double reach) {
@@ -55,22 +61,37 @@ void EdgeCandidates<Real>::place(const WorldState<Real>& world, double dt) {
 }
 
 template <class Real>
+bool EdgeCandidates<Real>::has_left_margin(std::size_t body) const {
+    const EdgePose& pose = poses_[body];
+    const FoundAt& found = found_at_[body];
+    // Most edges stand still.
+    if (pose.end_position == found.position && pose.end_angle == found.angle) return false;
+    return way_between(found.position, found.angle, pose.end_position, pose.end_angle, found.reach) >
+           found.margin;
+}
+
+template <class Real>
 bool EdgeCandidates<Real>::has_left_margin() const {
-    for (std::size_t i = 0; i < poses_.size() && i < found_at_.size(); ++i) {
-        const EdgePose& pose = poses_[i];
-        const FoundAt& found = found_at_[i];
-        // Most edges stand still.
-        if (pose.end_position == found.position && pose.end_angle == found.angle) continue;
-        if (way_between(found.position, found.angle, pose.end_position, pose.end_angle, found.reach) >
-            found.margin)
-            return true;
-    }
+    for (std::size_t i = 0; i < poses_.size() && i < found_at_.size(); ++i)
+        if (has_left_margin(i)) return true;
     return false;
 }
 
 template <class Real>
+void EdgeCandidates<Real>::give_margin(const WorldState<Real>& world, const Candidates<Real>& candidates,
+                                       std::size_t body) {
+    const EdgePose& pose = poses_[body];
+    const double reach = world.edges.bodies[body].reach,
+                 way = way_between(pose.position, pose.angle, pose.end_position, pose.end_angle, reach);
+    const double margin =
+        std::fmax(kOwnEdgeMargin * way,
+                  std::fmin(kStepsOfEdge * way, kLargestEdgeMargin * candidates.largest_radius()));
+    found_at_[body] = {pose.position, pose.turn, pose.angle, reach, margin};
+}
+
+template <class Real>
 void EdgeCandidates<Real>::find(const WorldState<Real>& world, const Candidates<Real>& candidates) {
-    pairs_.clear(), new_pairs_.clear();
+    pairs_.clear(), new_pairs_.clear(), added_ = 0;
     allowance_ = kAllowance * candidates.usual_radius();
     found_at_.resize(poses_.size());
     if (poses_.empty()) return;
@@ -80,15 +101,10 @@ void EdgeCandidates<Real>::find(const WorldState<Real>& world, const Candidates<
         if ((bodies.flags_of(row) & kNotInGrid) == 0)
             largest_reach = std::fmax(largest_reach, static_cast<double>(candidates.first_reach(row)));
     for (std::size_t i = 0; i < poses_.size(); ++i) {
-        const EdgePose& pose = poses_[i];
         const EdgeBody& body = world.edges.bodies[i];
-        const double way =
-            way_between(pose.position, pose.angle, pose.end_position, pose.end_angle, body.reach);
-        const double margin =
-            std::fmax(kOwnEdgeMargin * way,
-                      std::fmin(kStepsOfEdge * way, kLargestEdgeMargin * candidates.largest_radius()));
-        found_at_[i] = {pose.position, pose.turn, pose.angle, body.reach, margin};
-        if (!pose.takes_part || largest_reach == 0) continue;
+        give_margin(world, candidates, i);
+        const double margin = found_at_[i].margin;
+        if (!poses_[i].takes_part || largest_reach == 0) continue;
         for (std::int32_t n = 0; n < body.count; ++n)
             find_near_edge(world, candidates, body.first + n,
                            margin + allowance_ + candidates.largest_drift(), largest_reach);
@@ -116,13 +132,65 @@ void EdgeCandidates<Real>::add_strays(const WorldState<Real>& world, const Candi
                 const EdgePair pair{stray, edge};
                 if (distance_squared(place, world.edges[edge].a, world.edges[edge].b) >= near * near)
                     continue;
-                const auto where = std::lower_bound(pairs_.begin(), pairs_.end(), pair);
-                if (where != pairs_.end() && *where == pair) continue;
-                pairs_.insert(where, pair);
-                new_pairs_.push_back(pair);
+                add_pair(pair);
             }
         }
     }
+    for (std::size_t i = 0; i < found_at_.size(); ++i)
+        if (has_left_margin(i)) {
+            give_margin(world, candidates, i);
+            if (poses_[i].takes_part) add_around_edges(world, candidates, i);
+        }
+    added_ += new_pairs_.size();
+}
+
+template <class Real>
+void EdgeCandidates<Real>::add_pair(EdgePair pair) {
+    const auto where = std::lower_bound(pairs_.begin(), pairs_.end(), pair);
+    if (where != pairs_.end() && *where == pair) return;
+    pairs_.insert(where, pair);
+    new_pairs_.push_back(pair);
+}
+
+/// What the edges of a body reach where they are now: as find_near_edge, but by the margins that discs have
+/// now.
+template <class Real>
+void EdgeCandidates<Real>::add_around_edges(const WorldState<Real>& world, const Candidates<Real>& candidates,
+                                            std::size_t number) {
+    const EdgeBody& body = world.edges.bodies[number];
+    const double margin = found_at_[number].margin + allowance_ + candidates.largest_drift();
+    for (std::int32_t edge = body.first; edge < body.first + body.count; ++edge) {
+        const EdgePose& pose = poses_[number];
+        const Vec2 a = pose.position + rotate(pose.turn, world.edges[edge].a),
+                   b = pose.position + rotate(pose.turn, world.edges[edge].b);
+        const double length = std::sqrt(length_squared(b - a)), rounding = rounding_of<Real>(a, b);
+        const double half = std::fmax(margin, candidates.largest_radius());
+        const double pieces = std::fmax(1, std::fmin(std::ceil(length / (2 * half)), kMostPieces));
+        for (double piece = 0; piece < pieces; ++piece) {
+            const Vec2 middle = a + ((piece + 0.5) / pieces) * (b - a);
+            const std::size_t found =
+                candidates.find_margins_near(middle, 0.5 * length / pieces + margin + rounding, near_);
+            for (std::size_t n = 0; n < found; ++n) {
+                const auto row = static_cast<std::size_t>(near_[n]);
+                if (world.bodies.is_immovable(row) || is_forbidden(world, near_[n], pose)) continue;
+                const double near = static_cast<double>(candidates.reach()[row]) + margin + rounding;
+                if (distance_squared(Vec2{candidates.built_x()[row], candidates.built_y()[row]}, a, b) <
+                    near * near)
+                    add_pair({near_[n], edge});
+            }
+        }
+    }
+}
+
+template <class Real>
+void EdgeCandidates<Real>::follow_rows(std::span<const std::int32_t> now,
+                                       std::span<const std::uint8_t> is_elsewhere) {
+    const auto is_gone = [&](EdgePair& pair) {
+        pair.row = now[static_cast<std::size_t>(pair.row)];
+        return pair.row < 0 || is_elsewhere[static_cast<std::size_t>(pair.row)];
+    };
+    std::erase_if(pairs_, is_gone);
+    std::sort(pairs_.begin(), pairs_.end());
 }
 
 template <class Real>
@@ -133,8 +201,7 @@ void EdgeCandidates<Real>::find_near_edge(const WorldState<Real>& world, const C
     const Vec2 a = pose.position + rotate(pose.turn, edge.a), b = pose.position + rotate(pose.turn, edge.b);
     const Bodies<Real>& bodies = world.bodies;
     const double length = std::sqrt(length_squared(b - a));
-    const double rounding =
-        kRoundingOfPlace<Real> * (std::fabs(a.x) + std::fabs(a.y) + std::fabs(b.x) + std::fabs(b.y));
+    const double rounding = rounding_of<Real>(a, b);
     // Half a piece and the margin are to be no more than the size of a cell: the quickest kind of query.
     const double half = std::fmax(largest_reach - margin, 0.25 * largest_reach);
     const double most = std::fmax(1, static_cast<double>(bodies.count) / kBodiesPerPiece);

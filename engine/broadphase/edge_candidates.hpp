@@ -51,8 +51,15 @@ class EdgeCandidates {
     void find(const WorldState<Real>& world, const Candidates<Real>& candidates);
     std::span<const EdgePair> pairs() const { return pairs_; }  ///< by row, then by edge
 
+    /// Rows have changed: pairs of what is gone or elsewhere go, those of other rows follow.
+    /// @param now  present row of each former one, or negative  @param is_elsewhere  a present row
+    void follow_rows(std::span<const std::int32_t> now, std::span<const std::uint8_t> is_elsewhere);
+    /// Whether edges that leave their margins may get new ones, with what they reach besides; else everything
+    /// is to be found anew.
+    bool may_add() const { return 2 * added_ <= pairs_.size() + kFewAdded; }
+
     /// Adds what discs reach with new margins that they got in this step. Cost: O(strays), and O(edges) for
-    /// each that has got far.
+    /// each that has got far; likewise O(what is found) for each edge that has left its margin.
     void add_strays(const WorldState<Real>& world, const Candidates<Real>& candidates);
     /// The pairs that the last call of add_strays added.
     std::span<const EdgePair> new_pairs() const { return new_pairs_; }
@@ -64,7 +71,7 @@ class EdgeCandidates {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.found_at_, self.pairs_, self.new_pairs_, self.allowance_);
+        archive(self.found_at_, self.pairs_, self.new_pairs_, self.allowance_, self.added_);
     }
 
     std::size_t bytes() const {
@@ -82,13 +89,21 @@ class EdgeCandidates {
     bool is_forbidden(const WorldState<Real>& world, std::int32_t row, const EdgePose& pose) const {
         return world.has_filters() && !world.may_collide(static_cast<std::size_t>(row), pose.row);
     }
+    static constexpr std::size_t kFewAdded = 256;
+
+    bool has_left_margin(std::size_t body) const;
+    void give_margin(const WorldState<Real>& world, const Candidates<Real>& candidates, std::size_t body);
+    void add_around_edges(const WorldState<Real>& world, const Candidates<Real>& candidates,
+                          std::size_t body);
+    void add_pair(EdgePair pair);
     void find_near_edge(const WorldState<Real>& world, const Candidates<Real>& candidates, std::int32_t edge,
                         double margin, double largest_reach);
 
     std::vector<EdgePose> poses_;    // a body of the EdgeStore
     std::vector<FoundAt> found_at_;  // likewise
     std::vector<EdgePair> pairs_, new_pairs_;
-    double allowance_ = 0;  // m, that a disc's reach may grow beyond what was looked at
+    std::size_t added_ = 0;  // pairs since they were found
+    double allowance_ = 0;   // m, that a disc's reach may grow beyond what was looked at
     Column<std::int32_t> near_;
 };
 

@@ -65,7 +65,8 @@ void Candidates<Real>::choose_own_margins(const Bodies<Real>& bodies, const Flig
 /// place is the grid's.)
 template <class Real>
 bool Candidates<Real>::was_pair(std::size_t a, std::size_t b) const {
-    const Real dx = grid_.built_x()[b] - grid_.built_x()[a], dy = grid_.built_y()[b] - grid_.built_y()[a];
+    if (is_loose(a) || is_loose(b)) return false;
+    const Real dx = first_x(b) - first_x(a), dy = first_y(b) - first_y(a);
     const Real reach = first_reach_[a] + first_reach_[b];
     return dx * dx + dy * dy < reach * reach;
 }
@@ -89,7 +90,7 @@ void Candidates<Real>::renew_margins(const Bodies<Real>& bodies, const FlightClo
         own_x_[row] = static_cast<Real>(place.x), own_y_[row] = static_cast<Real>(place.y);
         reach_[row] = own_reach(bodies, row, end, fall);
         largest_reach_ = std::fmax(largest_reach_, static_cast<double>(reach_[row]));
-        farthest_ = std::fmax(farthest_, farther_than_first(row));
+        if (!is_loose(row)) farthest_ = std::fmax(farthest_, farther_than_first(row));
     }
     renewed_count_ += strays_.size();
     for (const std::int32_t row : strays_) add_pairs_of(bodies, row);
@@ -116,7 +117,8 @@ std::size_t Candidates<Real>::find_around(std::size_t row, double radius, Vec2 a
     const double apart = std::sqrt(length_squared(way)) + radius + largest_reach_;
     const Vec2 place = at - drift_of(row);
     const double rounding = kRoundingOfPlace<Real> * (std::fabs(place.x) + std::fabs(place.y));
-    return find_near(place, radius + farthest_ + kSteepnessThen * steepness_ * apart + rounding, out);
+    if (is_loose(row)) return find_margins_near(at, radius + largest_reach_, out);
+    return find_rows_near(place, radius + farthest_ + kSteepnessThen * steepness_ * apart + rounding, out);
 }
 
 template <class Real>
@@ -127,15 +129,22 @@ void Candidates<Real>::add_pairs_of(const Bodies<Real>& bodies, std::int32_t row
     const double difference = kSteepnessThen * steepness_ * (reach + largest_reach_);
     const Vec2 place = Vec2{own_x_[i], own_y_[i]} - drift_of(i);
     const double rounding = kRoundingOfPlace<Real> * (std::fabs(place.x) + std::fabs(place.y));
-    const std::size_t found = find_near(place, reach + farthest_ + difference + rounding, near_);
-    for (std::size_t k = 0; k < found; ++k) {
-        const std::int32_t other = near_[k];
-        const auto j = static_cast<std::size_t>(other);
-        if (other == row || !is_pair(i, j) || was_pair(i, j)) continue;
-        if (bodies.is_immovable(i) && bodies.is_immovable(j)) continue;
+    const auto compare_with = [&](std::size_t j) {
+        const auto other = static_cast<std::int32_t>(j);
+        if (other == row || !is_pair(i, j) || was_pair(i, j)) return;
+        if (bodies.is_immovable(i) && bodies.is_immovable(j)) return;
         const Pair pair{std::min(row, other), std::max(row, other)};
         if (!std::binary_search(added_pairs_.begin(), added_pairs_.end(), pair)) new_pairs_.push_back(pair);
+    };
+    if (is_loose(i)) {  // the grid knows nothing of it
+        for (std::size_t j = 0; j < bodies.count; ++j) {
+            const Real dx = own_x_[j] - own_x_[i], dy = own_y_[j] - own_y_[i], sum = reach_[i] + reach_[j];
+            if (dx * dx + dy * dy < sum * sum && (bodies.flags_of(j) & kNotInGrid) == 0) compare_with(j);
+        }
+        return;
     }
+    const std::size_t found = find_rows_near(place, reach + farthest_ + difference + rounding, near_);
+    for (std::size_t k = 0; k < found; ++k) compare_with(static_cast<std::size_t>(near_[k]));
 }
 
 template float Candidates<float>::own_reach(const Bodies<float>&, std::size_t, const FlightClock&,

@@ -32,8 +32,9 @@ constexpr std::uint64_t kKept = 48;
 
 /// The contacts of the last renewal in terms of today's rows.
 template <class Real>
-void ContactGraph<Real>::rename_rows() {
+void ContactGraph<Real>::rename_rows(const Bodies<Real>& bodies) {
     const std::vector<std::int32_t>& now = trail.new_rows();
+    sort_former_places();
     lost.clear();
     for (ContactRows<Real>* contacts : {&pairs, &supports})
         contacts->for_each([&](std::size_t i) {
@@ -43,8 +44,8 @@ void ContactGraph<Real>::rename_rows() {
             if (Partner(b).is_body()) b = now[static_cast<std::size_t>(b)];
             const Partner side_a(a), side_b(b);
             if (side_a.is_gone() || side_b.is_gone()) {
-                if (contacts->normal_impulse[i] > 0 && side_a.is_body()) lost.push_back({old_b, a});
-                if (contacts->normal_impulse[i] > 0 && side_b.is_body()) lost.push_back({old_a, b});
+                if (side_a.is_body()) lose_contact(*contacts, i, old_b, a, bodies);
+                if (side_b.is_body()) lose_contact(*contacts, i, old_a, b, bodies);
                 contacts->normal_impulse[i] = 0;
             }
             // The impulses of a pair do not depend on the order of its bodies, but for the rolling one:
@@ -55,20 +56,6 @@ void ContactGraph<Real>::rename_rows() {
                     contacts->rolling_impulse[i] = -contacts->rolling_impulse[i];
             }
         });
-}
-
-template <class Real>
-void ContactGraph<Real>::follow_removed_edges(EdgeStore::Removed gone) {
-    if (gone.count == 0) return;
-    supports.for_each([&](std::size_t i) {
-        const Partner support = supports.partner(i);
-        if (!support.is_edge()) return;
-        const std::int32_t edge = support.edge_number();
-        if (edge >= gone.first + gone.count)
-            supports.b[i] = Partner::edge(edge - gone.count).stored();
-        else if (edge >= gone.first)
-            supports.b[i] = Partner::gone().stored();
-    });
 }
 
 /// Share of the pairs that would be far, by a sample.
@@ -356,7 +343,7 @@ void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const EdgeCan
                                const Bodies<Real>& bodies, const Walls* walls, const Executor& executor) {
     const std::size_t rows = bodies.count;
     const bool is_moved = trail.has_moved();
-    if (is_moved) rename_rows();
+    if (is_moved) rename_rows(bodies);
     if (keeps_rolling) rolling_of_pairs_.file(pairs, rows), rolling_of_supports_.file(supports, rows);
     memory_.file(pairs, supports, rows, is_moved || pairs.groups() == 0 ? nullptr : &groups, executor);
 
@@ -380,7 +367,7 @@ void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const EdgeCan
     colour_supports(rows);
     sort_by_colour(found_supports_, supports, rows, executor);
     if (keeps_rolling) rolling_of_pairs_.recall(pairs), rolling_of_supports_.recall(supports);
-    trail.start(rows);
+    trail.start(rows), former_places.clear();
     ++renewals, ++version;
 }
 
@@ -454,8 +441,9 @@ void ContactGraph<Real>::add(const Candidates<Real>& candidates, const EdgeCandi
         supports.for_each(groups_of_supports - 1, groups_of_supports,
                           [&](std::size_t i) { found |= supports.a[i] == row && supports.b[i] == side; });
         const auto row_index = static_cast<std::size_t>(row);
+        if (candidates.is_loose(row_index)) return found;
         enclosure.for_each_side_within(
-            candidates.grid().built_x()[row_index], candidates.grid().built_y()[row_index],
+            candidates.first_x(row_index), candidates.first_y(row_index),
             candidates.first_reach(row_index) + static_cast<Real>(candidates.largest_drift()),
             [&](std::int32_t first) { found |= first == side; });
         return found;

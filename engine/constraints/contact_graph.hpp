@@ -1,8 +1,9 @@
 #pragma once
 
-#include <compare>
+#include <algorithm>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "broadphase/candidates.hpp"
@@ -23,10 +24,21 @@ struct SleeperPair {
     std::int32_t row, sleeper;
 };
 
-/// A body pushed another one that was removed.
+/// A body pushed another one that was removed, or put elsewhere.
 struct LostContact {
-    std::int32_t gone, row;  // a number for who is not there any more; of who is
-    friend auto operator<=>(const LostContact&, const LostContact&) = default;
+    std::int32_t gone, row;         // a number for what is not there any more; of what is
+    bool is_impulse_known = false;  // not where edges were removed
+    Vec2 impulse = {};              // N s, that `row` had from the other one in a substep
+
+    friend bool operator<(const LostContact& left, const LostContact& right) {
+        return std::tie(left.gone, left.row) < std::tie(right.gone, right.row);
+    }
+};
+
+/// Where a body was when it was removed or put elsewhere.
+struct FormerPlace {
+    std::int32_t row;  // that it had when the pairs were renewed
+    Vec2 place;        // m
 };
 
 /// Which discs can touch which, and what supports discs, in groups and colours, until the candidate pairs
@@ -50,6 +62,13 @@ class ContactGraph {
     void add(const Candidates<Real>& candidates, const EdgeCandidates<Real>& edges,
              const Bodies<Real>& bodies, const Walls* walls);
 
+    /// Follows rows that were removed, added or put elsewhere since the last renewal without finding pairs
+    /// anew: contacts that are gone leave their colours, and those of bodies with a new row go to the last
+    /// groups. Not for rolling impulses. Cost: O(rows + contacts), about 1 ns each, and O(contacts of the
+    /// last groups).
+    /// @param is_elsewhere  a present row, whether its body was put elsewhere: its contacts are gone
+    void follow_rows(const Bodies<Real>& bodies, std::span<const std::uint8_t> is_elsewhere);
+
     /// Edges were removed; later ones moved up. Cost: O(supports).
     void follow_removed_edges(EdgeStore::Removed gone);
 
@@ -60,6 +79,7 @@ class ContactGraph {
     std::span<const SleeperPair> sleepers;     ///< supports besides those that `renew` finds
     RowRenaming trail;                         ///< to be told of rows that change between renewals
     std::vector<LostContact> lost;             ///< that pushed, until they are dealt with
+    std::vector<FormerPlace> former_places;    ///< of bodies that are gone since the trail started
     TaskGroups groups;                         ///< of the last renewal
     ContactRows<Real> pairs;                   ///< of two discs that move, a < b
     /// Contacts of a disc that moves and what nothing moves: walls, edges, immovable discs.
@@ -75,7 +95,8 @@ class ContactGraph {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.renewals, self.version, self.trail, self.lost, self.groups, self.pairs, self.supports);
+        archive(self.renewals, self.version, self.trail, self.lost, self.former_places, self.groups,
+                self.pairs, self.supports);
     }
 
   private:
@@ -105,7 +126,13 @@ class ContactGraph {
         std::uint32_t colour;
     };
 
-    void rename_rows();
+    void sort_former_places() {
+        std::sort(former_places.begin(), former_places.end(),
+                  [](const FormerPlace& left, const FormerPlace& right) { return left.row < right.row; });
+    }
+    void rename_rows(const Bodies<Real>& bodies);
+    void lose_contact(const ContactRows<Real>& contacts, std::size_t i, std::int32_t gone, std::int32_t row,
+                      const Bodies<Real>& bodies);
     double far_share(const Candidates<Real>& candidates, const TaskGroups& tried) const;
     void choose_groups(const Candidates<Real>& candidates, std::size_t rows);
     void find_crowds(const Candidates<Real>& candidates, const Bodies<Real>& bodies);
@@ -125,6 +152,7 @@ class ContactGraph {
     void colour_group(Found& found, std::size_t group, std::uint64_t* of_a, std::uint64_t* of_b);
     void sort_by_colour(const Found& found, ContactRows<Real>& sorted, std::size_t first_padding_row,
                         const Executor& executor);
+    void pad_all(ContactRows<Real>& sorted, std::size_t first_padding_row);
     void add_late(ContactRows<Real>& sorted, std::int32_t padding_row, bool both_move);
     void lay_out_colours(const Found& found, ContactRows<Real>& sorted, std::size_t first_padding_row);
 

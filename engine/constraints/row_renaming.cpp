@@ -35,6 +35,7 @@ void RowRenaming::follow_removed(std::size_t row, std::size_t last) {
 }
 
 const std::vector<std::int32_t>& RowRenaming::new_rows() {
+    keep();
     new_row_.assign(rows_, kGone);
     for (std::size_t row = 0; row < old_row_.size(); ++row)
         if (old_row_[row] != kGone)

@@ -22,6 +22,11 @@ class RowRenaming {
     /// O(1).
     void follow_removed(std::size_t row, std::size_t last);
 
+    /// The row at the start that a present row comes from, or kGone.
+    std::int32_t old_row(std::size_t row) const {
+        if (!has_moved_) return row < rows_ ? static_cast<std::int32_t>(row) : kGone;
+        return row < old_row_.size() ? old_row_[row] : kGone;
+    }
     /// Whether any row may have gone elsewhere.
     bool has_moved() const { return has_moved_; }
     /// Today's row of each row at the start, or kGone, [rows at the start]. Cost: O(rows).

@@ -1,5 +1,6 @@
 #include "state/world_state.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <type_traits>
 #include <utility>
@@ -152,7 +153,21 @@ EdgeStore::Removed WorldState<Real>::remove(std::size_t row) {
     };
     fill(row, last_awake), fill(last_awake, last);
     bodies.resize(last);
-    list_immovable_rows();
+    if (immovable_rows.empty()) return gone;
+    // Those awake are [0, last_awake) now, and what was the last of them stands in `row`.
+    const auto place_of = [&](std::size_t wanted) {
+        return std::lower_bound(immovable_rows.begin(), immovable_rows.end(),
+                                static_cast<std::int32_t>(wanted));
+    };
+    const auto erase = [&](std::size_t wanted) {
+        const auto place = place_of(wanted);
+        const bool is_listed = place != immovable_rows.end() && *place == static_cast<std::int32_t>(wanted);
+        if (is_listed) immovable_rows.erase(place);
+        return is_listed;
+    };
+    erase(row);
+    if (row != last_awake && erase(last_awake))
+        immovable_rows.insert(place_of(row), static_cast<std::int32_t>(row));
     return gone;
 }
 

@@ -30,6 +30,7 @@ class SoftStep final : public SoftSimulation<Real> {
     static constexpr auto has_edges = [](const Sim& sim) {
         return !sim.world.edges.empty() && sim.can_meet();
     };
+    static constexpr auto has_changes = [](const Sim& sim) { return sim.has_changes(); };
     static constexpr auto has_walls = [](const Sim& sim) { return sim.world.effects.walls; };
     static constexpr auto has_ledger = [](const Sim& sim) { return sim.world.effects.ledger; };
     static constexpr auto has_books = [](const Sim& sim) {
@@ -56,6 +57,8 @@ class SoftStep final : public SoftSimulation<Real> {
     static constexpr auto has_lost_bodies = [](const Sim& sim) { return !sim.lost.empty(); };
 
     static constexpr Stage<Sim> kBegin[] = {
+        {"follow_changes", [](Sim& sim) { sim.follow_changes(); }, has_changes, KernelChoice::none,
+         "position, radius, candidate pairs", "candidate pairs, coloured candidates"},
         {"sort_rows", [](Sim& sim) { sort_rows(sim); }, can_meet, KernelChoice::none, "position",
          "rows of all columns"},
         {"begin_flight", [](Sim& sim) { begin_flight(sim); }, always, KernelChoice::radius,

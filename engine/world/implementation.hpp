@@ -119,13 +119,12 @@ struct BasicWorld<Real>::Implementation : WorldSettings {
         if (rubs) turn_rotation_on();
     }
 
-    /// Calls change(row), which alters one body from outside, and keeps the books right.
+    /// Calls change(), which alters one body from outside, and keeps the books right.
     template <class Change>
     void change_row(std::size_t row, const Change& change) {
         const Sums before = world().sums_of(row);
         change();
         world().outside = world().outside + (world().sums_of(row) - before);
-        sim().forget_derived_state();
     }
 
     Mobility mobility_of(std::size_t row) const {

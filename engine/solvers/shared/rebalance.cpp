@@ -24,6 +24,13 @@ constexpr double kOverRelaxation = 1.5;
 constexpr double kWorthAnother = 0.9;
 /// At most this many looks at a body, 0.1 us each; the sweeps are left the unevenness that remains.
 constexpr std::size_t kMostLooks = 20000;
+/// Likewise a removed body, unless one was heavier than so many of those that it pressed on: more would
+/// loosen what holds together around a hole.
+constexpr std::size_t kLooksOfLight = 200;
+constexpr double kHeavy = 4;
+/// Bodies around holes are looked at alone if no more contacts were lost; around is within so many radii.
+constexpr std::size_t kFewLost = 16;
+constexpr double kNearRadii = 24;
 
 Vec2 tangent_of(Vec2 normal) {
     return {-normal.y, normal.x};
@@ -31,51 +38,121 @@ Vec2 tangent_of(Vec2 normal) {
 
 }  // namespace
 
+/// Marks the bodies that may be looked at: where few light bodies are gone, those around the holes.
 template <class Real>
-void Rebalance<Real>::list(const ContactRows<Real>& contacts, bool are_pairs, double friction,
-                           double rolling) {
-    contacts.for_each([&](std::size_t i) {
-        if (!(contacts.normal_impulse[i] > 0)) return;
-        const auto value = [i](const Column<Real>& column, double without) {
-            return column.empty() ? without : static_cast<double>(column[i]);
-        };
-        const bool is_rough = !contacts.friction_impulse.empty(), rolls = !contacts.rolling_impulse.empty();
-        loaded_.push_back({contacts.a[i],
-                           are_pairs ? contacts.b[i] : -1,
-                           static_cast<std::uint32_t>(i),
-                           {contacts.normal_x[i], contacts.normal_y[i]},
-                           is_rough ? value(contacts.friction, friction) : 0,
-                           rolls ? value(contacts.rolling, rolling) : 0,
-                           contacts.normal_impulse[i],
-                           value(contacts.friction_impulse, 0),
-                           value(contacts.rolling_impulse, 0)});
-    });
+void Rebalance<Real>::mark_near(std::span<const LostContact> lost) {
+    const Bodies<Real>& bodies = *bodies_;
+    is_near_.assign(bodies.count, lost.size() > kFewLost);
+    if (lost.size() > kFewLost) return;
+    // What a body gave all others together was its weight, or what it rested on: then the load may go far.
+    for (std::size_t first = 0, last = 0; first < lost.size(); first = last) {
+        double heaviest = 0;  // kg
+        Vec2 sum;             // N s
+        bool is_known = true;
+        for (; last < lost.size() && lost[last].gone == lost[first].gone; ++last) {
+            heaviest = std::fmax(heaviest,
+                                 static_cast<double>(bodies.mass[static_cast<std::size_t>(lost[last].row)]));
+            sum += lost[last].impulse, is_known = is_known && lost[last].is_impulse_known;
+        }
+        const double most = kHeavy * heaviest * std::sqrt(length_squared(gain_));
+        if (!is_known || length_squared(sum) > most * most) return is_near_.assign(bodies.count, 1);
+    }
+    for (const LostContact& contact : lost) {
+        const auto row = static_cast<std::size_t>(contact.row);
+        const Real x = bodies.position_x[row], y = bodies.position_y[row],
+                   reach = static_cast<Real>(kNearRadii) * bodies.radius[row];
+        for (std::size_t other = 0; other < bodies.count; ++other)
+            is_near_[other] |= std::fabs(bodies.position_x[other] - x) < reach &&
+                               std::fabs(bodies.position_y[other] - y) < reach;
+    }
 }
 
+/// Lists the contacts of each row that push, by their numbers: supports come after the pairs.
 template <class Real>
-void Rebalance<Real>::sort_by_body() {
-    for (const Loaded& contact : loaded_)
-        for (const std::int32_t row : {contact.a, contact.b})
-            if (row >= 0) ++loads_[static_cast<std::size_t>(row)].end;
-    std::uint32_t place = 0;
-    for (Load& load : loads_) {
-        load.begin = place;
-        place += load.end;
-        load.end = load.begin;
+void Rebalance<Real>::list_contacts(std::size_t rows) {
+    const ContactRows<Real>&pairs = *pairs_, &supports = *supports_;
+    const auto for_each_side = [&](const auto& fn) {
+        pairs.for_each([&](std::size_t i) {
+            if (!is_near_[static_cast<std::size_t>(pairs.a[i])] || !(pairs.normal_impulse[i] > 0)) return;
+            fn(pairs.a[i], i), fn(pairs.b[i], i);
+        });
+        supports.for_each([&](std::size_t i) {
+            if (is_near_[static_cast<std::size_t>(supports.a[i])] && supports.normal_impulse[i] > 0)
+                fn(supports.a[i], pairs.a.size() + i);
+        });
+    };
+    first_of_.assign(rows + 2, 0);
+    for_each_side([&](std::int32_t row, std::size_t) { ++first_of_[static_cast<std::size_t>(row) + 2]; });
+    for (std::size_t row = 2; row < rows + 2; ++row) first_of_[row] += first_of_[row - 1];
+    of_body_.resize(first_of_[rows + 1]);
+    for_each_side([&](std::int32_t row, std::size_t number) {
+        of_body_[first_of_[static_cast<std::size_t>(row) + 1]++] = static_cast<std::uint32_t>(number);
+    });
+    place_of_.assign(pairs.a.size() + supports.a.size(), kNotLoaded);
+    loaded_.clear(), known_.clear();
+    loaded_.reserve(of_body_.size());
+    loads_.resize(std::max(loads_.size(), rows));
+}
+
+/// The place of a contact among those in question.
+template <class Real>
+std::uint32_t Rebalance<Real>::load_contact(std::uint32_t number) {
+    std::uint32_t& place = place_of_[number];
+    if (place != kNotLoaded) return place;
+    place = static_cast<std::uint32_t>(loaded_.size());
+    const bool is_pair = number < pairs_->a.size();
+    const ContactRows<Real>& contacts = is_pair ? *pairs_ : *supports_;
+    const std::size_t i = is_pair ? number : number - pairs_->a.size();
+    const auto value = [i](const Column<Real>& column, double without) {
+        return column.empty() ? without : static_cast<double>(column[i]);
+    };
+    const bool is_rough = !contacts.friction_impulse.empty(), rolls = !contacts.rolling_impulse.empty();
+    loaded_.push_back({contacts.a[i],
+                       is_pair ? contacts.b[i] : -1,
+                       number,
+                       {contacts.normal_x[i], contacts.normal_y[i]},
+                       is_rough ? value(contacts.friction, friction_) : 0,
+                       rolls ? value(contacts.rolling, rolling_) : 0,
+                       contacts.normal_impulse[i],
+                       value(contacts.friction_impulse, 0),
+                       value(contacts.rolling_impulse, 0)});
+    return place;
+}
+
+/// What the contacts of a body give it together.
+template <class Real>
+Vec2 Rebalance<Real>::impulses_on(std::int32_t row) {
+    const Load& load = load_of(row);
+    Vec2 sum;
+    for (std::uint32_t k = load.begin; k < load.end; ++k) {
+        const Loaded& contact = loaded_[of_body_[k]];
+        sum += (row == contact.a ? -1.0 : 1.0) * (contact.normal_impulse * contact.normal +
+                                                  contact.friction_impulse * tangent_of(contact.normal));
     }
-    of_body_.resize(place);
-    for (std::uint32_t i = 0; i < loaded_.size(); ++i) {
-        const Loaded& contact = loaded_[i];
-        const Vec2 impulse =
-            contact.normal_impulse * contact.normal + contact.friction_impulse * tangent_of(contact.normal);
-        for (const std::int32_t row : {contact.a, contact.b}) {
-            if (row < 0) continue;
-            Load& load = loads_[static_cast<std::size_t>(row)];
-            of_body_[load.end++] = i;
-            load.excess += (row == contact.a ? -1.0 : 1.0) * impulse;
-            load.allowed += kAllowedShare * std::sqrt(length_squared(impulse));
-        }
+    return sum;
+}
+
+/// The load of a body. The first time it is asked for, its contacts come into question.
+template <class Real>
+auto Rebalance<Real>::load_of(std::int32_t row) -> Load& {
+    const auto i = static_cast<std::size_t>(row);
+    Load& load = loads_[i];
+    if (load.is_known) return load;
+    load.is_known = true;
+    known_.push_back(row);
+    load.begin = first_of_[i], load.end = first_of_[i + 1];
+    if (!bodies_->is_immovable(i)) {
+        const double mass = bodies_->mass[i];
+        load.weight = mass * gain_;
+        load.allowed = mass * kAllowedWeights * std::sqrt(length_squared(gain_));
     }
+    for (std::uint32_t k = load.begin; k < load.end; ++k) {
+        of_body_[k] = load_contact(of_body_[k]);
+        const Loaded& contact = loaded_[of_body_[k]];
+        load.allowed += kAllowedShare * std::sqrt(contact.normal_impulse * contact.normal_impulse +
+                                                  contact.friction_impulse * contact.friction_impulse);
+    }
+    return load;
 }
 
 /// The part of a body's excess impulse that neither rest nor free fall explains: a body may go without any
@@ -90,7 +167,7 @@ Vec2 Rebalance<Real>::excess_of(const Load& load) const {
 
 template <class Real>
 void Rebalance<Real>::queue_if_uneven(std::int32_t row) {
-    Load& load = loads_[static_cast<std::size_t>(row)];
+    Load& load = load_of(row);
     if (load.is_queued) return;
     const Vec2 excess = excess_of(load);
     if (length_squared(excess) <= load.allowed * load.allowed) return;
@@ -104,16 +181,20 @@ template <class Real>
 void Rebalance<Real>::begin_flows(std::span<const LostContact> lost) {
     for (std::size_t first = 0, last = 0; first < lost.size(); first = last) {
         double up = 0, down = 0;  // N s, along the weight of the bodies that were pressed
+        double heaviest = 0;      // N s, weight of those
         for (; last < lost.size() && lost[last].gone == lost[first].gone; ++last) {
-            const Load& load = loads_[static_cast<std::size_t>(lost[last].row)];
+            const Load& load = load_of(lost[last].row);
             const double weight = std::sqrt(length_squared(load.weight));
             if (!(weight > 0)) continue;  // nothing moves it: what it bore or bore down with ends there
+            heaviest = std::fmax(heaviest, weight);
             const double along = dot(load.excess, load.weight) / weight;
             (along < 0 ? up : down) += std::fabs(along);
         }
+        most_looks_ += kLooksOfLight;
         if (!(up > down)) continue;
+        if (up - down > kHeavy * heaviest) most_looks_ = kMostLooks;
         for (std::size_t i = first; i < last; ++i) {
-            Load& load = loads_[static_cast<std::size_t>(lost[i].row)];
+            Load& load = load_of(lost[i].row);
             if (dot(load.excess, load.weight) < 0) flow_to(lost[i].row, (1 - down / up) * load.excess);
         }
     }
@@ -121,7 +202,7 @@ void Rebalance<Real>::begin_flows(std::span<const LostContact> lost) {
 
 template <class Real>
 void Rebalance<Real>::flow_to(std::int32_t row, Vec2 impulse) {
-    Load& load = loads_[static_cast<std::size_t>(row)];
+    Load& load = load_of(row);
     load.flow += impulse;
     if (load.is_queued || length_squared(load.flow) <= load.allowed * load.allowed) return;
     load.is_queued = true;
@@ -131,7 +212,7 @@ void Rebalance<Real>::flow_to(std::int32_t row, Vec2 impulse) {
 /// Takes what flows through a body from the contacts that push its way, from each the same share.
 template <class Real>
 void Rebalance<Real>::pass_load_on(std::int32_t row) {
-    Load& load = loads_[static_cast<std::size_t>(row)];
+    Load& load = load_of(row);
     const auto on_body = [&](const Loaded& contact) {
         const Vec2 n = contact.normal;
         return (row == contact.a ? -1.0 : 1.0) *
@@ -153,7 +234,7 @@ void Rebalance<Real>::pass_load_on(std::int32_t row) {
         load.excess -= taken;
         const std::int32_t other = row == contact.a ? contact.b : contact.a;
         if (other < 0) continue;
-        loads_[static_cast<std::size_t>(other)].excess += taken;
+        load_of(other).excess += taken;
         flow_to(other, taken);
     }
 }
@@ -161,7 +242,7 @@ void Rebalance<Real>::pass_load_on(std::int32_t row) {
 /// Shares the excess of a body out among its contacts.
 template <class Real>
 void Rebalance<Real>::relax_body(std::int32_t row) {
-    Load& load = loads_[static_cast<std::size_t>(row)];
+    Load& load = load_of(row);
     // The body on springs of stiffness 1 along normals: sum (n n' + k t t') x = excess.
     double xx = kLeastStiffness, xy = 0, yy = kLeastStiffness;
     for (std::uint32_t k = load.begin; k < load.end; ++k) {
@@ -191,7 +272,7 @@ void Rebalance<Real>::relax_body(std::int32_t row) {
         load.excess -= side * added;
         const std::int32_t other = row == contact.a ? contact.b : contact.a;
         if (other < 0) continue;
-        loads_[static_cast<std::size_t>(other)].excess += side * added;
+        load_of(other).excess += side * added;
         queue_if_uneven(other);
     }
     // A contact that only pushes, or slides, may not have taken its share: then the others get the rest.
@@ -203,50 +284,54 @@ template <class Real>
 void Rebalance<Real>::drain_queue(void (Rebalance::*deal_with)(std::int32_t)) {
     for (std::size_t i = 0; i < queue_.size(); ++i) {
         loads_[static_cast<std::size_t>(queue_[i])].is_queued = false;
-        if (i < kMostLooks) (this->*deal_with)(queue_[i]);
+        if (i < std::min(most_looks_, kMostLooks)) (this->*deal_with)(queue_[i]);
     }
 }
 
 template <class Real>
-void Rebalance<Real>::balance(std::span<const LostContact> lost, ContactRows<Real>& pairs,
+bool Rebalance<Real>::balance(std::span<const LostContact> lost, ContactRows<Real>& pairs,
                               ContactRows<Real>& supports, const Bodies<Real>& bodies, double friction,
                               double rolling, Vec2 gain) {
-    loaded_.clear(), queue_.clear();
-    list(pairs, true, friction, rolling);
-    const std::size_t pair_count = loaded_.size();
-    list(supports, false, friction, rolling);
-    loads_.assign(bodies.count, {});
-    sort_by_body();
-    const double weight = kAllowedWeights * std::sqrt(length_squared(gain));
-    for (std::size_t row = 0; row < bodies.count; ++row) {
-        if (bodies.is_immovable(row)) continue;
-        const double mass = bodies.mass[row];
-        loads_[row].excess += mass * gain, loads_[row].weight = mass * gain;
-        loads_[row].allowed += mass * weight;
+    pairs_ = &pairs, supports_ = &supports, bodies_ = &bodies;
+    friction_ = friction, rolling_ = rolling, gain_ = gain;
+    queue_.clear(), most_looks_ = 0;
+    mark_near(lost);
+    list_contacts(bodies.count);
+    // Before, the impulses gave each body the motion it had: what is uneven is what was lost, and no more.
+    for (const LostContact& contact : lost) {
+        if (bodies.is_immovable(static_cast<std::size_t>(contact.row))) continue;
+        Load& load = load_of(contact.row);
+        if (contact.is_impulse_known)
+            load.excess -= contact.impulse;
+        else
+            load.excess = load.weight + impulses_on(contact.row);
     }
-    if (weight > 0) begin_flows(lost);
+    if (length_squared(gain) > 0) begin_flows(lost);
     drain_queue(&Rebalance::pass_load_on);
     touched_.swap(queue_);
     queue_.clear();
     for (const std::int32_t row : touched_) queue_if_uneven(row);
     for (const LostContact& contact : lost) queue_if_uneven(contact.row);
     drain_queue(&Rebalance::relax_body);
-    for (std::size_t i = 0; i < loaded_.size(); ++i) {
-        ContactRows<Real>& contacts = i < pair_count ? pairs : supports;
-        const Loaded& contact = loaded_[i];
-        contacts.normal_impulse[contact.contact] = static_cast<Real>(contact.normal_impulse);
+    for (const Loaded& contact : loaded_) {
+        const bool is_pair = contact.contact < pairs.a.size();
+        ContactRows<Real>& contacts = is_pair ? pairs : supports;
+        const std::size_t i = is_pair ? contact.contact : contact.contact - pairs.a.size();
+        contacts.normal_impulse[i] = static_cast<Real>(contact.normal_impulse);
         if (!contacts.friction_impulse.empty())
-            contacts.friction_impulse[contact.contact] = static_cast<Real>(contact.friction_impulse);
+            contacts.friction_impulse[i] = static_cast<Real>(contact.friction_impulse);
         if (!contacts.rolling_impulse.empty())
-            contacts.rolling_impulse[contact.contact] = static_cast<Real>(contact.rolling_impulse);
+            contacts.rolling_impulse[i] = static_cast<Real>(contact.rolling_impulse);
     }
+    for (const std::int32_t row : known_) loads_[static_cast<std::size_t>(row)] = {};
+    return most_looks_ >= kMostLooks;
 }
 
 template <class Real>
 std::size_t Rebalance<Real>::bytes() const {
-    return loaded_.capacity() * sizeof(Loaded) + loads_.capacity() * sizeof(Load) +
-           of_body_.capacity() * sizeof(std::uint32_t) +
-           (queue_.capacity() + touched_.capacity()) * sizeof(std::int32_t);
+    return is_near_.capacity() + loaded_.capacity() * sizeof(Loaded) + loads_.capacity() * sizeof(Load) +
+           (of_body_.capacity() + first_of_.capacity() + place_of_.capacity()) * sizeof(std::uint32_t) +
+           (queue_.capacity() + touched_.capacity() + known_.capacity()) * sizeof(std::int32_t);
 }
 
 template class Rebalance<float>;

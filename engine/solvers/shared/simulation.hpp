@@ -51,6 +51,13 @@ class Simulation {
 
     /// To be called when rows, masses or laws have changed outside of a step.
     virtual void forget_derived_state() = 0;
+    /// To be called when a row came.
+    virtual void note_added(std::size_t) { forget_derived_state(); }
+    /// To be called when the velocity of a row was changed.
+    virtual void note_velocity(std::size_t) { forget_derived_state(); }
+    /// To be called before a row is put elsewhere, and after.
+    virtual void note_place_before(std::size_t) {}
+    virtual void note_place(std::size_t) { forget_derived_state(); }
     /// Takes a row out of the world.
     virtual void remove(std::size_t row);
     /// What the bodies are now, the solver cannot do. @throws Error, which `where` opens

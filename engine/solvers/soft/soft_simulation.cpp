@@ -18,12 +18,92 @@ void SoftSimulation<Real>::take_back_step() {
 }
 
 template <class Real>
+void SoftSimulation<Real>::keep_former_place(std::size_t row) {
+    const std::int32_t former = soft.graph.trail.old_row(row);
+    const Bodies<Real>& bodies = this->world.bodies;
+    if (former >= 0)
+        soft.graph.former_places.push_back({former, {bodies.position_x[row], bodies.position_y[row]}});
+}
+
+/// Whatever the pairs, their contacts or the length of substeps cannot follow makes all of it void.
+template <class Real>
+void SoftSimulation<Real>::note_change(bool may_follow) {
+    ++changes_;
+    if (!may_follow || !this->candidates.may_follow(changes_, this->world.bodies.count))
+        forget_derived_state();
+}
+
+template <class Real>
 void SoftSimulation<Real>::remove(std::size_t row) {
+    keep_former_place(row);
     soft.graph.trail.follow_removed(row, this->world.bodies.count - 1);
+    const Bodies<Real>& bodies = this->world.bodies;
+    const Radii* radii = this->candidates.known_radii();
+    // A small disc that goes may change what radius is usual.
+    const bool may_follow =
+        bodies.is_disc(row) && radii && (bodies.radius.is_uniform() || bodies.radius[row] > radii->usual);
     const EdgeStore::Removed edges = this->world.remove(row);
     soft.graph.follow_removed_edges(edges);
     if (edges.count > 0) sleepers.forget_woken();
-    forget_derived_state();
+    note_change(may_follow);
+}
+
+template <class Real>
+void SoftSimulation<Real>::note_added(std::size_t row) {
+    const Radii* radii = this->candidates.known_radii();
+    const double radius = this->world.bodies.radius[row];
+    note_change(this->world.bodies.is_disc(row) && radii && radius >= radii->usual &&
+                radius <= radii->largest);
+}
+
+template <class Real>
+void SoftSimulation<Real>::note_place_before(std::size_t row) {
+    keep_former_place(row);
+}
+
+template <class Real>
+void SoftSimulation<Real>::note_place(std::size_t row) {
+    elsewhere_.push_back(this->world.bodies.id[row]);
+    note_change(this->world.bodies.is_disc(row));
+}
+
+/// What contacts have columns of: one bit each.
+template <class Real>
+std::uint32_t SoftSimulation<Real>::kinds_of_columns() const {
+    const Bodies<Real>& bodies = this->world.bodies;
+    const Effects& effects = this->world.effects;
+    std::uint32_t kinds = 1;
+    for (const bool kind :
+         {bodies.radius.is_uniform(), bodies.mass.is_uniform(), bodies.friction.is_uniform(),
+          bodies.restitution.is_uniform(), bodies.rolling_resistance.is_uniform(), bodies.has_flags,
+          bodies.has_rotation, bodies.has_shapes, effects.friction, effects.restitution})
+        kinds = 2 * kinds + kind;
+    return kinds;
+}
+
+template <class Real>
+void SoftSimulation<Real>::follow_changes() {
+    const WorldState<Real>& state = this->world;
+    const std::size_t count = state.bodies.count, changes = changes_;
+    const bool may_follow = this->candidates.may_follow(changes, count) && state.bodies.asleep == 0 &&
+                            state.joints.empty() && !state.bodies.has_shapes &&
+                            !state.effects.rolling_resistance && kinds_of_graph == kinds_of_columns() &&
+                            graph_of_rebuild == this->candidates.rebuild_count();
+    changes_ = 0;
+    if (!may_follow) {
+        elsewhere_.clear();
+        forget_derived_state();
+        return;
+    }
+    is_elsewhere_.assign(count, 0);
+    for (const BodyId body : elsewhere_)
+        if (state.handles.is_alive(body)) is_elsewhere_[state.handles.row_of_slot(body.index)] = 1;
+    elsewhere_.clear();
+    const std::vector<std::int32_t>& now = soft.graph.trail.new_rows();
+    this->candidates.follow_rows(state.bodies, now, is_elsewhere_);
+    edge_candidates.follow_rows(now, is_elsewhere_);
+    soft.graph.follow_rows(state.bodies, is_elsewhere_);
+    soft.follow_rows();
 }
 
 template <class Real>

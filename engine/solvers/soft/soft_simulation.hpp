@@ -23,6 +23,15 @@ class SoftSimulation : public Simulation<Real> {
     }
     void forget_derived_state() override;
     void remove(std::size_t row) override;
+    void note_added(std::size_t row) override;
+    void note_velocity(std::size_t) override {}  // each step looks at the motion anew
+    void note_place_before(std::size_t row) override;
+    void note_place(std::size_t row) override;
+    std::uint32_t kinds_of_columns() const;
+    /// Whether bodies came, went or were put elsewhere since the last step.
+    bool has_changes() const { return changes_ > 0; }
+    /// Follows them without making the candidate pairs void, where that is possible.
+    void follow_changes();
     void wake_at(Vec2 place, double reach) override;
     void wake_all() override;
     std::size_t wake_body(std::size_t row) override;
@@ -65,18 +74,27 @@ class SoftSimulation : public Simulation<Real> {
     Tunnelling<Real> tunnelling;
     Sleepers<Real> sleepers;
     std::int64_t graph_of_rebuild = -1;  ///< which candidate pairs the contact graph was made of
+    std::uint32_t kinds_of_graph = 0;    ///< what columns of contacts it was described with
     // These members hold for the present step alone.
     Column<Real> motion;  ///< [rows][4]: x, y [m], vx, vy [m/s] of each body at its start
     int substep = 0, substep_count = 1;
     double substep_dt = 0;  ///< s
 
   private:
+    void note_change(bool may_follow);
+    void keep_former_place(std::size_t row);
+
     Books start_books_;  // of the present step
+    // Changes since the last step.
+    std::uint64_t changes_ = 0;
+    std::vector<BodyId> elsewhere_;           // bodies that were put elsewhere
+    std::vector<std::uint8_t> is_elsewhere_;  // a row
 
     template <class Self, class Archive>
     static void visit_all(Self& self, Archive& archive) {
         Simulation<Real>::visit_common(self, archive);
         archive(self.edge_candidates, self.soft, self.sleepers, self.graph_of_rebuild);
+        archive(self.kinds_of_graph, self.changes_, self.elsewhere_);
         if constexpr (!std::is_const_v<Self>) self.sleepers.use(*self.kernels);
     }
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <utility>
 
 #include "effects/flight.hpp"
 
@@ -35,7 +36,7 @@ void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Colum
     read_effects(world, settings_);
     settings_.iterations = iterations(world);
     if (masses_.derive(world.bodies, settings_.effects.friction && !settings_.is_smooth_heap))
-        pair_finder_.forget(), uneven_.clear();
+        if (!std::exchange(follows_rows_, false)) pair_finder_.forget(), uneven_.clear();
     loops_ = {&kernels, &settings_.kernels_of(kernels, masses_.some_are_fixed()), &executor, rows_per_task()};
     const FlightClock clock = flight_clock_at(h, world.drag.linear);
     terms_.substep_dt = h, terms_.elapsed = 0;

@@ -157,6 +157,8 @@ class SoftSolver {
 
     /// Masses, shapes or rows have changed: what was derived from them is made anew.
     void forget_rows() { masses_.forget(), joints.forget(); }
+    /// Rows have changed, and the graph has followed them.
+    void follow_rows() { follows_rows_ = masses_.are_known(), masses_.forget(); }
 
     const BodyRecords<Real>& records() const { return records_; }
     /// How well the last step's contacts were solved. Cost: O(contacts).
@@ -188,6 +190,7 @@ class SoftSolver {
     ContactSettings settings_;
 
     BodyMasses<Real> masses_;
+    bool follows_rows_ = false;  // masses are to be derived, but pairs stay described
     BodyRecords<Real> records_;
     ContactRows<Real> supports_;  // those of graph.supports that can touch in this step
     PairFinder<Real> pair_finder_;

@@ -1,21 +1,43 @@
 #include "solvers/soft/stages.hpp"
 
+#include <algorithm>
+
 #include "solvers/shared/candidate_stages.hpp"
 
 namespace carom {
 
 template <class Real>
 void sort_rows(SoftSimulation<Real>& sim) {
+    if (sim.candidates.wants_sorted_rows()) sim.candidates.prepare_order(sim.world.bodies.count);
     sort_rows_by_place(sim, [&](const std::int32_t* order) {
         sim.soft.graph.trail.follow_sorted(order, sim.world.bodies.count);
         sim.soft.forget_rows();
     });
 }
 
+/// Where edges that move reach more than one body in this many, all pairs are found anew with theirs.
+constexpr std::size_t kBodiesPerMovedPair = 64;
+
+template <class Real>
+bool moves_few_contacts(const SoftSimulation<Real>& sim) {
+    const WorldState<Real>& world = sim.world;
+    const std::span<const EdgePair> pairs = sim.edge_candidates.pairs();
+    const auto moves = [&](const EdgePair& pair) {
+        const std::size_t row = world.handles.row_of_slot(world.edges.body_of(pair.edge).id.index);
+        return world.bodies.velocity_x[row] != 0 || world.bodies.velocity_y[row] != 0 ||
+               (world.bodies.has_rotation && world.bodies.angular_velocity[row] != 0);
+    };
+    const auto moved = static_cast<std::size_t>(std::count_if(pairs.begin(), pairs.end(), moves));
+    return moved * kBodiesPerMovedPair <= world.bodies.count;
+}
+
 template <class Real>
 void update_candidates(SoftSimulation<Real>& sim) {
     sim.edge_candidates.place(sim.world, sim.flight_dt);
-    if (sim.edge_candidates.has_left_margin()) sim.candidates.invalidate_pairs();
+    if (sim.edge_candidates.has_left_margin() &&
+        (sim.world.bodies.has_shapes || sim.world.bodies.asleep > 0 || !sim.edge_candidates.may_add() ||
+         !moves_few_contacts(sim)))
+        sim.candidates.invalidate_pairs();
     find_candidate_pairs(sim, flight_clock_at(sim.flight_dt, 0));
 }
 
@@ -35,6 +57,7 @@ void update_contacts(SoftSimulation<Real>& sim) {
         sim.edge_candidates.find(sim.world, sim.candidates);
         sim.soft.graph.renew(sim.candidates, sim.edge_candidates, sim.world.bodies, walls, sim.executor);
         sim.soft.paths.manifolds.renew(sim.world, sim.candidates, sim.edge_candidates, sim.sleepers.pairs());
+        sim.kinds_of_graph = sim.kinds_of_columns();
     }
     sim.graph_of_rebuild = sim.candidates.rebuild_count();
     sim.sleepers.restore_impulses(sim.soft.graph, sim.world, sim.soft.substep_of_impulses());

@@ -9,7 +9,7 @@ namespace {
 constexpr double kVarying = 0.5;  // s
 /// While they vary, forces of contacts are means over so long: what a short step needed to stop a slow
 /// approach would be a kick in a long one.
-constexpr double kMeanOver = 0.1;  // s
+constexpr double kMeanOver = 0.05;  // s
 
 }  // namespace
 
@@ -45,11 +45,10 @@ void WarmStart<Real>::end_step(ContactGraph<Real>& graph) {
 
 template <class Real>
 void WarmStart<Real>::rebalance(const StepView<Real>& step, const Bodies<Real>& bodies) {
-    is_rebalanced_ = true;
     std::vector<LostContact>& lost = step.graph.lost;
     std::sort(lost.begin(), lost.end());
-    rebalance_.balance(lost, step.graph.pairs, step.supports, bodies, step.settings.friction,
-                       step.settings.rolling, step.terms.gravity_change);
+    is_rebalanced_ = rebalance_.balance(lost, step.graph.pairs, step.supports, bodies, step.settings.friction,
+                                        step.settings.rolling, step.terms.gravity_change);
     lost.clear();
 }
 

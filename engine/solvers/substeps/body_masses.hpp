@@ -14,6 +14,7 @@ class BodyMasses {
   public:
     /// Masses, flags or rows have changed.
     void forget() { are_known_ = false; }
+    bool are_known() const { return are_known_; }
     /// Derives them if they are not known. Cost: O(bodies) then, where masses vary.
     /// @param has_friction  without it no disc turns, so that none has a fixed angle
     /// @return whether they were derived anew
