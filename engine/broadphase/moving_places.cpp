@@ -23,6 +23,9 @@ constexpr double kCellInReaches = 4;
 constexpr double kLargestStretch = 0.25;
 /// A flow that carries no body farther than this share of the usual radius in a step is not followed.
 constexpr double kStill = 0.005;
+/// A flow is followed if places may drift with it for at least so many steps: a single body that is faster
+/// than that would else have all pairs found anew every other step.
+constexpr double kFewestFlowSteps = 4;
 /// No flow is followed if more than one body in this many is immovable.
 constexpr std::size_t kBodiesPerImmovable = 32;
 /// Steps of the iteration that finds where a place was before it jumped. Each one's error is the stretch
@@ -174,6 +177,7 @@ bool Candidates<Real>::follow_flow(const Bodies<Real>& bodies, const FlightClock
                             });
     strays_.clear();
     stray_rows_.for_each_below(bodies.count, [&](std::int32_t row) { strays_.push_back(row); });
+    add_fresh_strays();
     if (!may_renew(strays_.size(), bodies.count)) return false;
     failed_follows_ = 0;
     renew_margins(bodies, end, gravity);
@@ -199,7 +203,7 @@ void Candidates<Real>::begin_flow(const Bodies<Real>& bodies, const FlightClock&
         immovable += takes_part(bodies.flags_of(row)) && bodies.is_immovable(row);
     may_flow_ = immovable * kBodiesPerImmovable <= bodies.count;
     flows_ = may_flow_ && end.s * most.speed > kStill * radii_.usual && end.s * most.rate < kLargestStretch &&
-             end.s * most.speed < drift_left_;
+             kFewestFlowSteps * end.s * most.speed < drift_left_;
     flow_is_local_ = true, largest_reach_ = 0;
     if (!flows_) return;
     executor.for_each_chunk(

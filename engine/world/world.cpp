@@ -52,6 +52,18 @@ template <class Real>
                      " s on; the world is at ", sim.world.time, " s. It can go on from there."));
 }
 
+/// Drag cuts a step into substeps, and these must end.
+void check_drag(const Drag& drag, double dt) {
+    constexpr double kMostTimesStep = 2048;  // 4,096 substeps
+    const bool is_linear = drag.linear >= drag.angular;
+    const double largest = is_linear ? drag.linear : drag.angular;
+    if (largest * dt <= kMostTimesStep) return;
+    throw Error(ErrorCode::out_of_range,
+                join("World::step: dt is ", dt, " s and drag.", is_linear ? "linear" : "angular", " is ",
+                     largest, " 1/s; expected a product of at most ", kMostTimesStep,
+                     ", which takes 4096 substeps. Use shorter steps or less drag."));
+}
+
 /// A body of a world, in messages: by the index of its handle.
 Item item_of(BodyId body) {
     return {"body", "/bodies", static_cast<std::ptrdiff_t>(body.index), ""};
@@ -121,6 +133,7 @@ void BasicWorld<Real>::step(double dt) {
     validate_dt(dt, "World::step");
     if (dt == 0) return;
     Simulation<Real>& sim = implementation_->sim();
+    check_drag(sim.world.drag, dt);
     if (!sim.world.sensing.keeps) clear_events();
     const double begin = sim.world.time;
     sim.interruption.start();
@@ -201,7 +214,7 @@ BodyId BasicWorld<Real>::add(const Body& body) {
     WorldState<Real>& world = implementation_->world();
     const BodyId id = world.append(body);
     world.outside = world.outside + world.sums_of(world.handles.row_of_slot(id.index));
-    implementation_->sim().forget_derived_state();
+    implementation_->sim().note_added(world.handles.row_of_slot(id.index));
     implementation_->undo_if_refused("World::add",
                                      [&] { implementation_->world().remove(body_count() - 1); });
     return id;
@@ -241,7 +254,9 @@ void BasicWorld<Real>::set_position(BodyId body, Vec2 position) {
     implementation_->sim().wake_at(position, b.radius[row]);
     row = implementation_->row_of(body, "World::set_position");
     const auto move_to = [&](Real x, Real y) {
+        implementation_->sim().note_place_before(row);
         implementation_->change_row(row, [&] { b.position_x[row] = x, b.position_y[row] = y; });
+        implementation_->sim().note_place(row);
     };
     const Real x = b.position_x[row], y = b.position_y[row];
     move_to(static_cast<Real>(position.x), static_cast<Real>(position.y));
@@ -259,6 +274,7 @@ void BasicWorld<Real>::set_velocity(BodyId body, Vec2 velocity) {
     implementation_->change_row(row, [&] {
         b.velocity_x[row] = static_cast<Real>(velocity.x), b.velocity_y[row] = static_cast<Real>(velocity.y);
     });
+    implementation_->sim().note_velocity(row);
 }
 
 template <class Real>
@@ -273,6 +289,7 @@ void BasicWorld<Real>::set_angular_velocity(BodyId body, double angular_velocity
     if (!b.has_rotation) return;
     row = implementation_->wake_around(row);
     implementation_->change_row(row, [&] { b.angular_velocity[row] = static_cast<Real>(angular_velocity); });
+    implementation_->sim().note_velocity(row);
 }
 
 template <class Real>

@@ -127,6 +127,30 @@ TEST_SUITE("hard cases/bad values") {
         }
     }
 
+    TEST_CASE_TEMPLATE("a step that drag would cut into more than 4,096 substeps is refused", Real, float,
+                       double) {
+        for (const Solver solver : {Solver::impulse, Solver::soft})
+            for (const double drag : {1e4, 1e6, 1e9}) {
+                Scene scene;
+                scene.accuracy.solver = solver;
+                scene.drag.linear = drag;
+                scene.add(disc(0.5, 1, {0, 0}, {1, 0}));
+                BasicWorld<Real> world(scene);
+                const std::uint64_t before = world.state_hash();
+                std::string message;
+                try {
+                    world.step(kStep);
+                } catch (const Error& error) {
+                    message = error.what();
+                    CHECK(error.code() == ErrorCode::out_of_range);
+                }
+                CAPTURE(message);
+                CHECK(message.empty() == (drag < 1e5));
+                CHECK((world.state_hash() == before) == (drag > 1e5));
+                if (drag > 1e5) CHECK(message.find("drag.linear") != std::string::npos);
+            }
+    }
+
     TEST_CASE_TEMPLATE("numbers at the edge of what is allowed step without harm", Real, float, double) {
         Scene scene;
         scene.accuracy.solver = Solver::impulse;
