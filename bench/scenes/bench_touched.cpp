@@ -116,7 +116,7 @@ const bool kAdded = [] {
         for (const double restitution : {0.0, 0.3}) {
             const auto add_for = [&](const char* precision, auto run) {
                 benchmark::RegisterBenchmark(
-                    measure::joined("touched/", name, "/", restitution, "/", precision).c_str(),
+                    measure::joined("touched/", name, restitution > 0 ? "/0.3/" : "/0/", precision).c_str(),
                     [=](benchmark::State& state) { run(state, touch, restitution, one_percent); })
                     ->ArgName("bodies")
                     ->Arg(1000)
