@@ -40,6 +40,7 @@ struct ManifoldName {
     static std::int32_t place_of_side(std::int32_t side, std::int32_t piece) {
         return side - kPlaces * piece;
     }
+    static std::int32_t piece_of_surface(std::int32_t place) { return -place / kPlaces; }
     /// The same contact of two bodies, seen from the other one.
     ManifoldName reversed() const { return {b, a, place_of_pieces(place % kPlaces, place / kPlaces)}; }
     friend bool operator==(const ManifoldName&, const ManifoldName&) = default;

@@ -54,6 +54,12 @@ class Manifolds {
     /// The contacts that carry an impulse at the end of a step, for those who look after sleepers.
     std::span<const LoadedContact> loaded();
 
+    /// Number of the geometry that an item of a body has: the body's, or a piece's.
+    std::int32_t shape_of_item(const WorldState<Real>& world, std::size_t row, std::int32_t item) const {
+        return items_.empty() ? world.bodies.shape[row]
+                              : shape_of(world, static_cast<std::int32_t>(row), item);
+    }
+
     std::size_t bytes() const;
 
     template <class Self, class Archive>

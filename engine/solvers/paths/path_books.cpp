@@ -55,6 +55,7 @@ void book_paths(const PathSolver<Real>& paths, const BodyRecords<Real>& records,
                                   static_cast<double>(contact.link.normal2[contact.lane]);
     });
     if (!books.is_open) return;
+    paths.rolling().book(records, books);
     const auto is_moved = [&](std::int32_t row) { return static_cast<std::size_t>(row) < records.count(); };
     paths.for_each([&](const PathContact<Real>& contact) {
         const BookedContact<Real> booked(contact);

@@ -31,6 +31,10 @@ constexpr double kLeastDeterminant = 1e-3;
 /// Paths are cut anew after so many steps, since loads have changed.
 constexpr int kStepsOfCut = 30;
 
+/// Turns of rolling resistance and contacts in a substep, where there is any: a disc that rolls without slip
+/// loses a third of what is wrong in each.
+constexpr int kTurnsOfRolling = 3;
+
 // ns on one thread, for the executor.
 constexpr double kNanosecondsToFill = 10, kNanosecondsToSolve = 10;
 constexpr std::size_t kBundlesPerTask = 4, kContactsPerTask = 256;
@@ -43,10 +47,11 @@ void PathSolver<Real>::find(const WorldState<Real>& world, const EdgeCandidates<
                             BodyRecords<Real>& records, const StepLoops<Real>& loops) {
     const bool is_same = manifolds.find(world, edges, terms, near, loops);
     counters.contacts = static_cast<std::int64_t>(manifolds.live().size());
-    if (manifolds.live().empty()) return;
+    if (manifolds.live().empty()) return rolling_.clear();
     note_calm();
     if (!is_same || ++since_cut_ >= kStepsOfCut || is_cut_calm_ != is_calm_) cut_paths(world);
     lay_out(world, edges, records, loops);
+    if (world.effects.rolling_resistance) rolling_.find(world, manifolds, row_of_far_);
 }
 
 /// Judges by the last step whether paths settle.
@@ -251,6 +256,7 @@ void PathSolver<Real>::warm_start(const SubstepTerms& terms, BodyRecords<Real>& 
     counters.unsettled = 0;
     if (!manifolds.live().empty())
         run(loops.kernels->convex->paths.warm_start, arguments(terms, records), loops);
+    rolling_.warm_start(records);
 }
 
 template <class Real>
@@ -261,6 +267,13 @@ void PathSolver<Real>::solve(const SubstepTerms& terms, BodyRecords<Real>& recor
     const SolvePaths<Real> k = arguments(terms, records);
     for (int pass = 0; pass < passes; ++pass) run(kernels.solve, k, loops);
     solved_ += static_cast<std::int64_t>(cut_.paths()) * passes;
+    for (int turn = 0; turn < kTurnsOfRolling && !rolling_.empty(); ++turn) {
+        rolling_.solve(records, [&](std::size_t n) {
+            const PathCut::Place place = cut_.places()[n];
+            return links_[place.link].normal1[place.lane] + links_[place.link].normal2[place.lane];
+        });
+        run(kernels.solve, k, loops);
+    }
     if (sweeps) run(kernels.sweep, k, loops);
 }
 
@@ -289,8 +302,8 @@ void PathSolver<Real>::end() {
 template <class Real>
 std::size_t PathSolver<Real>::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-    return manifolds.bytes() + of(row_of_far_) + of(contact_links_) + cut_.bytes() + links_.bytes() +
-           heads_.bytes() + scratch_.bytes();
+    return manifolds.bytes() + rolling_.bytes() + of(row_of_far_) + of(contact_links_) + cut_.bytes() +
+           links_.bytes() + heads_.bytes() + scratch_.bytes();
 }
 
 template class PathSolver<float>;

@@ -8,6 +8,7 @@
 #include "kernels/path_arguments.hpp"
 #include "solvers/paths/manifolds.hpp"
 #include "solvers/paths/path_cut.hpp"
+#include "solvers/paths/path_rolling.hpp"
 #include "solvers/substeps/body_records.hpp"
 #include "solvers/substeps/step_terms.hpp"
 #include "state/world_state.hpp"
@@ -56,6 +57,12 @@ class PathSolver {
                int passes, bool sweeps);
     /// Moves the surfaces of kinematic bodies on by a substep.
     void advance(const SubstepTerms& terms, BodyRecords<Real>& records);
+    const PathRolling<Real>& rolling() const { return rolling_; }
+    /// To be called when impulses are those of substeps of another length, by this factor.
+    void rescale(double factor) {
+        manifolds.rescale(factor);
+        if (factor != 1) rolling_.rescale(static_cast<Real>(factor));
+    }
     /// Calls fn(contact) for each PathContact of the step.
     template <class Fn>
     void for_each(const Fn& fn) const {
@@ -76,8 +83,8 @@ class PathSolver {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.counters, self.manifolds, self.cut_, self.since_cut_, self.solved_, self.is_calm_,
-                self.is_cut_calm_);
+        archive(self.counters, self.manifolds, self.rolling_, self.cut_, self.since_cut_, self.solved_,
+                self.is_calm_, self.is_cut_calm_);
     }
 
   private:
@@ -110,6 +117,7 @@ class PathSolver {
                  const StepLoops<Real>& loops);
     void fill_link(const WorldState<Real>& world, const BodyRecords<Real>& records, std::size_t number);
 
+    PathRolling<Real> rolling_;
     std::vector<std::int32_t> row_of_far_;  // of each contact: the row of b in the records
     std::vector<ContactLink> contact_links_;
     PathCut cut_;

@@ -69,7 +69,7 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const EdgeCa
 
 template <class Real>
 void SoftSolver<Real>::find_manifolds(const WorldState<Real>& world, const EdgeCandidates<Real>& edges) {
-    paths.manifolds.rescale(warm_start_.kept());
+    paths.rescale(warm_start_.kept());
     paths.find(world, edges, terms_, {kNearFraction, settings_.fall}, records_, loops_);
     counters.contacts += paths.counters.contacts;
 }
