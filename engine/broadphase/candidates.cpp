@@ -107,7 +107,7 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
         choose_own_margins(bodies, end, gravity, executor);
     else
         choose_margins(bodies, end, gravity, fastest);
-    forget_names();
+    if (is_renamed()) forget_names();
     grid_.build({bodies.count, bodies.position_x.data(), bodies.position_y.data(), reach_.data(),
                  bodies.has_flags ? bodies.flags.data() : nullptr},
                 kernels, executor);

@@ -205,9 +205,7 @@ class Candidates {
     std::size_t find_rows_near(Vec2 place, double reach, Column<std::int32_t>& out) const;
     std::size_t bytes_of_names() const;
     void add_fresh_strays();
-    void forget_names() {
-        row_of_name_.clear(), name_of_.clear(), is_loose_.clear(), loose_rows_.clear(), fresh_rows_.clear();
-    }
+    void forget_names();
 
     bool may_renew(std::size_t strays, std::size_t count) const {
         return (renewed_count_ + strays) * kBodiesPerRenewal <= count;

@@ -21,6 +21,11 @@ std::size_t Candidates<Real>::find_rows_near(Vec2 place, double reach, Column<st
     return kept;
 }
 
+template <class Real>
+void Candidates<Real>::forget_names() {
+    row_of_name_.clear(), name_of_.clear(), is_loose_.clear(), loose_rows_.clear(), fresh_rows_.clear();
+}
+
 /// Fresh rows get their margins, and pairs, with those that leave theirs.
 template <class Real>
 void Candidates<Real>::add_fresh_strays() {
@@ -120,12 +125,14 @@ std::size_t Candidates<Real>::bytes_of_names() const {
 
 template std::size_t Candidates<float>::find_rows_near(Vec2, double, Column<std::int32_t>&) const;
 template void Candidates<float>::add_fresh_strays();
+template void Candidates<float>::forget_names();
 template void Candidates<float>::follow_rows(const Bodies<float>&, std::span<const std::int32_t>,
                                              std::span<const std::uint8_t>);
 template void Candidates<float>::prepare_order(std::size_t);
 template std::size_t Candidates<float>::bytes_of_names() const;
 template std::size_t Candidates<double>::find_rows_near(Vec2, double, Column<std::int32_t>&) const;
 template void Candidates<double>::add_fresh_strays();
+template void Candidates<double>::forget_names();
 template void Candidates<double>::follow_rows(const Bodies<double>&, std::span<const std::int32_t>,
                                               std::span<const std::uint8_t>);
 template void Candidates<double>::prepare_order(std::size_t);

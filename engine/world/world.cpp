@@ -1,5 +1,6 @@
 #include <carom/world.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -53,11 +54,11 @@ template <class Real>
 }
 
 /// Drag cuts a step into substeps, and these must end.
-void check_drag(const Drag& drag, double dt) {
-    constexpr double kMostTimesStep = 2048;  // 4,096 substeps
+constexpr double kMostTimesStep = 2048;  // no unit, 4,096 substeps
+
+[[noreturn]] void refuse_drag(const Drag& drag, double dt) {
     const bool is_linear = drag.linear >= drag.angular;
     const double largest = is_linear ? drag.linear : drag.angular;
-    if (largest * dt <= kMostTimesStep) return;
     throw Error(ErrorCode::out_of_range,
                 join("World::step: dt is ", dt, " s and drag.", is_linear ? "linear" : "angular", " is ",
                      largest, " 1/s; expected a product of at most ", kMostTimesStep,
@@ -133,7 +134,8 @@ void BasicWorld<Real>::step(double dt) {
     validate_dt(dt, "World::step");
     if (dt == 0) return;
     Simulation<Real>& sim = implementation_->sim();
-    check_drag(sim.world.drag, dt);
+    if (const Drag& drag = sim.world.drag; std::max(drag.linear, drag.angular) * dt > kMostTimesStep)
+        refuse_drag(drag, dt);
     if (!sim.world.sensing.keeps) clear_events();
     const double begin = sim.world.time;
     sim.interruption.start();

@@ -20,6 +20,7 @@ void WarmStart<Real>::begin_step(ContactGraph<Real>& graph, double substep_dt, d
     are_known_ = substep_dt_ > 0;
     kept_ = are_known_ ? substep_dt / substep_dt_ : 0;
     dt_ = dt;
+    if (substep_dt == substep_dt_ && varying_left_ == 0) return;
     varying_left_ = are_known_ && substep_dt != substep_dt_ ? kVarying : std::max(0.0, varying_left_ - dt);
     const auto kept = static_cast<Real>(kept_);
     const std::array<Column<Real>*, 6> impulses = impulses_of(graph);
