@@ -97,7 +97,7 @@ class Candidates {
     /// `reach` of a place. Bodies that were thrown out of their margins in this step are not among them.
     /// @return how many rows are in `out`.
     std::size_t find_up_to_end(Vec2 place, double reach, Column<std::int32_t>& out) const {
-        return find_near(place, reach + farthest_ + largest_drift(), out);
+        return find_rows_near(place, reach + farthest_ + largest_drift(), out);
     }
 
     /// Pairs that have been added in this step since `update`, rule `own`: not among pair_a and pair_b.
