@@ -1,5 +1,6 @@
 // B39 of docs/hard-cases.md: worlds that are touched in every step.
 #include "math/random.hpp"
+#include "math/vec2_math.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"
 
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 #include <vector>
 
 using namespace carom;
@@ -132,6 +134,31 @@ TEST_SUITE("hard cases/touched worlds") {
             world.step(kStep), other.step(kStep);
             REQUIRE(world.state_hash() == other.state_hash());
             touches.touch(world, i), same.touch(other, i);
+        }
+    }
+
+    TEST_CASE("B39: a sensor in a touched world tells who is in it") {
+        constexpr double kReach = 4, kEdge = 1e-3;  // m
+        constexpr Vec2 kPlace{10, 12};
+        Scene scene = touched_pile(0);
+        scene.add({.type = BodyType::static_body, .shape = Disc{kReach}, .position = kPlace, .sensor = true});
+        const BodyId sensor{kSegment + 1, 0};
+        World world(scene, {.threads = 1});
+        for (int i = 0; i < 300; ++i) world.step(kStep);
+        Random random(6);
+        for (int i = 0; i < 120; ++i) {
+            const std::uint32_t index = static_cast<std::uint32_t>(random.below(kDiscs));
+            world.set_position({index, 0}, kPlace + Vec2{random.uniform(-9, 9), random.uniform(6, 9)});
+            world.step(kStep);
+            const std::vector<BodyId> told = world.sensed(sensor);
+            for (std::uint32_t body = 0; body < kDiscs; ++body) {
+                const Vec2 way = world.state({body, 0}).position - kPlace;
+                const double apart =
+                    std::hypot(way.x, way.y) - kReach - std::get<Disc>(world.shape({body, 0})).radius;
+                if (std::fabs(apart) < kEdge) continue;
+                const bool is_told = std::find(told.begin(), told.end(), BodyId{body, 0}) != told.end();
+                REQUIRE(is_told == (apart < 0));
+            }
         }
     }
 
