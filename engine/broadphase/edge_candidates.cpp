@@ -208,11 +208,17 @@ void EdgeCandidates<Real>::find_near_edge(const WorldState<Real>& world, const C
     const double pieces = std::fmax(1, std::fmin(std::ceil(length / (2 * half)), std::floor(most)));
     for (double piece = 0; piece < pieces; ++piece) {
         const Vec2 middle = a + ((piece + 0.5) / pieces) * (b - a);
-        const std::size_t found =
-            candidates.find_near(middle, 0.5 * length / pieces + margin + rounding, near_);
+        std::size_t found = candidates.find_near(middle, 0.5 * length / pieces + margin + rounding, near_);
+        if (world.has_filters()) {
+            std::int32_t* const rows = near_.data();
+            found = static_cast<std::size_t>(
+                std::remove_if(rows, rows + found,
+                               [&](std::int32_t row) { return is_forbidden(world, row, pose); }) -
+                rows);
+        }
         for (std::size_t n = 0; n < found; ++n) {
             const auto row = static_cast<std::size_t>(near_[n]);
-            if (bodies.is_immovable(row) || is_forbidden(world, near_[n], pose)) continue;
+            if (bodies.is_immovable(row)) continue;
             const Vec2 p{candidates.grid().built_x()[row], candidates.grid().built_y()[row]};
             const double share = nearest_share(p, a, b);
             // Each disc belongs to the piece it is nearest to.

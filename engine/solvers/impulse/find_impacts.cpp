@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "solvers/impulse/stages.hpp"
@@ -44,6 +45,18 @@ void list_wall_meetings(ImpulseSimulation<Real>& sim, double near) {
     });
 }
 
+/// Drops pairs that filters keep apart. @return how many are left
+template <class Real>
+std::size_t keep_touchable(const Bodies<Real>& bodies, const FindImpacts<Real>& all, std::int32_t* found,
+                           std::size_t count) {
+    const auto is_apart = [&](std::int32_t pair) {
+        const auto p = static_cast<std::size_t>(pair);
+        const auto a = static_cast<std::size_t>(all.a[p]), b = static_cast<std::size_t>(all.b[p]);
+        return a < bodies.count && b < bodies.count && !bodies.may_touch(a, b);
+    };
+    return static_cast<std::size_t>(std::remove_if(found, found + count, is_apart) - found);
+}
+
 /// Appends those of the pairs [first, last) that may touch, examined while what the kernel has read is in the
 /// cache.
 template <class Real>
@@ -53,15 +66,12 @@ void append_meetings(const ImpulseSimulation<Real>& sim, const FindImpacts<Real>
     FindImpacts<Real> k = all;
     k.found = found;
     const auto kernel = all.radius ? sim.kernels->find_impacts : sim.kernels->find_impacts_uniform_radius;
-    const std::size_t count = kernel(k, first, padded(last));
-    const Bodies<Real>& bodies = sim.world.bodies;
-    const bool has_filters = bodies.has_filters();
+    std::size_t count = kernel(k, first, padded(last));
+    if (sim.world.bodies.has_filters()) count = keep_touchable(sim.world.bodies, all, found, count);
     for (std::size_t n = 0; n < count; ++n) {
         const auto p = static_cast<std::size_t>(found[n]);
         if (p >= last) return;  // padding
         const std::int32_t a = all.a[p], b = all.b[p];
-        if (has_filters && !bodies.may_touch(static_cast<std::size_t>(a), static_cast<std::size_t>(b)))
-            continue;
         meetings.push_back(sim.impulse.examine(a < b ? Meeting{a, b} : Meeting{b, a}));
     }
 }

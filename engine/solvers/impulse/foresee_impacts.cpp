@@ -115,6 +115,19 @@ void ImpulseSolver<Real>::foresee_walls(std::int32_t row, double from) {
     });
 }
 
+/// Drops those of the first `found` near rows that filters keep apart from a row. @return how many are left
+template <class Real>
+std::size_t ImpulseSolver<Real>::keep_touchable(std::int32_t row, std::size_t found) {
+    std::int32_t* const rows = near_.data();
+    return static_cast<std::size_t>(std::remove_if(rows, rows + found,
+                                                   [&](std::int32_t other) {
+                                                       return !flights.bodies->may_touch(
+                                                           static_cast<std::size_t>(row),
+                                                           static_cast<std::size_t>(other));
+                                                   }) -
+                                    rows);
+}
+
 /// Foresees what other bodies a body can hit from clock `from` on.
 template <class Real>
 void ImpulseSolver<Real>::foresee_near(std::int32_t row, double from) {
@@ -155,13 +168,11 @@ void ImpulseSolver<Real>::foresee_near(std::int32_t row, double from) {
         }
         found += more;
     }
-    const bool immovable = flights.is_immovable(row), has_filters = flights.bodies->has_filters();
+    if (flights.bodies->has_filters()) found = keep_touchable(row, found);
+    const bool immovable = flights.is_immovable(row);
     for (std::size_t i = 0; i < found; ++i) {
         const std::int32_t other = near_[i];
         if (other == row || (immovable && flights.is_immovable(other))) continue;
-        if (has_filters &&
-            !flights.bodies->may_touch(static_cast<std::size_t>(row), static_cast<std::size_t>(other)))
-            continue;
         // One order for a pair, whichever of the two asks: the same bits and the same ties.
         foresee(row < other ? Meeting{row, other} : Meeting{other, row}, from);
     }

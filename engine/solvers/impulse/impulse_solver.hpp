@@ -103,6 +103,7 @@ class ImpulseSolver {
     void prefetch_margins(Meeting m) const;
     void prefetch_tile(std::size_t tile) const;
     void foresee_walls(std::int32_t row, double from);
+    std::size_t keep_touchable(std::int32_t row, std::size_t found);
     void foresee_near(std::int32_t row, double from);
     void foresee_all_of(std::int32_t row, double from);
     void take_simultaneous(const Impact& first);
