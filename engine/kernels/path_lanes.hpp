@@ -88,5 +88,17 @@ struct LinkMass {
     }
 };
 
+/// Lanes of one batch of a bundle: what all functions below are told.
+template <class Real>
+struct PathBatch {
+    const SolvePaths<Real>& k;
+    PathLink<Real>* link;      // the first
+    std::size_t length, lane;  // links; first lane of the batch
+    const std::int32_t* head;  // rows
+
+    const std::int32_t* near_rows(std::size_t i) const { return i == 0 ? head : link[i - 1].body + lane; }
+    const std::int32_t* far_rows(std::size_t i) const { return link[i].body + lane; }
+};
+
 }  // namespace
 }  // namespace carom

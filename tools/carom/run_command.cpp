@@ -69,7 +69,8 @@ void add_run_command(CLI::App& program, Action& action) {
     command->add_flag("--no-report", asked->choices.no_report, "Do not write report.html");
     add_page_size_option(*command, asked->choices.page_bytes);
     command->add_flag("--no-trajectory", asked->choices.no_trajectory, "Do not write trajectory.h5");
-    command->add_flag("--events", asked->choices.events, "Write events.csv: what came into sensors and left them, joints that broke");
+    command->add_flag("--events", asked->choices.events,
+                      "Write events.csv: what came into sensors and left them, joints that broke");
     command->add_flag("--quiet", asked->choices.quiet, "Print nothing but errors");
     command->callback([asked, &action] { action = [asked] { return run(*asked); }; });
 }
