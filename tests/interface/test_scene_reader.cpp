@@ -277,7 +277,7 @@ const std::vector<Case> kGenerators{
         "shape": {"segment": {"a": [0, 0], "b": [1, 0]}}}})"),
      ErrorCode::inconsistent,
      "/generate/0/stack/shape",
-     {"\"segment\"", "expected a disc, box, capsule or polygon"}},
+     {"\"segment\"", "expected a disc, box, capsule, polygon or compound"}},
     {with_generator(R"({"chain": {}})"), ErrorCode::missing, "/generate/0/chain", {"\"count\" is missing"}},
     {with_generator(R"({"net": {"count": [2, 2], "spacing": 0, "shape": {"disc": {"radius": 0.1}}}})"),
      ErrorCode::out_of_range,

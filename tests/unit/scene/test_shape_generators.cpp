@@ -85,7 +85,7 @@ TEST_CASE("a lattice places any shape with an area, and draws radii for discs al
                   ErrorCode::inconsistent, "/shape", "the shape \"box\" and radii");
     check_refused(Lattice{.body = {.type = BodyType::static_body, .shape = Segment{}}},
                   ErrorCode::inconsistent, "/shape",
-                  "the shape \"segment\"; expected a disc, box, capsule or polygon");
+                  "the shape \"segment\"; expected a disc, box, capsule, polygon or compound");
     Scene walled;
     walled.walls = Walls{.min = {0, 0}, .max = {10, 10}};
     CHECK_THROWS_WITH_AS(add_gas(walled, {.count = 3, .body = {.shape = Box{1, 1}}}),
