@@ -143,7 +143,7 @@ void sweep_angles(const SweepJoints<Real>& arguments, std::size_t first, std::si
     using Lanes = simd::Lanes<Real, Isa>;
     using F = typename Lanes::Batch;
     const SweepJoints<Real> k = arguments;  // a copy: no store can change it
-    const F one(1), zero(0);
+    const F zero(0);
     for (std::size_t c = first; c < last; c += Lanes::size) {
         JointSide<Lanes, true> a{Lanes::load_rows4(k.velocity, k.joints.a + c)},
             b{Lanes::load_rows4(k.velocity, k.joints.b + c)};
