@@ -1,7 +1,9 @@
 // Concave bodies: they rest, roll and stack as exact physics says.
-#include <doctest/doctest.h>
+#include "support/rms_speed.hpp"
 
 #include <carom/carom.hpp>
+
+#include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +11,7 @@
 #include <vector>
 
 using namespace carom;
+using carom::test::rms_speed;
 
 namespace {
 
@@ -48,16 +51,6 @@ Scene on_ground(double friction = 0.6) {
                .shape = Segment{{-50, 0}, {50, 0}},
                .material = {.friction = friction}});
     return scene;
-}
-
-double rms_speed(const World& world) {
-    const auto bodies = world.bodies();
-    double sum = 0;
-    for (std::size_t row = 0; row < bodies.count; ++row) {
-        const double x = bodies.velocity_x[row], y = bodies.velocity_y[row];
-        sum += x * x + y * y;
-    }
-    return std::sqrt(sum / static_cast<double>(bodies.count));
 }
 
 void run(World& world, double seconds) {

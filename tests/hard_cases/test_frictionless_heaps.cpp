@@ -1,5 +1,6 @@
 // B33 of docs/hard-cases.md: heaps and columns that no friction holds come to rest.
 #include "support/report.hpp"
+#include "support/rms_speed.hpp"
 #include "support/scenes.hpp"
 
 #include <carom/world.hpp>
@@ -44,17 +45,6 @@ Scene column(int discs, double shaft) {
         scene.add(disc(kRadius, 1, {i % 2 == 0 ? aside : -aside, kRadius * (2 * i + 1)}));
     scene.accuracy.solver = Solver::soft;
     return scene;
-}
-
-template <class Real>
-double rms_speed(const BasicWorld<Real>& world) {
-    const auto bodies = world.bodies();
-    double sum = 0;
-    for (std::size_t i = 0; i < bodies.count; ++i) {
-        const double x = bodies.velocity_x[i], y = bodies.velocity_y[i];
-        sum += x * x + y * y;
-    }
-    return std::sqrt(sum / static_cast<double>(bodies.count));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "support/books.hpp"
 #include "support/effort.hpp"
 #include "support/report.hpp"
+#include "support/rms_speed.hpp"
 #include "support/scenes.hpp"
 #include "support/trial.hpp"
 
@@ -34,16 +35,6 @@ Scene loose_pile(std::int64_t columns, std::int64_t rows) {
     lattice.body.material = rough;
     add_lattice(scene, lattice);
     return scene;
-}
-
-template <class Real>
-double rms_speed(const BasicWorld<Real>& world) {
-    const auto bodies = world.bodies();
-    double sum = 0;
-    for (std::size_t i = 0; i < bodies.count; ++i)
-        sum += static_cast<double>(bodies.velocity_x[i]) * static_cast<double>(bodies.velocity_x[i]) +
-               static_cast<double>(bodies.velocity_y[i]) * static_cast<double>(bodies.velocity_y[i]);
-    return std::sqrt(sum / static_cast<double>(bodies.count));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // B10 and B35 of docs/hard-cases.md: no step, tiny steps, one huge step, steps of changing length.
 #include "math/random.hpp"
 #include "support/report.hpp"
+#include "support/rms_speed.hpp"
 #include "support/scenes.hpp"
 #include "support/trial.hpp"
 
@@ -91,17 +92,6 @@ BasicWorld<Real> settled(const Scene& scene) {
     BasicWorld<Real> world(scene, {.threads = 1});
     for (int i = 0; i < 1200; ++i) world.step(1.0 / 60);
     return world;
-}
-
-template <class Real>
-double rms_speed(const BasicWorld<Real>& world) {
-    const auto bodies = world.bodies();
-    double sum = 0;
-    for (std::size_t i = 0; i < bodies.count; ++i) {
-        const double x = bodies.velocity_x[i], y = bodies.velocity_y[i];
-        sum += x * x + y * y;
-    }
-    return std::sqrt(sum / static_cast<double>(bodies.count));
 }
 
 constexpr double kCalm = 2e-3;  // m/s, root mean square in a pile at rest
