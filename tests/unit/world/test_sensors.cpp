@@ -43,8 +43,9 @@ TEST_SUITE("world: sensors") {
                                           {Polygon{{{-0.2, 0}, {0.2, -0.1}, {0.2, 0.1}}}, 4.0 / 15}})
             for (const auto& [zone, reach] :
                  {std::pair<Shape, double>{Box{1, 1}, 0.5}, {Disc{0.5}, 0.5}, {Capsule{0.6, 0.2}, 0.5}}) {
-                CAPTURE(shape.index());
-                CAPTURE(zone.index());
+                const std::size_t kind_of_body = shape.index(), kind_of_zone = zone.index();
+                CAPTURE(kind_of_body);
+                CAPTURE(kind_of_zone);
                 Scene scene;
                 const BodyId in = scene.add(sensor(zone, {0, 0}));
                 const BodyId of = scene.add({.shape = shape, .position = {-2, 0}, .velocity = {2, 0}});
