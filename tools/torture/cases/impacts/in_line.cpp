@@ -47,7 +47,7 @@ Scene galperin(double ratio) {
                         .bottom = false,
                         .top = false,
                         .material = material_of(1)};
-    scene.add(disc_of(0.5, {1.5, 0}, {}, material_of(1))).index;
+    scene.add(disc_of(0.5, {1.5, 0}, {}, material_of(1)));
     scene.bodies.back().mass = 1;
     scene.add(disc_of(0.5, {3, 0}, {-1, 0}, material_of(1)));
     scene.bodies.back().mass = ratio;
