@@ -58,7 +58,7 @@ void PathRolling<Real>::find(const WorldState<Real>& world, const Manifolds<Real
         const auto item = [&](const Column<std::int32_t>& items, std::size_t row) {
             return items.empty() ? static_cast<std::int32_t>(row) : items[i];
         };
-        // Of walls and edges, and of pieces on them, the body's own material.
+        // Walls and edges, and pieces on them, take the body's own material.
         double c = bodies.rolling_resistance[a], bend = 0;
         if (is_body) {
             c = pair_rolling_resistance(c, bodies.rolling_resistance[b]);

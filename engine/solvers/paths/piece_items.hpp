@@ -25,7 +25,7 @@ class PieceItems {
         if (first_[i] == first_[i + 1]) fn(row, 0);
         for (std::int32_t item = first_[i]; item < first_[i + 1]; ++item) fn(item, item - first_[i]);
     }
-    /// Of each item the number of its geometry in the ShapeStore.
+    /// The number in the ShapeStore of the geometry of each item.
     const std::int32_t* shapes() const { return shape_.data(); }
     /// The piece that an item of a row is; null: the item is the body.
     const StoredPiece* piece_of(const WorldState<Real>& world, std::int32_t row, std::int32_t item) const {

@@ -42,7 +42,7 @@ class Simulation {
     virtual Profile profile() const = 0;
     virtual Plan plan() const = 0;
     virtual OverlapReport overlaps() const = 0;
-    /// Of the last step.
+    /// The events of the last step.
     virtual Events events() const { return {}; }
     virtual JointErrors joint_errors() const { return {}; }
     virtual std::vector<std::size_t> quarantined() const = 0;

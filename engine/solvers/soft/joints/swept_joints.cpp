@@ -395,7 +395,7 @@ void SweptJoints<Real>::sweep(const JointStep<Real>& step, const StepLoops<Real>
     });
 }
 
-/// Of the part of a joint that is about points [N s].
+/// The impulse on b of the part of a joint that is about points [N s].
 template <class Real>
 Vec2 SweptJoints<Real>::impulse_on_b(const Kind& own, std::size_t i, std::size_t kind) {
     if (kind == kHinges) return {own.impulse_x[i], own.impulse_y[i]};

@@ -89,7 +89,7 @@ class SweptJoints {
     Real* turn_of(BodyRecords<Real>& records);
     void load(const WorldState<Real>& world);
     void begin_drive(Kind& own, std::size_t i, std::size_t kind, const StoredJoint& joint, double h);
-    /// Of springs, ropes and angles: along the length [N s] or of the angle [N m s].
+    /// The impulse of a spring, a rope or an angle: along the length [N s] or about the angle [N m s].
     static double sum_of_impulses(const Kind& own, std::size_t i);
     static Vec2 impulse_on_b(const Kind& own, std::size_t i, std::size_t kind);
 
