@@ -20,15 +20,6 @@ double energy_of(const BasicWorld<Real>& world) {
     return world.ledger().energy.total();
 }
 
-/// A rod of length 1 that hangs from the origin, at an angle from below [rad].
-Scene rod_pendulum(double angle) {
-    Scene scene;
-    scene.gravity = {0, -10};
-    const BodyId b = scene.add(bob({std::sin(angle), -std::cos(angle)}));
-    scene.add(Joint{.b = b, .kind = DistanceJoint{}});
-    return scene;
-}
-
 /// Mean period of the zero crossings of x, by straight lines between steps [s].
 template <class Real>
 double period_of(const Scene& scene, double seconds, double dt, const WorldOptions& options = {}) {

@@ -15,14 +15,6 @@ namespace {
 
 constexpr double kStep = 1.0 / 60, kPi = std::numbers::pi;
 
-Scene pendulum(double angle) {
-    Scene scene;
-    scene.gravity = {0, -10};
-    const BodyId b = scene.add(bob({std::sin(angle), -std::cos(angle)}));
-    scene.add(Joint{.b = b, .kind = DistanceJoint{}});
-    return scene;
-}
-
 /// Largest error of the energy in a number of steps, over m g l of one bob [no unit].
 template <class Real>
 double worst_energy(const Scene& scene, int steps, int substeps) {
@@ -40,16 +32,16 @@ double worst_energy(const Scene& scene, int steps, int substeps) {
 
 TEST_SUITE("physics: rattle") {
     TEST_CASE("a pendulum from 90° keeps its energy to second order of the substep") {
-        const double one = worst_energy<double>(pendulum(kPi / 2), 1200, 1),
-                     two = worst_energy<double>(pendulum(kPi / 2), 1200, 2),
-                     four = worst_energy<double>(pendulum(kPi / 2), 1200, 4);
+        const double one = worst_energy<double>(rod_pendulum(kPi / 2), 1200, 1),
+                     two = worst_energy<double>(rod_pendulum(kPi / 2), 1200, 2),
+                     four = worst_energy<double>(rod_pendulum(kPi / 2), 1200, 4);
         CHECK(one < 1.5e-3);
         CHECK(std::log2(one / two) == doctest::Approx(2).epsilon(0.05));
         CHECK(std::log2(two / four) == doctest::Approx(2).epsilon(0.05));
     }
 
     TEST_CASE_TEMPLATE("A23: its period is that of the elliptic integral", Real, float, double) {
-        BasicWorld<Real> world(pendulum(kPi / 2), {.solver = Solver::rattle});
+        BasicWorld<Real> world(rod_pendulum(kPi / 2), {.solver = Solver::rattle});
         double before = 1, first = -1, last = -1;
         int crossings = 0;
         for (int i = 1; i <= 1200; ++i) {
@@ -69,7 +61,7 @@ TEST_SUITE("physics: rattle") {
 
     TEST_CASE("B22: a pendulum does not drift in many swings") {
         // A million steps take 4 s of a core: docs/decisions/0029-rattle.md has them; here a tenth.
-        World64 world(pendulum(kPi / 2), {.solver = Solver::rattle});
+        World64 world(rod_pendulum(kPi / 2), {.solver = Solver::rattle});
         const double start = world.ledger().energy.total();
         const auto mean_of = [&](int steps) {
             double sum = 0;
@@ -139,7 +131,7 @@ TEST_SUITE("physics: rattle") {
 
     TEST_CASE("a mechanism that meets a floor is handed over to contacts, and the ledger explains it") {
         // A pendulum whose bob strikes a block at its lowest point, now and then: solver `auto`.
-        Scene scene = pendulum(kPi / 3);
+        Scene scene = rod_pendulum(kPi / 3);
         scene.bodies[0].group = 0;
         scene.add({.type = BodyType::static_body, .shape = Box{0.2, 0.2}, .position = {-0.21, -1}});
         scene.effects.ledger = true;

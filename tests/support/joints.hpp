@@ -18,6 +18,15 @@ inline Body bob(Vec2 position, double mass = 1, double radius = 0.1) {
     return {.shape = Disc{radius}, .position = position, .mass = mass, .group = -1};
 }
 
+/// A rod of length 1 that hangs from the origin, at an angle from below [rad].
+inline Scene rod_pendulum(double angle) {
+    Scene scene;
+    scene.gravity = {0, -10};
+    const BodyId b = scene.add(bob({std::sin(angle), -std::cos(angle)}));
+    scene.add(Joint{.b = b, .kind = DistanceJoint{}});
+    return scene;
+}
+
 /// Links of length 1 along a direction from the origin, pinned there, and a weight at the end.
 inline Scene weighted_chain(int links, double weight, Vec2 direction) {
     Scene scene;
