@@ -127,9 +127,10 @@ void require_solids_and_plain_joints(const Scene& scene) {
     for (const Joint& joint : scene.joints) {
         const auto* rod = std::get_if<DistanceJoint>(&joint.kind);
         const auto* hinge = std::get_if<RevoluteJoint>(&joint.kind);
-        if (!joint.a || !joint.b || !(rod || hinge) || (rod && (rod->length || rod->min || rod->max)))
+        if (!joint.a || !joint.b || !(rod || hinge) ||
+            (rod && (rod->length || rod->min || rod->max || rod->frequency > 0)))
             throw Error(ErrorCode::not_built_yet,
-                        "the adapter of this engine makes rods and hinges of two bodies");
+                        "the adapter of this engine makes rigid rods and hinges of two bodies");
     }
 }
 

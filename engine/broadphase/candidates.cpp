@@ -33,7 +33,7 @@ template <class Real>
 void Candidates<Real>::prepare(std::size_t count) {
     if (reach_.size() == count) return;
     reach_.resize(count);
-    is_valid_ = false, radii_are_known_ = false;
+    is_valid_ = radii_are_known_ = is_standing_known_ = false;
 }
 
 template <class Real>
@@ -46,9 +46,10 @@ void Candidates<Real>::choose_margins(const Bodies<Real>& bodies, const FlightCl
     // A body that crosses more than the common margin in one step.
     const double fast = (common / kOwnMargin - fall) / end.s;
     const bool some_are_fast = most * kOwnMargin > common;
-    for (std::size_t row = 0; row < bodies.count; ++row)
+    const std::size_t rows = rows_to_find(bodies);
+    for (std::size_t row = 0; row < rows; ++row)
         reach_[row] = static_cast<Real>(static_cast<double>(bodies.radius[row]) + common);
-    for (std::size_t row = 0; row < bodies.count && some_are_fast; ++row) {
+    for (std::size_t row = 0; row < rows && some_are_fast; ++row) {
         const Vec2 v{bodies.velocity_x[row], bodies.velocity_y[row]};
         if (length_squared(v) <= fast * fast) continue;
         const double travel = std::sqrt(length_squared(v)) * end.s + fall;
@@ -57,8 +58,8 @@ void Candidates<Real>::choose_margins(const Bodies<Real>& bodies, const FlightCl
 }
 
 template <class Real>
-bool Candidates<Real>::wants_sorted_rows() const {
-    return is_valid_ && rebuilds_until_sorted_ == 0 && reach_.size() >= kFewestSortedRows;
+bool Candidates<Real>::wants_sorted_rows(std::size_t moving) const {
+    return is_valid_ && rebuilds_until_sorted_ == 0 && moving >= kFewestSortedRows;
 }
 
 template <class Real>
@@ -83,14 +84,14 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
     strays_.clear(), overshoot_ = 0;
     new_pairs_.clear();
     if (rule_ == MarginRule::own && is_valid_ &&
-        may_renew(displaced.size() + fresh_rows_.size(), bodies.count)) {
+        may_renew(displaced.size() + fresh_rows_.size(), bodies.moving())) {
         strays_.assign(displaced.begin(), displaced.end());
         add_fresh_strays();
         renew_margins(bodies, end, gravity);
         return;
     }
     if (rule_ == MarginRule::own && is_valid_ && follow_flow(bodies, end, gravity, executor)) return;
-    if (rule_ == MarginRule::common && is_valid_ && displaced.size() * kBodiesPerStray <= bodies.count) {
+    if (rule_ == MarginRule::common && is_valid_ && displaced.size() * kBodiesPerStray <= bodies.moving()) {
         strays_.assign(displaced.begin(), displaced.end());
         for (const std::int32_t row : strays_) {
             const auto i = static_cast<std::size_t>(row);
@@ -109,8 +110,9 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
         choose_margins(bodies, end, gravity, fastest);
     if (is_renamed()) forget_names();
     grid_.build({bodies.count, bodies.position_x.data(), bodies.position_y.data(), reach_.data(),
-                 bodies.has_flags ? bodies.flags.data() : nullptr},
+                 bodies.has_flags ? bodies.flags.data() : nullptr, bodies.standing, is_standing_known_},
                 kernels, executor);
+    is_standing_known_ = bodies.standing > 0;
     grid_.find_candidates(executor);
     is_valid_ = true;
     if (rule_ == MarginRule::own) move_places(bodies, end.s, executor);  // to the end of this step

@@ -42,7 +42,7 @@ class Candidates {
     void prepare(std::size_t count);
 
     /// Forgets the pairs: rows, radii or positions were changed from outside.
-    void invalidate() { is_valid_ = radii_are_known_ = false; }
+    void invalidate() { is_valid_ = radii_are_known_ = is_standing_known_ = false; }
     /// Forgets the pairs alone.
     void invalidate_pairs() { is_valid_ = false; }
 
@@ -55,6 +55,7 @@ class Candidates {
     void follow_rows(const Bodies<Real>& bodies, std::span<const std::int32_t> now,
                      std::span<const std::uint8_t> is_elsewhere);
     /// Whether so many rows may change without the pairs being void.
+    /// @param count  bodies, but for standing ones
     bool may_follow(std::size_t changed, std::size_t count) const {
         return rule_ == MarginRule::own && is_valid_ && changed * count <= kMostComparisons &&
                may_renew(changed, count) && loose_rows_.size() + changed <= kMostLoose;
@@ -133,7 +134,10 @@ class Candidates {
     /// How far places, built_x and built_y, may go with the mean flow of the bodies before the pairs are void
     /// [m]. Lists of what a body reaches besides other bodies, as walls and edges, have to look farther by
     /// that.
-    double largest_drift() const { return rule_ == MarginRule::own ? kLargestDrift * radii_.usual : 0; }
+    double largest_drift() const { return rule_ == MarginRule::own ? largest_drift_ : 0; }
+
+    /// Whether a good part of the bodies fly so fast together that places may go farther than they else do.
+    bool flies_together() const { return flows_ && largest_drift_ > kLargestDrift * radii_.usual; }
 
     /// Rule `own`: moves the places with the mean flow. To be called first in every step of length dt [s].
     /// A body that has used up its margin by that has a reach of its radius; it is to be taken for a stray.
@@ -159,7 +163,8 @@ class Candidates {
     const Radii* known_radii() const { return radii_are_known_ ? &radii_ : nullptr; }
 
     /// Whether rows have drifted so far from the order of the cells that sorting them pays.
-    bool wants_sorted_rows() const;
+    /// @param moving  rows that may move
+    bool wants_sorted_rows(std::size_t moving) const;
     /// To be called when rows were sorted.
     void note_sorted_rows();
     /// Row of each place in the order of the cells; rows that came since the pairs were found are the last.
@@ -179,6 +184,7 @@ class Candidates {
         archive(self.flows_, self.flow_is_local_, self.failed_follows_, self.follows_left_out_, self.radii_);
         archive(self.row_of_name_, self.name_of_, self.is_loose_, self.loose_rows_, self.fresh_rows_);
         archive(self.is_valid_, self.radii_are_known_, self.rebuild_count_, self.rebuilds_until_sorted_);
+        archive(self.is_standing_known_, self.largest_standing_reach_, self.largest_drift_);
     }
     /// To be called after the state was read.
     void use(const KernelTable<Real>& kernels) { grid_.use(kernels); }
@@ -186,7 +192,7 @@ class Candidates {
   private:
     static constexpr double kRoundingUp =
         1 + 1e-6;                               // factor on a reach: it and the place are rounded to Real
-    static constexpr double kLargestDrift = 6;  // usual radii that a place may drift by
+    static constexpr double kLargestDrift = 6;  // usual radii that a place may drift by, if few are faster
     /// Rule `own`: pairs are found anew when one body in this many has got a new margin.
     static constexpr std::size_t kBodiesPerRenewal = 8;
     /// A body's own margin is at most this many of the largest radius, unless 1.25 steps of it are more.
@@ -207,6 +213,11 @@ class Candidates {
     void add_fresh_strays();
     void forget_names();
 
+    /// Rows whose margins are found with the pairs: all, unless those of standing bodies are known.
+    std::size_t rows_to_find(const Bodies<Real>& bodies) const {
+        return is_standing_known_ ? bodies.moving() : bodies.count;
+    }
+
     bool may_renew(std::size_t strays, std::size_t count) const {
         return (renewed_count_ + strays) * kBodiesPerRenewal <= count;
     }
@@ -219,6 +230,7 @@ class Candidates {
     void set_velocity(std::size_t row, const MeanFlow::At& flow);
     void note_reach(double reach);
     MeanFlow::At flow_here(std::size_t row, Vec2 place) const;
+    double drift_with_flow(const Bodies<Real>& bodies, double dt) const;
     void begin_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
                     const Executor& executor);
     bool follow_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
@@ -250,9 +262,10 @@ class Candidates {
     std::vector<std::int32_t> loose_rows_, fresh_rows_;  // of the fresh ones pairs are yet to be found
     std::vector<std::int32_t> old_rows_, sorted_rows_;
     std::size_t renewed_count_ = 0;
-    double farthest_ = 0;    // m, most that a renewed margin reaches beyond the first one, drift aside
-    double steepness_ = 0;   // no unit: difference of the drifts of two places over their distance, at most
-    double drift_left_ = 0;  // m, way that places may still drift before the pairs are void
+    double farthest_ = 0;   // m, most that a renewed margin reaches beyond the first one, drift aside
+    double steepness_ = 0;  // no unit: difference of the drifts of two places over their distance, at most
+    double largest_drift_ = 0;  // m, way that places may go with the flow
+    double drift_left_ = 0;     // m, way that places may still drift before the pairs are void
     double largest_reach_ = 0;  // m, of renewed margins, and of all when the flow was followed last
     MeanFlow flow_;
     double since_flow_ = 0;  // s, time for which places have followed this flow
@@ -263,6 +276,8 @@ class Candidates {
     Radii radii_;
     bool is_valid_ = false;
     bool radii_are_known_ = false;
+    bool is_standing_known_ = false;     // the grid has the standing bodies, and they their margins
+    double largest_standing_reach_ = 0;  // m
     std::int64_t rebuild_count_ = 0;
     std::int64_t rebuilds_until_sorted_ = 0;
 };

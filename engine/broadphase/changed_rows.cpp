@@ -40,6 +40,7 @@ template <class Real>
 void Candidates<Real>::follow_rows(const Bodies<Real>& bodies, std::span<const std::int32_t> now,
                                    std::span<const std::uint8_t> is_elsewhere) {
     const std::size_t count = bodies.count;
+    is_standing_known_ = false;
     const auto is_gone = [&](std::int32_t row) {
         return row < 0 || is_elsewhere[static_cast<std::size_t>(row)] != 0;
     };

@@ -52,10 +52,11 @@ void EdgeCandidates<Real>::place(const WorldState<Real>& world, double dt) {
         pose.takes_part = (bodies.flags_of(row) & kDisabled) == 0;
         pose.position = {bodies.position_x[row], bodies.position_y[row]};
         pose.end_position = pose.position + dt * Vec2{bodies.velocity_x[row], bodies.velocity_y[row]};
-        pose.angle = bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0;
+        const double angle = bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0;
+        if (pose.angle != angle) pose.turn = rotation_by(angle);  // most edges never turn
+        pose.angle = angle;
         const double spin = bodies.has_rotation ? static_cast<double>(bodies.angular_velocity[row]) : 0;
         pose.end_angle = pose.angle + dt * spin;
-        pose.turn = rotation_by(pose.angle);
         pose.end_turn = spin == 0 ? pose.turn : rotation_by(pose.end_angle);
     }
 }
@@ -97,7 +98,7 @@ void EdgeCandidates<Real>::find(const WorldState<Real>& world, const Candidates<
     if (poses_.empty()) return;
     double largest_reach = 0;
     const Bodies<Real>& bodies = world.bodies;
-    for (std::size_t row = 0; row < bodies.count; ++row)
+    for (std::size_t row = 0; row < bodies.moving(); ++row)
         if ((bodies.flags_of(row) & kNotInGrid) == 0)
             largest_reach = std::fmax(largest_reach, static_cast<double>(candidates.first_reach(row)));
     for (std::size_t i = 0; i < poses_.size(); ++i) {
@@ -105,9 +106,14 @@ void EdgeCandidates<Real>::find(const WorldState<Real>& world, const Candidates<
         give_margin(world, candidates, i);
         const double margin = found_at_[i].margin;
         if (!poses_[i].takes_part || largest_reach == 0) continue;
+        const double farther = margin + allowance_ + candidates.largest_drift();
+        // A query for each disc costs about as much as one for each edge.
+        if (static_cast<std::size_t>(body.count) > bodies.moving()) {
+            find_near_discs(world, candidates, i, farther);
+            continue;
+        }
         for (std::int32_t n = 0; n < body.count; ++n)
-            find_near_edge(world, candidates, body.first + n,
-                           margin + allowance_ + candidates.largest_drift(), largest_reach);
+            find_near_edge(world, candidates, body.first + n, farther, largest_reach);
     }
     std::sort(pairs_.begin(), pairs_.end());
 }
@@ -127,13 +133,10 @@ void EdgeCandidates<Real>::add_strays(const WorldState<Real>& world, const Candi
             const FoundAt& at = found_at_[i];
             const Vec2 place = rotate_back(at.turn, p - at.position);
             const double near = reach + at.margin + candidates.largest_drift();
-            const EdgeBody& body = world.edges.bodies[i];
-            for (std::int32_t edge = body.first; edge < body.first + body.count; ++edge) {
-                const EdgePair pair{stray, edge};
-                if (distance_squared(place, world.edges[edge].a, world.edges[edge].b) >= near * near)
-                    continue;
-                add_pair(pair);
-            }
+            world.edges.for_each_near(world.edges.bodies[i], place, near, [&](std::int32_t edge) {
+                if (distance_squared(place, world.edges[edge].a, world.edges[edge].b) < near * near)
+                    add_pair({stray, edge});
+            });
         }
     }
     for (std::size_t i = 0; i < found_at_.size(); ++i)
@@ -193,6 +196,32 @@ void EdgeCandidates<Real>::follow_rows(std::span<const std::int32_t> now,
     std::sort(pairs_.begin(), pairs_.end());
 }
 
+/// The same pairs as of find_near_edge for each edge of a body, found disc by disc.
+template <class Real>
+void EdgeCandidates<Real>::find_near_discs(const WorldState<Real>& world, const Candidates<Real>& candidates,
+                                           std::size_t number, double margin) {
+    const EdgeBody& body = world.edges.bodies[number];
+    const EdgePose& pose = poses_[number];
+    const Vec2 farthest{body.reach, body.reach};
+    const double most_rounding = 2 * rounding_of<Real>(pose.position, farthest);
+    for (std::size_t row = 0; row < world.bodies.moving(); ++row) {
+        const auto disc = static_cast<std::int32_t>(row);
+        if ((world.bodies.flags_of(row) & kNotInGrid) != 0 || world.bodies.is_immovable(row) ||
+            is_forbidden(world, disc, pose))
+            continue;
+        const Vec2 p{candidates.grid().built_x()[row], candidates.grid().built_y()[row]};
+        const double wanted = static_cast<double>(candidates.first_reach(row)) + margin;
+        world.edges.for_each_near(body, rotate_back(pose.turn, p - pose.position), wanted + most_rounding,
+                                  [&](std::int32_t edge) {
+                                      const Vec2 a = pose.position + rotate(pose.turn, world.edges[edge].a),
+                                                 b = pose.position + rotate(pose.turn, world.edges[edge].b);
+                                      const double near = wanted + rounding_of<Real>(a, b);
+                                      if (distance_squared(p, a, b) < near * near)
+                                          pairs_.push_back({disc, edge});
+                                  });
+    }
+}
+
 template <class Real>
 void EdgeCandidates<Real>::find_near_edge(const WorldState<Real>& world, const Candidates<Real>& candidates,
                                           std::int32_t number, double margin, double largest_reach) {
@@ -203,8 +232,9 @@ void EdgeCandidates<Real>::find_near_edge(const WorldState<Real>& world, const C
     const double length = std::sqrt(length_squared(b - a));
     const double rounding = rounding_of<Real>(a, b);
     // Half a piece and the margin are to be no more than the size of a cell: the quickest kind of query.
-    const double half = std::fmax(largest_reach - margin, 0.25 * largest_reach);
-    const double most = std::fmax(1, static_cast<double>(bodies.count) / kBodiesPerPiece);
+    // Where the margin is larger than that, pieces of its size look at the least cells.
+    const double half = std::fmax(largest_reach - margin, margin);
+    const double most = std::fmax(1, static_cast<double>(bodies.moving()) / kBodiesPerPiece);
     const double pieces = std::fmax(1, std::fmin(std::ceil(length / (2 * half)), std::floor(most)));
     for (double piece = 0; piece < pieces; ++piece) {
         const Vec2 middle = a + ((piece + 0.5) / pieces) * (b - a);

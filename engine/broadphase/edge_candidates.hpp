@@ -47,7 +47,8 @@ class EdgeCandidates {
 
     /// Finds all discs that can touch an edge, by edge, in an order that depends on the input alone.
     /// In a world without edges there are none: those found before are forgotten.
-    /// Cost: O(edges + their length / radii + what is found).
+    /// Cost: O(edges + their length / radii + what is found); of a chain with more edges than there are
+    /// bodies, O(bodies log edges + what is found).
     void find(const WorldState<Real>& world, const Candidates<Real>& candidates);
     std::span<const EdgePair> pairs() const { return pairs_; }  ///< by row, then by edge
 
@@ -58,8 +59,9 @@ class EdgeCandidates {
     /// is to be found anew.
     bool may_add() const { return 2 * added_ <= pairs_.size() + kFewAdded; }
 
-    /// Adds what discs reach with new margins that they got in this step. Cost: O(strays), and O(edges) for
-    /// each that has got far; likewise O(what is found) for each edge that has left its margin.
+    /// Adds what discs reach with new margins that they got in this step. Cost: O(strays), and O(bodies with
+    /// edges + log edges + what is found) for each that has got far; likewise O(what is found) for each edge
+    /// that has left its margin.
     void add_strays(const WorldState<Real>& world, const Candidates<Real>& candidates);
     /// The pairs that the last call of add_strays added.
     std::span<const EdgePair> new_pairs() const { return new_pairs_; }
@@ -96,6 +98,8 @@ class EdgeCandidates {
     void add_around_edges(const WorldState<Real>& world, const Candidates<Real>& candidates,
                           std::size_t body);
     void add_pair(EdgePair pair);
+    void find_near_discs(const WorldState<Real>& world, const Candidates<Real>& candidates, std::size_t body,
+                         double margin);
     void find_near_edge(const WorldState<Real>& world, const Candidates<Real>& candidates, std::int32_t edge,
                         double margin, double largest_reach);
 

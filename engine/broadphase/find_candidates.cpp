@@ -1,6 +1,7 @@
 #include "broadphase/uniform_grid.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace carom {
 namespace {
@@ -34,10 +35,13 @@ void append_pairs(const KernelTable<Real>& kernels, const GridLevel<Real>& level
 template <class Real>
 const CandidatePairs& UniformGrid<Real>::find_candidates(const Executor& executor) {
     pairs_.count = 0;
-    for (std::size_t level = 0; level < level_count_; ++level) find_in_level(levels_[level].view(), executor);
-    for (std::size_t coarse = 0; coarse < level_count_; ++coarse)
-        for (std::size_t fine = coarse + 1; fine < level_count_; ++fine)
-            find_across(levels_[coarse].view(), levels_[fine].view());
+    for (std::size_t level = 0; level < moving_.count; ++level) find_in_level(moving_[level], executor);
+    for (std::size_t coarse = 0; coarse < moving_.count; ++coarse)
+        for (std::size_t fine = coarse + 1; fine < moving_.count; ++fine)
+            find_across(moving_[coarse], moving_[fine]);
+    for (std::size_t level = 0; level < moving_.count; ++level)
+        for (std::size_t other = 0; other < standing_.count; ++other)
+            look_at_standing(standing_[other], moving_[level]);
     if (has_immovable_) drop_immovable_pairs();
     pad_pairs();
     return pairs_;
@@ -75,11 +79,43 @@ void UniformGrid<Real>::find_across(const GridLevel<Real>& coarse, const GridLev
     const bool from_coarse = !fine.numbering.wraps && rows_of_fine_cells < rows_of_coarse_cells;
     const GridLevel<Real>& probes = from_coarse ? coarse : fine;
     const GridLevel<Real>& level = from_coarse ? fine : coarse;
-    Column<std::int32_t>& probe_rows = from_coarse ? pairs_.a : pairs_.b;
-    Column<std::int32_t>& found_rows = from_coarse ? pairs_.b : pairs_.a;
+    look_into(level, probes, from_coarse ? pairs_.a : pairs_.b, from_coarse ? pairs_.b : pairs_.a,
+              [](std::size_t) { return false; });
+}
 
+/// Most bodies are often far from all that stands: those are not looked up.
+template <class Real>
+void UniformGrid<Real>::look_at_standing(const GridLevel<Real>& level, const GridLevel<Real>& probes) {
+    constexpr double kCells = 2;  // around the occupied ones: a reach, and rounding
+    const CellNumbering& n = level.numbering;
+    const double side = 1 / n.inverse_size;
+    // The farthest cells reach to infinity.
+    const auto low_end = [&](double cell) {
+        return cell > -kFarthestCell ? side * (cell - kCells) : -HUGE_VAL;
+    };
+    const auto high_end = [&](double cell) {
+        return cell < kFarthestCell ? side * (cell + 1 + kCells) : HUGE_VAL;
+    };
+    const double low_x = low_end(n.low_u), high_x = high_end(n.high_u), low_y = low_end(n.low_v),
+                 high_y = high_end(n.high_v);
+    const SortedBodies<Real>& bodies = probes.bodies;
+    look_into(level, probes, pairs_.a, pairs_.b, [&](std::size_t place) {
+        const double x = bodies.x[place], y = bodies.y[place], reach = bodies.reach[place];
+        return x + reach < low_x || x - reach > high_x || y + reach < low_y || y - reach > high_y;
+    });
+}
+
+/// Each body of one level, the probe, looks around itself in another one.
+/// @param probe_rows, found_rows  of pairs_, which takes what is near
+/// @param is_far  is_far(place), whether a probe is left out
+template <class Real>
+template <class IsFar>
+void UniformGrid<Real>::look_into(const GridLevel<Real>& level, const GridLevel<Real>& probes,
+                                  Column<std::int32_t>& probe_rows, Column<std::int32_t>& found_rows,
+                                  const IsFar& is_far) {
     const SortedBodies<Real>& bodies = probes.bodies;
     for (std::size_t place = 0; place < probes.places; ++place) {
+        if (is_far(place)) continue;
         const auto find = [&] {
             return kernels_->find_near(level,
                                        {bodies.x[place], bodies.y[place], bodies.reach[place],
@@ -118,8 +154,8 @@ void UniformGrid<Real>::pad_pairs() {
 template <class Real>
 std::size_t UniformGrid<Real>::find_near(Real x, Real y, Real reach, Column<std::int32_t>& rows) const {
     std::size_t count = 0;
-    for (std::size_t level = 0; level < level_count_; ++level) {
-        const GridLevel<Real>& view = levels_[level].view();
+    for (std::size_t i = 0; i < level_count(); ++i) {
+        const GridLevel<Real>& view = level(i);
         for (;;) {
             const std::size_t found =
                 kernels_->find_near(view, {x, y, reach, rows.data() + count, rows.size() - count});

@@ -26,6 +26,11 @@ constexpr double kStill = 0.005;
 /// A flow is followed if places may drift with it for at least so many steps: a single body that is faster
 /// than that would else have all pairs found anew every other step.
 constexpr double kFewestFlowSteps = 4;
+/// Places may drift for so many steps with a flow that carries one body in so many as fast as that: discs
+/// that fall side by side stay each other's neighbours. What they reach of walls and edges is looked for as
+/// far.
+constexpr double kStepsOfSwiftFlow = 8;
+constexpr std::size_t kBodiesPerSwift = 16;
 /// No flow is followed if more than one body in this many is immovable.
 constexpr std::size_t kBodiesPerImmovable = 32;
 /// Steps of the iteration that finds where a place was before it jumped. Each one's error is the stretch
@@ -184,17 +189,33 @@ bool Candidates<Real>::follow_flow(const Bodies<Real>& bodies, const FlightClock
     return true;
 }
 
+/// How far places may go with the flow that was measured [m].
+template <class Real>
+double Candidates<Real>::drift_with_flow(const Bodies<Real>& bodies, double dt) const {
+    const double usual = kLargestDrift * radii_.usual;
+    const double way = dt * flow_.most().speed, swift = usual / (kFewestFlowSteps * dt);  // m, m/s
+    if (kFewestFlowSteps * way < usual || dt * flow_.most().rate >= kLargestStretch) return usual;
+    std::size_t count = 0;
+    for (std::size_t row = 0; row < bodies.count; ++row) {
+        if (!takes_part(bodies.flags_of(row))) continue;
+        const Vec2 v = flow_.at({bodies.position_x[row], bodies.position_y[row]}).velocity;
+        count += length_squared(v) >= swift * swift;
+    }
+    return count * kBodiesPerSwift >= bodies.count ? kStepsOfSwiftFlow * way : usual;
+}
+
 /// Measures the flow for pairs that are to be found anew, and sets the places to drift with it from now on.
 template <class Real>
 void Candidates<Real>::begin_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
                                   const Executor& executor) {
     for (Column<Real>* column : {&drift_x_, &drift_y_, &flow_x_, &flow_y_, &rate_}) {
-        column->resize_for_overwrite(bodies.count);
-        std::fill(column->begin(), column->end(), Real(0));
+        column->resize(bodies.count);
+        std::fill_n(column->begin(), rows_to_find(bodies), Real(0));
     }
-    steepness_ = since_flow_ = 0, drift_left_ = largest_drift();
-    may_flow_ = flows_ = false;
+    steepness_ = since_flow_ = 0, drift_left_ = largest_drift_ = kLargestDrift * radii_.usual;
+    may_flow_ = flows_ = false, flow_is_local_ = true, largest_reach_ = 0;
     if (!(radii_.largest > 0)) return;  // no discs
+    if (bodies.standing > 0) return;    // they are strays in any flow, as below
     measure_flow(bodies, end, gravity, true);
     const MeanFlow::Most& most = flow_.most();
     // An immovable body is a stray in any flow.
@@ -202,9 +223,9 @@ void Candidates<Real>::begin_flow(const Bodies<Real>& bodies, const FlightClock&
     for (std::size_t row = 0; row < bodies.count && bodies.has_flags; ++row)
         immovable += takes_part(bodies.flags_of(row)) && bodies.is_immovable(row);
     may_flow_ = immovable * kBodiesPerImmovable <= bodies.count;
+    if (may_flow_) drift_left_ = largest_drift_ = drift_with_flow(bodies, end.s);
     flows_ = may_flow_ && end.s * most.speed > kStill * radii_.usual && end.s * most.rate < kLargestStretch &&
              kFewestFlowSteps * end.s * most.speed < drift_left_;
-    flow_is_local_ = true, largest_reach_ = 0;
     if (!flows_) return;
     executor.for_each_chunk(
         bodies.count, kRowsPerChunk, kNanosecondsToBegin,
@@ -216,6 +237,8 @@ void Candidates<Real>::begin_flow(const Bodies<Real>& bodies, const FlightClock&
 
 template void Candidates<float>::measure_flow(const Bodies<float>&, const FlightClock&, Vec2, bool);
 template void Candidates<double>::measure_flow(const Bodies<double>&, const FlightClock&, Vec2, bool);
+template double Candidates<float>::drift_with_flow(const Bodies<float>&, double) const;
+template double Candidates<double>::drift_with_flow(const Bodies<double>&, double) const;
 template void Candidates<float>::note_reach(double);
 template MeanFlow::At Candidates<float>::flow_here(std::size_t, Vec2) const;
 template void Candidates<double>::note_reach(double);

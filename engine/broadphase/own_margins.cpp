@@ -50,13 +50,23 @@ void Candidates<Real>::choose_own_margins(const Bodies<Real>& bodies, const Flig
                                           const Executor& executor) {
     begin_flow(bodies, end, gravity, executor);
     const double fall = std::sqrt(length_squared(gravity)) * end.q;
-    executor.for_each_chunk(bodies.count, kRowsPerChunk, kNanosecondsToChoose,
+    const std::size_t rows = rows_to_find(bodies), moving = bodies.moving();
+    executor.for_each_chunk(rows, kRowsPerChunk, kNanosecondsToChoose,
                             [&](std::size_t, std::size_t first, std::size_t last) {
                                 for (std::size_t row = first; row < last; ++row)
                                     reach_[row] = own_reach(bodies, row, end, fall);
                             });
-    for (std::size_t row = 0; row < bodies.count; ++row) note_reach(reach_[row]);
-    own_x_ = bodies.position_x, own_y_ = bodies.position_y, first_reach_ = reach_;
+    for (std::size_t row = 0; row < moving; ++row) note_reach(reach_[row]);
+    if (!is_standing_known_) largest_standing_reach_ = 0;
+    for (std::size_t row = moving; row < rows; ++row)
+        largest_standing_reach_ = std::fmax(largest_standing_reach_, static_cast<double>(reach_[row]));
+    largest_reach_ = std::fmax(largest_reach_, largest_standing_reach_);
+    const auto take_over = [&](Column<Real>& column, const Column<Real>& from) {
+        column.resize(bodies.count);
+        std::copy_n(from.data(), rows, column.data());
+    };
+    take_over(own_x_, bodies.position_x), take_over(own_y_, bodies.position_y);
+    take_over(first_reach_, reach_);
     added_pairs_.clear();
     renewed_count_ = 0, farthest_ = 0;
 }

@@ -73,6 +73,7 @@ void SortedLevel<Real>::place_bodies(const LevelInput<Real>& input) {
     std::fill_n(y_.data() + count, kPlacesBeyond, Real{0});
     std::fill_n(reach_.data() + count, kPlacesBeyond, Real{0});
     std::fill_n(row_.data() + count, kPlacesBeyond, 0);
+    std::fill_n(cell_.data() + count, kPlacesBeyond, 0);  // of saved states every byte is known
 }
 
 template <class Real>

@@ -29,28 +29,42 @@ void UniformGrid<Real>::build(const GridInput<Real>& input, const KernelTable<Re
     kernels_ = &kernels;
     count_ = input.count;
     flags_ = input.flags;
-    has_immovable_ = flags_ && any_immovable_in_grid(flags_, count_);
+    const std::size_t moving = count_ - input.standing;
+    has_immovable_ = flags_ && any_immovable_in_grid(flags_, moving);  // no standing body looks for others
     keep_positions(input, executor);
+    order_.resize(count_);
 
-    level_count_ = 0;
-    if (count_ > 0) {
-        FindBounds<Real> bounds{input.x, input.y, input.reach, count_, {}, {}, {}, {}, {}, {}};
-        kernels.find_bounds(bounds);
-        const bool one_size = static_cast<double>(bounds.min_reach) * kLargestRatioInLevel >=
-                              static_cast<double>(bounds.max_reach);
-        if (one_size && !(flags_ && any_flag(flags_, count_, kNotInGrid)))
-            build_one_level(input, bounds, executor);
-        else
-            build_levels(input, executor);
-    }
-    list_order(input);
+    GridInput<Real> of_moving = input;
+    of_moving.count = moving;
+    build_moving(of_moving, executor);
+    list_order(moving_, rows_of(input, 0, moving));
+    if (input.is_standing_known) return;
+    standing_.count = 0;
+    if (input.standing == 0) return;
+    build_levels(standing_, rows_of(input, moving, count_), executor);
+    list_order(standing_, rows_of(input, moving, count_));
+}
+
+template <class Real>
+void UniformGrid<Real>::build_moving(const GridInput<Real>& input, const Executor& executor) {
+    moving_.count = 0;
+    if (input.count == 0) return;
+    FindBounds<Real> bounds{input.x, input.y, input.reach, input.count, {}, {}, {}, {}, {}, {}};
+    kernels_->find_bounds(bounds);
+    const bool one_size =
+        static_cast<double>(bounds.min_reach) * kLargestRatioInLevel >= static_cast<double>(bounds.max_reach);
+    if (one_size && !(flags_ && any_flag(flags_, input.count, kNotInGrid)))
+        build_one_level(input, bounds, executor);
+    else
+        build_levels(moving_, rows_of(input, 0, input.count), executor);
 }
 
 template <class Real>
 void UniformGrid<Real>::keep_positions(const GridInput<Real>& input, const Executor& executor) {
-    built_x_.resize_for_overwrite(count_);
-    built_y_.resize_for_overwrite(count_);
-    executor.for_each_chunk(count_, kRowsPerChunk, [&](std::size_t, std::size_t first, std::size_t last) {
+    const std::size_t rows = input.is_standing_known ? count_ - input.standing : count_;
+    built_x_.resize(count_);
+    built_y_.resize(count_);
+    executor.for_each_chunk(rows, kRowsPerChunk, [&](std::size_t, std::size_t first, std::size_t last) {
         std::copy(input.x + first, input.x + last, built_x_.data() + first);
         std::copy(input.y + first, input.y + last, built_y_.data() + first);
     });
@@ -59,34 +73,35 @@ void UniformGrid<Real>::keep_positions(const GridInput<Real>& input, const Execu
 template <class Real>
 void UniformGrid<Real>::build_one_level(const GridInput<Real>& input, const FindBounds<Real>& bounds,
                                         const Executor& executor) {
-    level_count_ = 1;
-    if (levels_.empty()) levels_.resize(1);
-    levels_[0].sort({input.x, input.y, input.reach, nullptr, count_, bounds, bounds.max_reach}, *kernels_,
-                    executor);
+    moving_.count = 1;
+    if (moving_.levels.empty()) moving_.levels.resize(1);
+    moving_.levels[0].sort({input.x, input.y, input.reach, nullptr, input.count, bounds, bounds.max_reach},
+                           *kernels_, executor);
 }
 
 /// Grouping sizes by area is tried first; bodies that overlap or crowd in a corner can make its cells too
 /// full.
 template <class Real>
-void UniformGrid<Real>::build_levels(const GridInput<Real>& input, const Executor& executor) {
-    classes_.count(input.reach, flags_, count_);
-    classes_.group(Grouping::by_area);
-    sort_levels(input, executor);
-    for (std::size_t level = 0; level < level_count_; ++level)
-        if (classes_.is_mixed(level) && levels_[level].bodies_sharing_a_cell() > kMostBodiesSharingACell) {
-            classes_.group(Grouping::by_ratio);
-            sort_levels(input, executor);
+void UniformGrid<Real>::build_levels(Levels& levels, const Rows& rows, const Executor& executor) {
+    levels.classes.count(rows.reach, rows.flags, rows.count);
+    levels.classes.group(Grouping::by_area);
+    sort_levels(levels, rows, executor);
+    for (std::size_t level = 0; level < levels.count; ++level)
+        if (levels.classes.is_mixed(level) &&
+            levels.levels[level].bodies_sharing_a_cell() > kMostBodiesSharingACell) {
+            levels.classes.group(Grouping::by_ratio);
+            sort_levels(levels, rows, executor);
             return;
         }
 }
 
 template <class Real>
-void UniformGrid<Real>::sort_levels(const GridInput<Real>& input, const Executor& executor) {
-    level_count_ = classes_.level_count();
-    if (levels_.size() < level_count_) levels_.resize(level_count_);
-    split_by_level(input);
-    for (std::size_t level = 0; level < level_count_; ++level) {
-        const std::size_t first = split_.first[level], bodies = classes_.bodies(level);
+void UniformGrid<Real>::sort_levels(Levels& levels, const Rows& rows, const Executor& executor) {
+    levels.count = levels.classes.level_count();
+    if (levels.levels.size() < levels.count) levels.levels.resize(levels.count);
+    split_by_level(levels, rows);
+    for (std::size_t level = 0; level < levels.count; ++level) {
+        const std::size_t first = split_.first[level], bodies = levels.classes.bodies(level);
         FindBounds<Real> bounds{split_.x.data() + first,
                                 split_.y.data() + first,
                                 split_.reach.data() + first,
@@ -98,53 +113,53 @@ void UniformGrid<Real>::sort_levels(const GridInput<Real>& input, const Executor
                                 {},
                                 {}};
         kernels_->find_bounds(bounds);
-        levels_[level].sort({bounds.x, bounds.y, bounds.reach, split_.row.data() + first, bodies, bounds,
-                             classes_.largest_reach(level)},
-                            *kernels_, executor);
+        levels.levels[level].sort({bounds.x, bounds.y, bounds.reach, split_.row.data() + first, bodies,
+                                   bounds, levels.classes.largest_reach(level)},
+                                  *kernels_, executor);
     }
 }
 
 template <class Real>
-void UniformGrid<Real>::split_by_level(const GridInput<Real>& input) {
-    split_.first.resize(level_count_);
+void UniformGrid<Real>::split_by_level(const Levels& levels, const Rows& rows) {
+    split_.first.resize(levels.count);
     std::size_t places = 0;
-    for (std::size_t level = 0; level < level_count_; ++level) {
+    for (std::size_t level = 0; level < levels.count; ++level) {
         split_.first[level] = places;
-        places += padded(classes_.bodies(level));
+        places += padded(levels.classes.bodies(level));
     }
     for (Column<Real>* column : {&split_.x, &split_.y, &split_.reach}) column->resize_for_overwrite(places);
     split_.row.resize_for_overwrite(places);
 
     std::vector<std::size_t>& next = split_.next;
     next.assign(split_.first.begin(), split_.first.end());
-    for (std::size_t row = 0; row < count_; ++row) {
-        if (flags_ && (flags_[row] & kNotInGrid)) continue;
-        const std::size_t place = next[classes_.level_of(input.reach[row])]++;
-        split_.x[place] = input.x[row];
-        split_.y[place] = input.y[row];
-        split_.reach[place] = input.reach[row];
-        split_.row[place] = static_cast<std::int32_t>(row);
+    for (std::size_t i = 0; i < rows.count; ++i) {
+        if (rows.flags && (rows.flags[i] & kNotInGrid)) continue;
+        const std::size_t place = next[levels.classes.level_of(rows.reach[i])]++;
+        split_.x[place] = rows.x[i];
+        split_.y[place] = rows.y[i];
+        split_.reach[place] = rows.reach[i];
+        split_.row[place] = static_cast<std::int32_t>(rows.first + i);
     }
 }
 
 template <class Real>
-void UniformGrid<Real>::list_order(const GridInput<Real>& input) {
-    order_.resize_for_overwrite(count_);
-    std::int32_t* next = order_.data();
-    for (std::size_t level = 0; level < level_count_; ++level) {
-        const std::span<const std::int32_t> rows = levels_[level].rows();
-        next = std::copy(rows.begin(), rows.end(), next);
+void UniformGrid<Real>::list_order(const Levels& levels, const Rows& rows) {
+    std::int32_t* next = order_.data() + rows.first;
+    const std::int32_t* const end = next + rows.count;
+    for (std::size_t level = 0; level < levels.count; ++level) {
+        const std::span<const std::int32_t> sorted = levels.levels[level].rows();
+        next = std::copy(sorted.begin(), sorted.end(), next);
     }
-    if (next == order_.end()) return;
-    for (std::size_t row = 0; row < count_; ++row)
-        if (input.flags[row] & kNotInGrid) *next++ = static_cast<std::int32_t>(row);
+    if (next == end) return;
+    for (std::size_t i = 0; i < rows.count; ++i)
+        if (rows.flags[i] & kNotInGrid) *next++ = static_cast<std::int32_t>(rows.first + i);
 }
 
 template <class Real>
 typename UniformGrid<Real>::Block UniformGrid<Real>::block_of(double x, double y,
                                                               double cells_a_side) const noexcept {
-    if (level_count_ == 0) return {0, 0};
-    const CellNumbering& n = levels_[level_count_ - 1].view().numbering;
+    if (moving_.count == 0) return {0, 0};
+    const CellNumbering& n = moving_.finest().numbering;
     const auto along = [&](double position, double low, double high) {
         const double cell = std::clamp(position * n.inverse_size, low, high) - low;
         return static_cast<std::size_t>(cell / cells_a_side);
@@ -154,8 +169,8 @@ typename UniformGrid<Real>::Block UniformGrid<Real>::block_of(double x, double y
 
 template <class Real>
 typename UniformGrid<Real>::Block UniformGrid<Real>::block_counts(double cells_a_side) const noexcept {
-    if (level_count_ == 0) return {0, 0};
-    const CellNumbering& n = levels_[level_count_ - 1].view().numbering;
+    if (moving_.count == 0) return {0, 0};
+    const CellNumbering& n = moving_.finest().numbering;
     if (n.wraps) return {0, 0};
     const auto along = [&](double low, double high) {
         return static_cast<std::size_t>((high - low) / cells_a_side) + 1;
@@ -165,10 +180,12 @@ typename UniformGrid<Real>::Block UniformGrid<Real>::block_counts(double cells_a
 
 template <class Real>
 std::size_t UniformGrid<Real>::bytes() const noexcept {
-    std::size_t sum = classes_.bytes() + built_x_.bytes() + built_y_.bytes() + split_.x.bytes() +
-                      split_.y.bytes() + split_.reach.bytes() + split_.row.bytes() + order_.bytes() +
-                      near_.bytes();
-    for (const SortedLevel<Real>& level : levels_) sum += level.bytes();
+    std::size_t sum = built_x_.bytes() + built_y_.bytes() + split_.x.bytes() + split_.y.bytes() +
+                      split_.reach.bytes() + split_.row.bytes() + order_.bytes() + near_.bytes();
+    for (const Levels* levels : {&moving_, &standing_}) {
+        sum += levels->classes.bytes();
+        for (const SortedLevel<Real>& level : levels->levels) sum += level.bytes();
+    }
     sum += pairs_.a.bytes() + pairs_.b.bytes();
     for (const CandidatePairs& pairs : chunk_pairs_) sum += pairs.a.bytes() + pairs.b.bytes();
     return sum;

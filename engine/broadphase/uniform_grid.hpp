@@ -22,7 +22,9 @@ struct GridInput {
     const Real* y = nullptr;      // m
     const Real* reach = nullptr;  // m, >= 0: radius plus the body's own slack
     const std::uint8_t* flags =
-        nullptr;  // null: none; else kImmovable, kNotInGrid. Read until find_candidates
+        nullptr;                     // null: none; else kImmovable, kNotInGrid. Read until find_candidates
+    std::size_t standing = 0;        // the last rows: immovable bodies, in levels of their own
+    bool is_standing_known = false;  // they are those of the last build: nothing is done for them
 };
 
 /// Pairs of rows; padded with pairs (count of bodies, count of bodies) to a multiple of kRowPadding.
@@ -36,7 +38,8 @@ struct CandidatePairs {
     }
 };
 
-/// The broadphase: bodies sorted into square cells, one level of cells for each class of size.
+/// The broadphase: bodies sorted into square cells, one level of cells for each class of size. Standing
+/// bodies have levels of their own, which are sorted once: the others look into them.
 ///
 /// Two bodies are candidates if dx² + dy² < (reach_a + reach_b)², computed in Real. Each such pair is found
 /// once, in an order that depends on the input alone: not on threads, not on the instruction set. The world
@@ -45,10 +48,12 @@ struct CandidatePairs {
 template <class Real>
 class UniformGrid {
   public:
-    /// Sorts the bodies. Cost: O(bodies), about 5 ns each (docs/decisions/0001-broadphase.md).
+    /// Sorts the bodies. Cost: O(bodies), but for standing ones that are known, about 5 ns each
+    /// (docs/decisions/0001-broadphase.md).
     void build(const GridInput<Real>& input, const KernelTable<Real>& kernels, const Executor& executor);
 
-    /// Finds all candidate pairs of the bodies as they were built. Cost: O(bodies + pairs).
+    /// Finds all candidate pairs of the bodies as they were built. Cost: O(bodies + pairs), but for standing
+    /// bodies.
     const CandidatePairs& find_candidates(const Executor& executor);
     const CandidatePairs& candidates() const noexcept { return pairs_; }
 
@@ -76,8 +81,8 @@ class UniformGrid {
     /// Asks the memory for the cells of a block. Calls fn(rows) for its bodies, in pieces.
     template <class Fn>
     void prefetch_block(Block block, std::size_t cells_a_side, const Fn& fn) const {
-        if (level_count_ == 0) return;
-        const GridLevel<Real>& level = levels_[level_count_ - 1].view();
+        if (moving_.count == 0) return;
+        const GridLevel<Real>& level = moving_.finest();
         const auto width = static_cast<std::size_t>(level.width);
         const auto lines = (static_cast<std::size_t>(level.cells) + width - 1) / width;
         const std::size_t left = block.u * cells_a_side, right = std::min(left + cells_a_side, width);
@@ -91,31 +96,59 @@ class UniformGrid {
         }
     }
 
-    std::size_t level_count() const noexcept { return level_count_; }
-    /// Coarse to fine, for kernels that look around themselves in the grid.
-    const GridLevel<Real>& level(std::size_t i) const noexcept { return levels_[i].view(); }
+    std::size_t level_count() const noexcept { return moving_.count + standing_.count; }
+    /// Coarse to fine, then those of standing bodies, for kernels that look around themselves in the grid.
+    const GridLevel<Real>& level(std::size_t i) const noexcept {
+        return i < moving_.count ? moving_[i] : standing_[i - moving_.count];
+    }
     std::size_t bytes() const noexcept;
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.count_, self.has_immovable_, self.level_count_, self.levels_, self.built_x_,
+        archive(self.count_, self.has_immovable_, self.moving_.count, self.moving_.levels, self.built_x_,
                 self.built_y_);
+        archive(self.standing_.count, self.standing_.levels);
         archive(self.order_, self.ordered_, self.pairs_);
     }
     /// To be called after the state was read: what looks around in the grid.
     void use(const KernelTable<Real>& kernels) { kernels_ = &kernels; }
 
   private:
+    /// Levels, from coarse to fine.
+    struct Levels {
+        SizeClasses<Real> classes;
+        std::vector<SortedLevel<Real>> levels;  // more than `count` after a richer scene
+        std::size_t count = 0;
+
+        const GridLevel<Real>& operator[](std::size_t i) const noexcept { return levels[i].view(); }
+        const GridLevel<Real>& finest() const noexcept { return levels[count - 1].view(); }
+    };
+    /// Some consecutive rows of the columns.
+    struct Rows {
+        std::size_t first, count;
+        const Real *x, *y, *reach;
+        const std::uint8_t* flags;
+    };
+    static Rows rows_of(const GridInput<Real>& input, std::size_t first, std::size_t last) {
+        return {first,           last - first,        input.x + first,
+                input.y + first, input.reach + first, input.flags ? input.flags + first : nullptr};
+    }
+
     void keep_positions(const GridInput<Real>& input, const Executor& executor);
+    void build_moving(const GridInput<Real>& input, const Executor& executor);
     void build_one_level(const GridInput<Real>& input, const FindBounds<Real>& bounds,
                          const Executor& executor);
-    void build_levels(const GridInput<Real>& input, const Executor& executor);
-    void sort_levels(const GridInput<Real>& input, const Executor& executor);
-    void split_by_level(const GridInput<Real>& input);
-    void list_order(const GridInput<Real>& input);
+    void build_levels(Levels& levels, const Rows& rows, const Executor& executor);
+    void sort_levels(Levels& levels, const Rows& rows, const Executor& executor);
+    void split_by_level(const Levels& levels, const Rows& rows);
+    void list_order(const Levels& levels, const Rows& rows);
 
     void find_in_level(const GridLevel<Real>& level, const Executor& executor);
     void find_across(const GridLevel<Real>& coarse, const GridLevel<Real>& fine);
+    template <class IsFar>
+    void look_into(const GridLevel<Real>& level, const GridLevel<Real>& probes,
+                   Column<std::int32_t>& probe_rows, Column<std::int32_t>& found_rows, const IsFar& is_far);
+    void look_at_standing(const GridLevel<Real>& level, const GridLevel<Real>& probes);
     void drop_immovable_pairs();
     void pad_pairs();
 
@@ -124,9 +157,7 @@ class UniformGrid {
     const std::uint8_t* flags_ = nullptr;
     bool has_immovable_ = false;
 
-    SizeClasses<Real> classes_;
-    std::vector<SortedLevel<Real>> levels_;  // coarse to fine; more than level_count_ after a richer scene
-    std::size_t level_count_ = 0;
+    Levels moving_, standing_;
     Column<Real> built_x_, built_y_;
 
     /// Bodies by level, in the order of rows. Each level starts at a multiple of kRowPadding.

@@ -87,7 +87,7 @@ void ContactGraph<Real>::choose_groups(const Candidates<Real>& candidates, std::
 template <class Real>
 void ContactGraph<Real>::find_crowds(const Candidates<Real>& candidates, const Bodies<Real>& bodies) {
     crowd_.clear();
-    if (candidates.pair_count() < kCrowdedMean * bodies.count) return;
+    if (candidates.pair_count() < kCrowdedMean * bodies.moving()) return;
     crowd_.assign(bodies.count, 0);
     for (std::size_t p = 0; p < candidates.pair_count(); ++p) {
         const std::int32_t a = candidates.pair_a()[p], b = candidates.pair_b()[p];
@@ -176,7 +176,7 @@ void ContactGraph<Real>::list_walls(const Candidates<Real>& candidates, const Bo
                                     const Walls& walls) {
     const Enclosure<Real> enclosure(&walls);
     const auto drift = static_cast<Real>(candidates.largest_drift());
-    for (std::size_t row = 0; row < bodies.count; ++row)
+    for (std::size_t row = 0; row < bodies.moving(); ++row)
         enclosure.for_each_side_within(bodies.position_x[row], bodies.position_y[row],
                                        candidates.first_reach(row) + drift, [&](std::int32_t side) {
                                            if (!bodies.is_moving_disc(row)) return;
@@ -341,7 +341,7 @@ void ContactGraph<Real>::sort_by_colour(const Found& found, ContactRows<Real>& s
 template <class Real>
 void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const EdgeCandidates<Real>& edges,
                                const Bodies<Real>& bodies, const Walls* walls, const Executor& executor) {
-    const std::size_t rows = bodies.count;
+    const std::size_t rows = bodies.moving(), first_padding_row = bodies.count;
     const bool is_moved = trail.has_moved();
     if (is_moved) rename_rows(bodies);
     if (keeps_rolling) rolling_of_pairs_.file(pairs, rows), rolling_of_supports_.file(supports, rows);
@@ -363,11 +363,11 @@ void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const EdgeCan
     for (Column<std::uint64_t>& colours : colours_of_) colours.resize_for_overwrite(rows);
     pairs.overflow_stride = kRowPadding;
     colour_pairs(rows, executor);
-    sort_by_colour(found_pairs_, pairs, rows, executor);
+    sort_by_colour(found_pairs_, pairs, first_padding_row, executor);
     colour_supports(rows);
-    sort_by_colour(found_supports_, supports, rows, executor);
+    sort_by_colour(found_supports_, supports, first_padding_row, executor);
     if (keeps_rolling) rolling_of_pairs_.recall(pairs), rolling_of_supports_.recall(supports);
-    trail.start(rows), former_places.clear();
+    trail.start(bodies.count), former_places.clear();
     ++renewals, ++version;
 }
 

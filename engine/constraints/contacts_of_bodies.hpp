@@ -44,6 +44,7 @@ class ContactsOfBodies {
 
     /// In the order of the store.
     std::span<const Entry> of(std::size_t row) const {
+        if (row + 2 >= begin_.size()) return {};
         return std::span(entries_).subspan(begin_[row], begin_[row + 1] - begin_[row]);
     }
 

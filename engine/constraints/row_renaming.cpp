@@ -34,6 +34,13 @@ void RowRenaming::follow_removed(std::size_t row, std::size_t last) {
     old_row_.resize(last);
 }
 
+void RowRenaming::follow_made_room(std::size_t row, std::size_t last) {
+    keep();
+    if (old_row_.size() <= last) old_row_.resize(last + 1, kGone);
+    old_row_[last] = old_row_[row];
+    old_row_[row] = kGone;
+}
+
 const std::vector<std::int32_t>& RowRenaming::new_rows() {
     keep();
     new_row_.assign(rows_, kGone);

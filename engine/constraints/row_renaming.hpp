@@ -22,6 +22,9 @@ class RowRenaming {
     /// O(1).
     void follow_removed(std::size_t row, std::size_t last);
 
+    /// A body was appended in the place of another one, which is the last now. Cost: as follow_removed.
+    void follow_made_room(std::size_t row, std::size_t last);
+
     /// The row at the start that a present row comes from, or kGone.
     std::int32_t old_row(std::size_t row) const {
         if (!has_moved_) return row < rows_ ? static_cast<std::int32_t>(row) : kGone;

@@ -24,13 +24,13 @@
 namespace carom {
 
 /// A pair's coefficient: the larger of the two materials', for it is enough if one of them yields. For pairs
-/// of rows solver `soft` computes it in the world's precision (solvers/soft/pair_finder.cpp).
+/// of rows solver `soft` computes it in the world's precision (solvers/soft/contacts/pair_finder.cpp).
 inline double pair_rolling_resistance(double a, double b) {
     return std::fmax(a, b);
 }
 
 /// The share s above: the weight of body a's rim speed in the rolling velocity. For pairs of rows solver
-/// `soft` computes it in the world's precision (solvers/soft/pair_finder.cpp).
+/// `soft` computes it in the world's precision (solvers/soft/contacts/pair_finder.cpp).
 constexpr double rolling_share(double radius_a, double radius_b) {
     return radius_b / (radius_a + radius_b);
 }

@@ -29,6 +29,7 @@ struct JointColumns {
     Real *arm_a_x, *arm_a_y;              // m, in the last substep
     Real *arm_b_x, *arm_b_y;              //
     Real *per_rim_a, *per_rim_b;          // 1/m, of the rims of the bodies
+    Real *seen_a, *seen_b;                // no unit, inertia over that which a substep sees; 1: as it is
     // Only where something springs, drives or has ends: lengths [m] or angles [rad], impulses in N s or N m
     // s. Of these joints impulse_x is that of the spring, impulse_y of the motor; start_x of angles is the
     // angle.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "kernels/part_paths.hpp"
 #include "kernels/path_lanes.hpp"
 
@@ -16,9 +18,15 @@ constexpr double kRegularisation = 1e-5;
 /// Contacts change no velocity by more than so many times the largest relative speed there is: rows that are
 /// nearly alike have solutions that would, and would make energy of round-off.
 constexpr double kMostChange = 64;
+/// By which friction may be beyond its limit, in shares of what a normal impulse may pull by: what a contact
+/// holds beyond its limit never slides.
+constexpr double kFrictionTolerance = 0.1;
 /// Links of a piece of a path that does not settle as a whole, and iterations of its active set.
 constexpr std::size_t kPiece = 8;
 constexpr int kIterationsOfPiece = 12;
+/// Up to this iteration the worst row of each piece of a path changes, later that of the whole path alone:
+/// rows so far from each other hardly turn each other round.
+constexpr int kIterationsByPieces = 16;
 /// Speeds that no solution reaches [m/s]: an iteration that does is void.
 constexpr double kUnsound = 1e15;
 
@@ -94,13 +102,17 @@ void sweep_paths(const PathBatch<Real>& p, bool is_forward, typename Lanes::Mask
 }
 
 /// Relative velocities of the links and a first guess of the active set.
+/// @param restless  becomes what SolvePaths::restless says of each lane
 /// @return the largest relative speed of each lane [m/s]
 template <class Lanes, class Real>
-typename Lanes::Batch begin_paths(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch) {
+typename Lanes::Batch begin_paths(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch,
+                                  typename Lanes::Batch& restless) {
     using F = typename Lanes::Batch;
     const SolvePaths<Real>& k = p.k;
     const F zero(0), tolerance(k.velocity_tolerance);
+    const F one(1), thinnest(static_cast<Real>(1e-30));  // m
     F fastest(0);
+    restless = zero;
     PathBody<Lanes> a{Lanes::load_rows4(k.velocity, p.head)};
     LinkScratch<Lanes>& head = scratch[p.length];
     head.body = a, head.w = a.inverse_mass(), head.w2 = a.inverse_rim_mass();
@@ -121,7 +133,10 @@ typename Lanes::Batch begin_paths(const PathBatch<Real>& p, LinkScratch<Lanes>* 
         const auto is_idle = !(s.pushes1 | s.pushes2);
         const auto slips = (simd::abs(old_t) >= limit * F(Real(.999999))) & (old_t * s.vt < zero);
         s.slips_up = is_idle | (slips & (old_t > zero)), s.slips_down = (!is_idle) & slips & (old_t < zero);
-        fastest = simd::max(fastest, simd::max(simd::max(simd::abs(s.v1), simd::abs(s.v2)), simd::abs(s.vt)));
+        const F speed = simd::max(simd::max(simd::abs(s.v1), simd::abs(s.v2)), simd::abs(s.vt)),
+                thickness = simd::max(Lanes::load(link.thickness + p.lane), thinnest);
+        fastest = simd::max(fastest, speed);
+        restless = simd::max(restless, speed * simd::max(F(k.resting_thickness) / thickness, one));
         a = b;
     }
     return fastest;
@@ -233,18 +248,18 @@ void change_row(LinkScratch<Lanes>& s, typename Lanes::Batch row, typename Lanes
 /// The impulses from the last link to the first, what they do to the bodies, and the next active set.
 /// @param by_speed, by_impulse  tolerances [m/s], the second of impulse times inverse mass
 /// @param most  m/s: no body's velocity changes by more
-/// @param is_wary  change the active set of each lane in one row alone, the one that is farthest from its
-/// law: where many change at once they may do so for ever
+/// @param stretch  links of which the active set of each lane changes in one row alone, the one that is
+/// farthest from its law: where many change at once they may do so for ever; 0: all that are wrong change
 /// @return lanes that are not solved yet
 template <class Lanes, class Real>
 typename Lanes::Mask substitute(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch,
                                 typename Lanes::Batch by_speed, typename Lanes::Batch by_impulse,
-                                typename Lanes::Batch most, bool is_wary) {
+                                typename Lanes::Batch most, std::size_t stretch) {
     using F = typename Lanes::Batch;
     using simd::select;
-    const F zero(0);
+    const F zero(0), by_friction = F(static_cast<Real>(kFrictionTolerance)) * by_impulse;
     auto bad = zero < zero;
-    F worst = zero, worst_row(Real(-1));  // m/s; 3 link + row of the link
+    F worst = zero, worst_row(Real(-1));  // of a stretch: m/s; 3 link + row of the link
     F largest = zero;                     // m/s, change of a body's velocity
     // Change of velocity of the far body of the link that is looked at, and of its near body.
     F far_x = zero, far_y = zero, far_u = zero;
@@ -265,11 +280,11 @@ typename Lanes::Mask substitute(const PathBatch<Real>& p, LinkScratch<Lanes>* sc
                    off2 = s.pushes2 & (new2 * w < -by_impulse),
                    on2 = (!s.pushes2) & (v2 - s.floor2 < -by_speed);
         const auto sticks = !(s.slips_up | s.slips_down);
-        const auto breaks = sticks & ((simd::abs(new_t) - limit) * w > by_impulse);
+        const auto breaks = sticks & ((simd::abs(new_t) - limit) * w > by_friction);
         const auto was_idle = !(s.pushes1 | s.pushes2);
         const auto holds = (!was_idle) & ((s.slips_up & (vt > by_speed)) | (s.slips_down & (vt < -by_speed)));
         s.would_slip_up = new_t > zero;
-        if (is_wary) {
+        if (stretch > 0) {
             const auto compare = [&](F miss, std::size_t row) {
                 const auto is_worse = miss > worst;
                 worst = select(is_worse, miss, worst);
@@ -278,6 +293,11 @@ typename Lanes::Mask substitute(const PathBatch<Real>& p, LinkScratch<Lanes>* sc
             compare(select(off1, -new1 * w, select(on1, s.floor1 - v1, zero)), 0);
             compare(select(off2, -new2 * w, select(on2, s.floor2 - v2, zero)), 1);
             compare(select(breaks, (simd::abs(new_t) - limit) * w, select(holds, simd::abs(vt), zero)), 2);
+            if (i % stretch == 0) {
+                for (std::size_t j = i; j < p.length && j < i + stretch; ++j)
+                    change_row<Lanes>(scratch[j], worst_row, static_cast<Real>(3 * j));
+                worst = zero, worst_row = F(Real(-1));
+            }
         } else {
             s.pushes1 = (s.pushes1 & !off1) | on1, s.pushes2 = (s.pushes2 & !off2) | on2;
             s.slips_up = (s.slips_up & !holds) | (breaks & s.would_slip_up);
@@ -309,9 +329,6 @@ typename Lanes::Mask substitute(const PathBatch<Real>& p, LinkScratch<Lanes>* sc
     LinkScratch<Lanes>& head = scratch[p.length];
     head.dvx = -head.w * jx_next, head.dvy = -head.w * jy_next, head.du = -head.w2 * spin_next;
     check(0, head.dvx, head.dvy, head.du);
-    if (is_wary)
-        for (std::size_t i = 0; i < p.length; ++i)
-            change_row<Lanes>(scratch[i], worst_row, static_cast<Real>(3 * i));
     return bad | (largest > most);
 }
 
@@ -349,22 +366,24 @@ template <class Lanes, class Real, class Fn>
 }
 
 /// Solves the paths of a batch, or pieces of them, exactly; the lanes in `where` alone take the solution.
+/// @param restless  becomes what SolvePaths::restless says of each lane
 /// @return lanes whose active set did not settle
 template <class Lanes, class Real>
 typename Lanes::Mask solve_exactly(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch, int most_iterations,
-                                   typename Lanes::Mask where, PathCounts& counts) {
+                                   typename Lanes::Mask where, PathCounts& counts,
+                                   typename Lanes::Batch& restless) {
     using F = typename Lanes::Batch;
     const SolvePaths<Real>& k = p.k;
-    const F fastest = begin_paths<Lanes>(p, scratch);
+    const F fastest = begin_paths<Lanes>(p, scratch, restless);
     // Round-off of velocities, in shares of the largest.
     const F by_speed = F(k.velocity_tolerance) + fastest * F(static_cast<Real>(4e-6)),
-            by_impulse =
-                F(k.velocity_tolerance * static_cast<Real>(.1)) + fastest * F(static_cast<Real>(1e-6)),
+            by_impulse = F(k.velocity_tolerance) + fastest * F(static_cast<Real>(1e-6)),
             most = F(static_cast<Real>(kMostChange)) * (fastest + F(k.velocity_tolerance));
     auto bad = F(0) <= F(0);
     for (int i = 0; i < most_iterations && simd::any(bad & where); ++i) {
         eliminate<Lanes>(p, scratch);
-        bad = substitute<Lanes>(p, scratch, by_speed, by_impulse, most, i >= k.bold_iterations);
+        const std::size_t stretch = i < k.bold_iterations ? 0 : i < kIterationsByPieces ? kPiece : p.length;
+        bad = substitute<Lanes>(p, scratch, by_speed, by_impulse, most, stretch);
         counts.iterations += p.length;
     }
     apply_changes<Lanes>(p, scratch, where & !bad);
@@ -378,18 +397,27 @@ void solve_in_pieces(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch, type
                      PathCounts& counts) {
     const SolvePaths<Real>& k = p.k;
     auto bad = where;
+    typename Lanes::Batch restless;
     for (const std::size_t shift : {std::size_t{0}, kPiece / 2}) {
         bad = bad & (!bad);  // none yet
         for (std::size_t from = 0; from < p.length;) {
             const std::size_t to = from == 0 && shift > 0 ? shift : from + kPiece;
             const std::size_t length = (to < p.length ? to : p.length) - from;
             const PathBatch<Real> piece{k, p.link + from, length, p.lane, p.near_rows(from)};
-            bad = bad | solve_exactly<Lanes>(piece, scratch, kIterationsOfPiece, where, counts);
+            bad = bad | solve_exactly<Lanes>(piece, scratch, kIterationsOfPiece, where, counts, restless);
             from += length;
         }
     }
     if (!simd::any(bad)) return;
     for (int i = 0; i < k.sweeps_of_unsettled; ++i) sweep_paths<Lanes>(p, i % 2 == 0, bad);
+}
+
+/// Whether a bundle is left out: all of its paths were slow when they were solved last.
+template <class Real>
+bool rests(const SolvePaths<Real>& k, std::size_t bundle) {
+    if (!(k.resting_speed > 0) || k.is_slender[bundle] != 0) return false;
+    const Real* const speeds = k.restless + kPathLanes * bundle;
+    return *std::max_element(speeds, speeds + kPathLanes) < k.resting_speed;
 }
 
 /// The first pass of a substep over bundles: floors, displacements, and the exact solve of each path.
@@ -402,8 +430,12 @@ PathCounts solve_paths(const SolvePaths<Real>& arguments, std::size_t first, std
     auto* scratch = static_cast<LinkScratch<Lanes>*>(k.scratch);
     PathCounts counts;
     for_each_path_batch<Lanes>(k, first, last, [&](const PathBatch<Real>& p) {
+        const auto first_lane = static_cast<std::size_t>(p.head - k.heads);
+        if (rests(k, first_lane / kPathLanes)) return;
         part_paths<Lanes>(p);
-        const auto bad = solve_exactly<Lanes>(p, scratch, k.most_iterations, F(0) <= F(0), counts);
+        F restless;
+        const auto bad = solve_exactly<Lanes>(p, scratch, k.most_iterations, F(0) <= F(0), counts, restless);
+        Lanes::store(k.restless + first_lane, simd::select(bad, F(static_cast<Real>(kUnsettled)), restless));
         if (!simd::any(bad)) return;
         counts.unsettled += static_cast<std::size_t>(__builtin_popcount(simd::bitmask(bad)));
         solve_in_pieces<Lanes>(p, scratch, bad, counts);

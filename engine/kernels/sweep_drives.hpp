@@ -147,7 +147,7 @@ void sweep_angles(const SweepJoints<Real>& arguments, std::size_t first, std::si
     for (std::size_t c = first; c < last; c += Lanes::size) {
         JointSide<Lanes, true> a{Lanes::load_rows4(k.velocity, k.joints.a + c)},
             b{Lanes::load_rows4(k.velocity, k.joints.b + c)};
-        a.per_rim = Lanes::load(k.joints.per_rim_a + c), b.per_rim = Lanes::load(k.joints.per_rim_b + c);
+        load_rims<Lanes>(k, c, a, b);
         const F inverse = a.inverse_inertia() + b.inverse_inertia();
         F angle;
         if constexpr (kFirst) {
@@ -180,7 +180,7 @@ void give_angles(const SweepJoints<Real>& arguments, std::size_t first, std::siz
     for (std::size_t c = first; c < last; c += Lanes::size) {
         JointSide<Lanes, true> a{Lanes::load_rows4(k.velocity, k.joints.a + c)},
             b{Lanes::load_rows4(k.velocity, k.joints.b + c)};
-        a.per_rim = Lanes::load(k.joints.per_rim_a + c), b.per_rim = Lanes::load(k.joints.per_rim_b + c);
+        load_rims<Lanes>(k, c, a, b);
         const F l = DriveRows<Lanes, Real>(k.joints, c).sum();
         a.turn(-l), b.turn(l);
         Lanes::store_rows4(k.velocity, k.joints.a + c, a.record);

@@ -12,7 +12,8 @@
 // v_t² / 2d; an arm that turns by f = h spin bends off its tangent by (cos f - 1) r + (sin f - f) r⊥. The
 // bend is found at each visit: one that was kept loses energy. Where a joint pulls a body harder than its
 // inertia bears in a substep the bend is divided by 1 + (16 s)², s = h |l| (w_a + w_b) / 4d, or rows that
-// converge explode. docs/decisions/0026-joints.md.
+// converge explode. What joints pull at a body's arms in the step before may turn it faster than a substep
+// can follow: then they see more inertia than it has, h² times that stiffness. docs/decisions/0026-joints.md.
 
 namespace carom {
 namespace {
@@ -58,13 +59,16 @@ struct JointSide {
     typename Lanes::Batch4 record;
     Pair2<F> arm{};  // m
     F per_rim{};     // 1/m
+    F seen{};        // no unit, inertia over that which the substep sees
 
     F inverse_mass() const { return simd::abs(record[3]); }
     /// 1 / inertia, zero for what has a fixed angle.
-    F inverse_inertia() const {
+    F own_inverse_inertia() const {
         const F turning = simd::max(record[3], F(0));
         return (turning + turning) * per_rim * per_rim;
     }
+    /// The same of the inertia that the substep sees.
+    F inverse_inertia() const { return own_inverse_inertia() * seen; }
     F spin() const { return record[2] * per_rim; }
     Pair2<F> anchor_velocity() const {
         if constexpr (!kArms) return {record[0], record[1]};
@@ -79,7 +83,7 @@ struct JointSide {
     }
     void turn(F torque) {
         const F turning = simd::max(record[3], F(0));
-        record[2] += (turning + turning) * per_rim * torque;
+        record[2] += (turning + turning) * per_rim * seen * torque;
     }
 };
 
@@ -99,13 +103,21 @@ Pair2<typename Lanes::Batch> parting(const JointSide<Lanes, kArms>& a, const Joi
     return v;
 }
 
+template <class Lanes, class Real>
+[[gnu::always_inline]] inline void load_rims(const SweepJoints<Real>& k, std::size_t c,
+                                             JointSide<Lanes, true>& a, JointSide<Lanes, true>& b) {
+    a.per_rim = Lanes::load(k.joints.per_rim_a + c), b.per_rim = Lanes::load(k.joints.per_rim_b + c);
+    a.seen = Lanes::load(k.joints.seen_a + c), b.seen = Lanes::load(k.joints.seen_b + c);
+}
+
 template <class Lanes, bool kArms, class Real>
 [[gnu::always_inline]] inline void load_arms(const SweepJoints<Real>& k, std::size_t c,
                                              JointSide<Lanes, kArms>& a, JointSide<Lanes, kArms>& b) {
-    if constexpr (!kArms) return;
-    a.arm = {Lanes::load(k.joints.arm_a_x + c), Lanes::load(k.joints.arm_a_y + c)};
-    b.arm = {Lanes::load(k.joints.arm_b_x + c), Lanes::load(k.joints.arm_b_y + c)};
-    a.per_rim = Lanes::load(k.joints.per_rim_a + c), b.per_rim = Lanes::load(k.joints.per_rim_b + c);
+    if constexpr (kArms) {
+        a.arm = {Lanes::load(k.joints.arm_a_x + c), Lanes::load(k.joints.arm_a_y + c)};
+        b.arm = {Lanes::load(k.joints.arm_b_x + c), Lanes::load(k.joints.arm_b_y + c)};
+        load_rims<Lanes>(k, c, a, b);
+    }
 }
 
 /// Arms where the bodies have turned to by now.
@@ -146,7 +158,7 @@ template <class Lanes, class Real, bool kArms>
     using F = typename Lanes::Batch;
     const F turning = simd::max(side.record[3], F(0));
     alignas(64) Real added[Lanes::size];
-    Lanes::store(added, (turning + turning) * side.per_rim * torque);
+    Lanes::store(added, (turning + turning) * side.per_rim * side.seen * torque);
     for (std::size_t lane = 0; lane < Lanes::size; ++lane)
         if (added[lane] != Real(0)) turn[rows[lane]] += added[lane];
 }
@@ -285,11 +297,12 @@ void sweep_hinges(const SweepJoints<Real>& arguments, std::size_t first, std::si
             a.turn(torque_a - (a.arm.x * ly - a.arm.y * lx));
             b.turn((b.arm.x * ly - b.arm.y * lx) - torque_b);
         }
-        const auto share_of = [&](const JointSide<Lanes, true>& side, F inverse_inertia) {
-            const F strain = F(4) * h * simd::abs(side.arm.x * lx + side.arm.y * ly) * inverse_inertia;
-            return one / (one + strain * strain);
+        const auto share_of = [&](const JointSide<Lanes, true>& side) {
+            const F strain =
+                F(4) * h * simd::abs(side.arm.x * lx + side.arm.y * ly) * side.own_inverse_inertia();
+            return side.seen / (one + strain * strain);
         };
-        const Pair2<F> v = parting<Lanes, true>(a, b, h, share_of(a, ia), share_of(b, ib));
+        const Pair2<F> v = parting<Lanes, true>(a, b, h, share_of(a), share_of(b));
         const F relax = -F(k.over_relaxation);
         const Pair2<F> added = solve(relax * v.x, relax * v.y);
         Lanes::store(k.joints.impulse_x + c, lx + added.x),

@@ -1,8 +1,8 @@
 #include "scene/choose_solver.hpp"
 
-#include "scene/event_limits.hpp"
 #include "scene/mass.hpp"
-#include "scene/validation.hpp"
+#include "scene/validation/event_limits.hpp"
+#include "scene/validation/validation.hpp"
 #include "shapes/convex_geometry.hpp"
 
 namespace carom {

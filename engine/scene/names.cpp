@@ -1,4 +1,4 @@
-#include "scene/validation.hpp"
+#include "scene/validation/validation.hpp"
 
 #include <array>
 #include <bit>

@@ -1,9 +1,9 @@
 #include <carom/scene.hpp>
 
 #include "scene/choose_solver.hpp"
-#include "scene/limits.hpp"
 #include "scene/mass.hpp"
-#include "scene/validation.hpp"
+#include "scene/validation/limits.hpp"
+#include "scene/validation/validation.hpp"
 #include "shapes/compound.hpp"
 #include "shapes/convex_geometry.hpp"
 

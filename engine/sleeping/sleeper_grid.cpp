@@ -83,7 +83,7 @@ void Sleepers<Real>::find_pairs(const WorldState<Real>& world, const Candidates<
     const Bodies<Real>& bodies = world.bodies;
     if (bodies.asleep == 0) return;
     build_grid(world, kernels, executor);
-    for (std::size_t row = 0; row < bodies.count; ++row) {
+    for (std::size_t row = 0; row < bodies.moving(); ++row) {
         if (!can_come(bodies, row)) continue;
         const double reach = static_cast<double>(candidates.reach()[row]) + candidates.largest_drift();
         for (const std::int32_t sleeper : find_near(world, position_of(bodies, row), reach))

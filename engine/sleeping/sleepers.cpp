@@ -40,7 +40,7 @@ bool Sleepers<Real>::note_still(WorldState<Real>& world, double dt, double subst
     Bodies<Real>& bodies = world.bodies;
     const double gravity = std::sqrt(length_squared(world.gravity));
     bool any = false;
-    for (std::size_t row = 0; row < bodies.count; ++row) {
+    for (std::size_t row = 0; row < bodies.moving(); ++row) {
         const double vx = bodies.velocity_x[row], vy = bodies.velocity_y[row];
         const double rim = bodies.has_rotation ? static_cast<double>(bodies.rim(row)) *
                                                      static_cast<double>(bodies.angular_velocity[row])
@@ -59,8 +59,8 @@ template <class Real>
 void Sleepers<Real>::connect(const WorldState<Real>& world, const ContactGraph<Real>& graph,
                              std::span<const LoadedContact> others) {
     const Bodies<Real>& bodies = world.bodies;
-    islands_.reset(bodies.count);
-    stays_awake_.assign(bodies.count, 0);
+    islands_.reset(bodies.moving());
+    stays_awake_.assign(bodies.moving(), 0);
     leaning_.clear();
     for_each_loaded(graph.pairs, [&](std::size_t i) { islands_.join(graph.pairs.a[i], graph.pairs.b[i]); });
     const auto is_pair = [&](const LoadedContact& contact) {
@@ -72,7 +72,7 @@ void Sleepers<Real>::connect(const WorldState<Real>& world, const ContactGraph<R
     const auto row_of = [&](BodyId id) {
         return id == BodyId{} ? SIZE_MAX : std::size_t{world.handles.row_of_slot(id.index)};
     };
-    const auto moves = [&](std::size_t row) { return row < bodies.count && !bodies.is_immovable(row); };
+    const auto moves = [&](std::size_t row) { return row < bodies.moving() && !bodies.is_immovable(row); };
     world.joints.for_each([&](std::size_t, const StoredJoint& joint) {
         const std::size_t a = row_of(joint.a), b = row_of(joint.b);
         if (moves(a) && moves(b)) islands_.join(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
@@ -97,7 +97,7 @@ void Sleepers<Real>::connect(const WorldState<Real>& world, const ContactGraph<R
                 !is_steady(world, Partner::body(static_cast<std::int32_t>(other))))
                 keep_awake(static_cast<std::int32_t>(row));
     });
-    for (std::size_t row = 0; row < bodies.count; ++row)
+    for (std::size_t row = 0; row < bodies.moving(); ++row)
         if (bodies.is_immovable(row) || bodies.still[row] < static_cast<float>(kTimeToSleep))
             keep_awake(static_cast<std::int32_t>(row));
 }
@@ -129,7 +129,8 @@ void Sleepers<Real>::keep_contacts(const WorldState<Real>& world, ContactRows<Re
     });
 }
 
-/// Stops a row and moves it behind those awake.
+/// Stops a row and moves it behind those awake; the last one that stands takes the place of the last one that
+/// moves, and that one its place.
 template <class Real>
 void Sleepers<Real>::lay_down(WorldState<Real>& world, std::size_t row) {
     Bodies<Real>& bodies = world.bodies;
@@ -139,10 +140,10 @@ void Sleepers<Real>::lay_down(WorldState<Real>& world, std::size_t row) {
     world.dynamic_mass -= static_cast<double>(bodies.mass[row]);
     bodies.velocity_x[row] = bodies.velocity_y[row] = 0;
     if (bodies.has_rotation) bodies.angular_velocity[row] = 0;
-    const std::size_t last = bodies.count - 1;
+    const std::size_t last = bodies.count - 1, last_moving = bodies.moving() - 1;
     bodies.island[row] = label_[static_cast<std::size_t>(islands_.island_of(order_[row]))];
-    world.swap_rows(row, last);
-    std::swap(order_[row], order_[last]);
+    world.swap_rows(row, last_moving), world.swap_rows(last_moving, last);
+    std::swap(order_[row], order_[last_moving]), std::swap(order_[last_moving], order_[last]);
     --bodies.count, ++bodies.asleep;
 }
 
@@ -166,9 +167,9 @@ bool Sleepers<Real>::put_to_sleep(WorldState<Real>& world, ContactGraph<Real>& g
     if (!note_still(world, dt, substep) || since_look_ < kLookInterval) return false;
     since_look_ = 0;
     connect(world, graph, others);
-    label_.assign(bodies.count, -1);
+    label_.assign(bodies.moving(), -1);
     bool any = false;
-    for (std::size_t row = 0; row < bodies.count; ++row) {
+    for (std::size_t row = 0; row < bodies.moving(); ++row) {
         if (islands_.island_of(static_cast<std::int32_t>(row)) != static_cast<std::int32_t>(row)) continue;
         if (stays_awake_[row]) continue;
         label_[row] = next_island_++, any = true, ++island_count_;
@@ -185,7 +186,7 @@ bool Sleepers<Real>::put_to_sleep(WorldState<Real>& world, ContactGraph<Real>& g
     keep_contacts(world, graph.pairs, substep), keep_contacts(world, graph.supports, substep);
     order_.resize(bodies.count);
     std::iota(order_.begin(), order_.end(), 0);
-    for (std::size_t row = bodies.count; row-- > 0;) {
+    for (std::size_t row = bodies.moving(); row-- > 0;) {
         const auto smallest = static_cast<std::size_t>(islands_.island_of(static_cast<std::int32_t>(row)));
         if (label_[smallest] >= 0) lay_down(world, row);
     }
@@ -240,6 +241,7 @@ std::size_t Sleepers<Real>::wake_marked(WorldState<Real>& world) {
         bodies.still[row] = 0;
         world.dynamic_mass += static_cast<double>(bodies.mass[row]);
         world.swap_rows(row, bodies.count);
+        world.swap_rows(bodies.count, bodies.moving());  // with the first that stands
         ++bodies.count, --bodies.asleep;
     }
     const auto wakes = [&](const Kept& kept) { return is_marked(kept.island); };

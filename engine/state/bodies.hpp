@@ -62,6 +62,7 @@ template <class Real>
 struct Bodies {
     std::size_t count = 0;                 ///< rows that a step works on
     std::size_t asleep = 0;                ///< rows behind them: bodies that sleep
+    std::size_t standing = 0;              ///< the last of `count`: static bodies that steps pass over
     Column<Real> position_x, position_y;   // m
     Column<Real> velocity_x, velocity_y;   // m/s
     Column<Real> angle, angular_velocity;  // rad, rad/s; only with rotation
@@ -123,6 +124,13 @@ struct Bodies {
         list_columns(*this, fn);
     }
 
+    /// Whatever may move is in the rows below this number; others may be there, too.
+    std::size_t moving() const { return count - standing; }
+    /// Whether a row is a static body.
+    bool stands(std::size_t row) const {
+        return (flags_of(row) & (kImmovable | kKinematic | kDisabled)) == kImmovable;
+    }
+
     /// All bodies, awake or not.
     std::size_t rows() const { return count + asleep; }
 
@@ -179,7 +187,8 @@ struct Bodies {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.count, self.asleep, self.has_rotation, self.has_sleep, self.has_flags, self.has_shapes);
+        archive(self.count, self.asleep, self.standing, self.has_rotation, self.has_sleep, self.has_flags,
+                self.has_shapes);
         archive(self.mass, self.radius, self.restitution, self.friction, self.rolling_resistance);
         archive(self.position_x, self.position_y, self.velocity_x, self.velocity_y, self.id);
         archive(self.angle, self.angular_velocity, self.flags, self.still, self.island);

@@ -18,7 +18,7 @@ void link(EdgeStore& store, const EdgeBody& body, bool is_loop) {
 
 void EdgeStore::append(BodyId id, const Shape& shape) {
     const auto number = static_cast<std::int32_t>(bodies.size());
-    EdgeBody body{id, static_cast<std::int32_t>(edges.size()), 0, 0};
+    EdgeBody body{.id = id, .first = static_cast<std::int32_t>(edges.size())};
     const auto add = [&](Vec2 a, Vec2 b) {
         edges.push_back({a, b, number});
         ++body.count;
@@ -36,7 +36,35 @@ void EdgeStore::append(BodyId id, const Shape& shape) {
         return;
     }
     link(*this, body, is_loop);
+    append_boxes(body);
     bodies.push_back(body);
+}
+
+void EdgeStore::append_boxes(EdgeBody& body) {
+    body.first_box = static_cast<std::int32_t>(boxes.size());
+    Levels levels{};
+    const std::size_t count = levels_of(body, levels);
+    for (std::size_t level = 0; level < count; ++level) {
+        const std::int32_t below = level > 0 ? levels[level - 1].count : body.count;
+        for (std::int32_t i = 0; i < levels[level].count; ++i) {
+            EdgeBox box{{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
+            const auto include = [&box](Vec2 point) {
+                box.low = {std::fmin(box.low.x, point.x), std::fmin(box.low.y, point.y)};
+                box.high = {std::fmax(box.high.x, point.x), std::fmax(box.high.y, point.y)};
+            };
+            for (std::int32_t n = kInABox * i; n < std::min(kInABox * (i + 1), below); ++n) {
+                if (level == 0) {
+                    const Edge& edge = (*this)[body.first + n];
+                    include(edge.a), include(edge.b);
+                    continue;
+                }
+                const EdgeBox& part = boxes[static_cast<std::size_t>(levels[level - 1].first + n)];
+                include(part.low), include(part.high);
+            }
+            boxes.push_back(box);
+        }
+    }
+    body.box_count = static_cast<std::int32_t>(boxes.size()) - body.first_box;
 }
 
 Shape EdgeStore::shape_of(BodyId id) const {
@@ -56,7 +84,11 @@ EdgeStore::Removed EdgeStore::remove(BodyId id) {
     if (found == bodies.end()) return {};
     const Removed gone{found->first, found->count};
     edges.erase(edges.begin() + gone.first, edges.begin() + gone.first + gone.count);
-    for (auto later = bodies.erase(found); later != bodies.end(); ++later) later->first -= gone.count;
+    const auto first_box = boxes.begin() + found->first_box;
+    const std::int32_t gone_boxes = found->box_count;
+    boxes.erase(first_box, first_box + gone_boxes);
+    for (auto later = bodies.erase(found); later != bodies.end(); ++later)
+        later->first -= gone.count, later->first_box -= gone_boxes;
     const auto move_up = [&gone](std::int32_t& edge) {
         if (edge >= 0) edge -= gone.count;
     };

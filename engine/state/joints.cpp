@@ -130,9 +130,10 @@ JointId JointStore::add(const StoredJoint& joint) {
         // In order where joints are added in it, which is how scenes mostly are.
         const std::uint64_t pair = pair_of(joint.a, joint.b);
         excluded_.insert(std::upper_bound(excluded_.begin(), excluded_.end(), pair), pair);
-        is_in_excluded_.resize(std::max<std::size_t>(
-            is_in_excluded_.size(), std::max(joint.a.index, joint.b.index) + std::size_t{1}));
-        is_in_excluded_[joint.a.index] = is_in_excluded_[joint.b.index] = 1;
+        const std::size_t end = static_cast<std::size_t>(pair >> 32) + 1;  // of its lower body's pairs
+        if (end >= first_excluded_.size())
+            first_excluded_.resize(end + 1, static_cast<std::uint32_t>(excluded_.size()) - 1);
+        for (std::size_t body = end; body < first_excluded_.size(); ++body) ++first_excluded_[body];
     }
     return id_of(slot);
 }
@@ -167,26 +168,30 @@ std::size_t JointStore::slot_of(JointId id, std::string_view where) const {
 }
 
 void JointStore::list_excluded() {
-    excluded_.clear(), is_in_excluded_.clear();
+    excluded_.clear();
     for_each([&](std::size_t, const StoredJoint& joint) {
-        if (joint.collide || joint.is_on_world()) return;
-        excluded_.push_back(pair_of(joint.a, joint.b));
-        is_in_excluded_.resize(std::max<std::size_t>(
-            is_in_excluded_.size(), std::max(joint.a.index, joint.b.index) + std::size_t{1}));
-        is_in_excluded_[joint.a.index] = is_in_excluded_[joint.b.index] = 1;
+        if (!joint.collide && !joint.is_on_world()) excluded_.push_back(pair_of(joint.a, joint.b));
     });
     std::sort(excluded_.begin(), excluded_.end());
+    first_excluded_.clear();
+    for (std::size_t i = 0; i < excluded_.size(); ++i) {
+        const auto lower = static_cast<std::size_t>(excluded_[i] >> 32);
+        if (lower >= first_excluded_.size()) first_excluded_.resize(lower + 1, static_cast<std::uint32_t>(i));
+    }
+    first_excluded_.push_back(static_cast<std::uint32_t>(excluded_.size()));
 }
 
 bool JointStore::excludes(BodyId a, BodyId b) const {
-    if (a.index >= is_in_excluded_.size() || b.index >= is_in_excluded_.size()) return false;
-    if (!is_in_excluded_[a.index] || !is_in_excluded_[b.index]) return false;
-    return std::binary_search(excluded_.begin(), excluded_.end(), pair_of(a, b));
+    const std::size_t lower = std::min(a.index, b.index);
+    if (lower + 1 >= first_excluded_.size()) return false;
+    const auto first = excluded_.begin();
+    const auto end = first + first_excluded_[lower + 1];
+    return std::find(first + first_excluded_[lower], end, pair_of(a, b)) != end;
 }
 
 std::size_t JointStore::bytes() const {
     return slots_.capacity() * sizeof(Slot) + free_.capacity() * sizeof(std::uint32_t) +
-           excluded_.capacity() * sizeof(std::uint64_t) + is_in_excluded_.capacity() +
+           excluded_.capacity() * sizeof(std::uint64_t) + first_excluded_.capacity() * sizeof(std::uint32_t) +
            broken.capacity() * sizeof(JointBreak);
 }
 

@@ -42,6 +42,7 @@ struct StoredJoint {
     double break_force = std::numeric_limits<double>::infinity();
     double break_torque = std::numeric_limits<double>::infinity();
     // What it did last.
+    bool is_free = true;              // whether its group touched nothing in the last step
     std::array<double, 3> impulse{};  // N s, of a substep, of its rows: constraints/joints/joint_rows.hpp
     Vec2 force;                       // N, on b
     double torque = 0;                // N m, on b
@@ -86,8 +87,8 @@ class JointStore {
             if (slots_[slot].is_used) fn(slot, slots_[slot].joint);
     }
 
-    /// Whether a joint of these two bodies says that they do not touch. Cost: O(log joints), less for bodies
-    /// without any.
+    /// Whether a joint of these two bodies says that they do not touch. Cost: O(joints that body `a` or
+    /// `b` has).
     bool excludes(BodyId a, BodyId b) const;
 
     std::vector<JointBreak> broken;  ///< in the last step, or since events were cleared
@@ -110,9 +111,10 @@ class JointStore {
     std::size_t count_ = 0;
     std::vector<Slot> slots_;
     std::vector<std::uint32_t> free_;
-    // Pairs of bodies that do not touch, sorted, and by the slot of a body whether it is in one.
+    // Pairs of bodies that do not touch, sorted: the upper half of a pair is the lower slot of a body. Those
+    // of slot i are first_excluded_[i] ... first_excluded_[i + 1].
     std::vector<std::uint64_t> excluded_;
-    std::vector<std::uint8_t> is_in_excluded_;
+    std::vector<std::uint32_t> first_excluded_;
 };
 
 /// The joint in numbers.

@@ -95,14 +95,27 @@ void WorldState<Real>::set_shape(std::size_t row, const Body& body, BodyId id) {
 template <class Real>
 BodyId WorldState<Real>::append(const Body& body) {
     if (has_area(body.shape) && !is_disc(body.shape) && !bodies.has_shapes) turn_shapes_on();
-    const std::size_t row = bodies.count, rows = bodies.rows() + 1;
+    const bool stands = body.type == BodyType::static_body && bodies.standing > 0;
+    const std::size_t row = stands ? bodies.count : bodies.moving(), rows = bodies.rows() + 1;
+    const auto place_of = [&](std::size_t of) {
+        return std::lower_bound(immovable_rows.begin(), immovable_rows.end(), static_cast<std::int32_t>(of));
+    };
     bodies.resize(rows);
-    if (bodies.asleep > 0) {  // the first that sleeps makes room
+    if (stands) ++bodies.standing;
+    const auto make_room = [&](std::size_t from, std::size_t to) {
+        if (from == to) return;
         bodies.for_each_column([&](auto, auto, auto& column) {
-            column[rows - 1] = column[row];
-            column[row] = {};
+            column[to] = column[from];
+            column[from] = {};
         });
-        handles.set_row(bodies.id[rows - 1], static_cast<std::uint32_t>(rows - 1));
+        handles.set_row(bodies.id[to], static_cast<std::uint32_t>(to));
+    };
+    const std::size_t last = bodies.count - 1;  // of those awake
+    make_room(last, rows - 1);                  // the first that sleeps
+    make_room(row, last);                       // the first that stands
+    if (row < last) {
+        immovable_rows.erase(place_of(row));
+        immovable_rows.push_back(static_cast<std::int32_t>(last));
     }
     const BodyId id = handles.add(static_cast<std::uint32_t>(row));
     const auto real = [](double value) { return static_cast<Real>(value); };
@@ -131,7 +144,7 @@ BodyId WorldState<Real>::append(const Body& body) {
         bodies.mass.set_any(row, rows, Real(1));  // it counts as infinite
         const bool moves = body.type == BodyType::kinematic_body;
         bodies.set_flags(row, static_cast<std::uint8_t>(kind | kImmovable | (moves ? kKinematic : 0)));
-        immovable_rows.push_back(static_cast<std::int32_t>(row));
+        immovable_rows.insert(place_of(row), static_cast<std::int32_t>(row));
     }
     return id;
 }
@@ -153,6 +166,7 @@ EdgeStore::Removed WorldState<Real>::remove(std::size_t row) {
     };
     fill(row, last_awake), fill(last_awake, last);
     bodies.resize(last);
+    if (bodies.standing > 0) --bodies.standing;
     if (immovable_rows.empty()) return gone;
     // Those awake are [0, last_awake) now, and what was the last of them stands in `row`.
     const auto place_of = [&](std::size_t wanted) {

@@ -3,8 +3,10 @@
 #include <carom/ledger.hpp>
 #include <carom/scene.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "state/bodies.hpp"
@@ -62,7 +64,7 @@ struct WorldState {
     Sums initial;                              ///< of the scene's bodies, when the world was made
     Sums outside;                              ///< what calls and quarantine have brought in since
     double dynamic_mass = 0;                   ///< kg, of the dynamic bodies that are awake
-    std::vector<std::int32_t> immovable_rows;  ///< static, kinematic and disabled ones
+    std::vector<std::int32_t> immovable_rows;  ///< static, kinematic and disabled ones, ascending
     std::int64_t quarantined_count = 0;
 
     template <class Self, class Archive>
@@ -84,9 +86,10 @@ struct WorldState {
     /// The shape of a row; of a polygon, the one around its centroid.
     Shape shape_of(std::size_t row) const;
 
-    /// Appends a row for a body that has been validated.
+    /// Appends a row for a body that has been validated: behind those that move, where the first standing
+    /// one makes room, or behind those that stand.
     BodyId append(const Body& body);
-    /// Takes a row out; the last row takes its place.
+    /// Takes a row out; the last row that is awake takes its place.
     /// @return the edges that went with it.
     EdgeStore::Removed remove(std::size_t row);
     /// Rolls a row whose next state would leave the limits out of the simulation, where it is.
@@ -103,6 +106,12 @@ struct WorldState {
     /// Exchanges two rows. `list_immovable_rows` is to be called after it.
     void swap_rows(std::size_t a, std::size_t b);
     void list_immovable_rows();
+    /// Those of immovable_rows that are below `row`.
+    std::span<const std::int32_t> immovable_rows_below(std::size_t row) const {
+        const auto end =
+            std::lower_bound(immovable_rows.begin(), immovable_rows.end(), static_cast<std::int32_t>(row));
+        return {immovable_rows.begin(), end};
+    }
     /// Sorts the rows that are awake: new row i is the old row order[i].
     void reorder(const std::int32_t* order);
 

@@ -19,7 +19,10 @@ class ImpulseStep final : public ImpulseSimulation<Real> {
 
     static constexpr Stage<Sim> kSubstep[] = {
         {"sort_rows",
-         [](Sim& sim) { sort_rows_by_place(sim, [&](auto) { sim.impulse.flights.accelerations.clear(); }); },
+         [](Sim& sim) {
+             sort_rows_by_place(
+                 sim, [&](auto) { sim.impulse.flights.accelerations.clear(), sim.knows_standing = false; });
+         },
          can_meet, KernelChoice::none, "position", "rows of all columns"},
         {"begin_flight", [](Sim& sim) { begin_flight(sim); }, always, KernelChoice::radius,
          "position, velocity", "motion, rows near walls, rows out of margin"},

@@ -38,7 +38,8 @@ class SoftStep final : public SoftSimulation<Real> {
     };
     static constexpr auto has_lost_loads = [](const Sim& sim) { return sim.soft.has_lost_loads(); };
     static constexpr auto may_heave = [](const Sim& sim) {
-        return sim.world.effects.gravity && sim.world.bodies.count >= CoarseCorrection<Real>::kFewestLoaded;
+        return sim.world.effects.gravity &&
+               sim.world.bodies.moving() >= CoarseCorrection<Real>::kFewestLoaded;
     };
     static constexpr auto has_masses = [](const Sim& sim) {
         return sim.can_touch() && (!sim.world.bodies.mass.is_uniform() || sim.world.bodies.has_flags);
@@ -76,7 +77,10 @@ class SoftStep final : public SoftSimulation<Real> {
          },
          always, KernelChoice::isa, "motion, angular velocity, mass, radius", "velocity records"},
         {"find_contacts",
-         [](Sim& sim) { sim.soft.find_contacts(sim.world, sim.edge_candidates, sim.motion, sim.flight_dt); },
+         [](Sim& sim) {
+             sim.soft.find_contacts(sim.world, sim.edge_candidates, sim.motion, sim.flight_dt,
+                                    sim.candidates.flies_together());
+         },
          can_meet, KernelChoice::contacts, "motion, coloured candidates, impulses", "contacts"},
         {"find_manifolds",
          [](Sim& sim) {
@@ -99,7 +103,8 @@ class SoftStep final : public SoftSimulation<Real> {
     static constexpr Stage<Sim> kSubstep[] = {
         {"solve_joints", [](Sim& sim) { sim.soft.solve_joints(sim.world, sim.substep); }, has_joints,
          KernelChoice::isa, "joints, velocity records, displacements", "velocity records, displacements"},
-        {"bounce_shapes", [](Sim& sim) { sim.soft.carry_out_shape_impacts(sim.world.books); }, shapes_bounce,
+        {"bounce_shapes",
+         [](Sim& sim) { sim.soft.carry_out_shape_impacts(sim.world.bodies, sim.world.books); }, shapes_bounce,
          KernelChoice::scalar_f64, "paths of contacts, velocity records, displacements",
          "velocity records, books"},
         {"solve_paths",
@@ -113,7 +118,7 @@ class SoftStep final : public SoftSimulation<Real> {
         {"correct_loads", [](Sim& sim) { sim.soft.correct_loads(sim.flight()); }, may_heave,
          KernelChoice::contacts, "motion, contacts, velocity records", "impulses, velocity records"},
         {"solve_uneven_contacts", [](Sim& sim) { sim.soft.solve_uneven_contacts(); }, has_masses,
-         KernelChoice::scalar_f64, "contacts, velocity records", "impulses, velocity records"},
+         KernelChoice::scalar_f64, "contacts, velocity records", "impulses, velocity records, displacements"},
         {"solve_joints_and_contacts", [](Sim& sim) { sim.soft.solve_joints_and_contacts(sim.world); },
          has_joints_in_contact, KernelChoice::contacts, "joints, contacts, velocity records",
          "impulses, velocity records"},

@@ -7,7 +7,7 @@
 
 #include "scene/choose_solver.hpp"
 #include "scene/mass.hpp"
-#include "scene/validation.hpp"
+#include "scene/validation/validation.hpp"
 #include "step/make_simulation.hpp"
 #include "world/report.hpp"
 #include "world/snapshot.hpp"

@@ -4,7 +4,7 @@
 
 #include "constraints/joints/joint_laws.hpp"
 #include "scene/call_effects.hpp"
-#include "scene/limits.hpp"
+#include "scene/validation/limits.hpp"
 #include "scene/wording.hpp"
 #include "world/implementation.hpp"
 #include "world/set_up.hpp"

@@ -5,7 +5,7 @@
 #include "constraints/joints/gear_joint.hpp"
 #include "isa/select_isa.hpp"
 #include "scene/choose_solver.hpp"
-#include "scene/validation.hpp"
+#include "scene/validation/validation.hpp"
 
 namespace carom {
 

@@ -6,7 +6,7 @@
 
 #include "scene/choose_solver.hpp"
 #include "scene/mass.hpp"
-#include "scene/validation.hpp"
+#include "scene/validation/validation.hpp"
 #include "scene/wording.hpp"
 #include "shapes/compound.hpp"
 #include "shapes/convex_geometry.hpp"
@@ -218,7 +218,7 @@ BodyId BasicWorld<Real>::add(const Body& body) {
     world.outside = world.outside + world.sums_of(world.handles.row_of_slot(id.index));
     implementation_->sim().note_added(world.handles.row_of_slot(id.index));
     implementation_->undo_if_refused("World::add",
-                                     [&] { implementation_->world().remove(body_count() - 1); });
+                                     [&] { world.remove(world.handles.row_of_slot(id.index)); });
     return id;
 }
 
@@ -292,6 +292,29 @@ void BasicWorld<Real>::set_angular_velocity(BodyId body, double angular_velocity
     row = implementation_->wake_around(row);
     implementation_->change_row(row, [&] { b.angular_velocity[row] = static_cast<Real>(angular_velocity); });
     implementation_->sim().note_velocity(row);
+}
+
+template <class Real>
+Filter BasicWorld<Real>::filter(BodyId body) const {
+    const std::size_t row = implementation_->row_of(body, "World::filter");
+    const Bodies<Real>& b = implementation_->sim().world.bodies;
+    return {b.has_groups ? b.group[row] : 0, b.category(row), b.mask(row)};
+}
+
+template <class Real>
+void BasicWorld<Real>::set_filter(BodyId body, const Filter& filter) {
+    constexpr std::string_view kWhere = "World::set_filter";
+    std::size_t row = implementation_->row_of(body, kWhere);
+    if (filter == this->filter(body)) return;
+    const Body wanted{.group = filter.group, .category = filter.category, .mask = filter.mask};
+    const Solver solver = implementation_->sim().solver();
+    if (solver == Solver::event) raise_if(kWhere, find_solver_problem(item_of(body), wanted, {}, solver));
+    row = implementation_->wake_around(row);
+    Bodies<Real>& b = implementation_->bodies();
+    b.set_group(row, filter.group), b.set_filter(row, filter.category, filter.mask);
+    // Pairs are found anew, and contacts that stay keep their impulses. To follow the row as one that is
+    // elsewhere (decision 0031) would cost less and lose those of all its contacts.
+    implementation_->sim().forget_derived_state();
 }
 
 template <class Real>

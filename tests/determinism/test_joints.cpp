@@ -1,4 +1,5 @@
-// Joints: the same bits for every instruction set, any number of threads, and after a snapshot.
+// B28 of docs/hard-cases.md for joints: the same bits for every instruction set, any number of threads, and
+// after a snapshot.
 #include "support/joints.hpp"
 
 #include <string>
@@ -37,6 +38,10 @@ TEST_SUITE("determinism: joints") {
             for (const std::string& isa : runnable_instruction_sets()) {
                 CAPTURE(isa);
                 CHECK(hash_after<Real>(scene, 60, {.isa = isa, .threads = 2}) == expected);
+            }
+            for (const int threads : {3, 7}) {
+                CAPTURE(threads);
+                CHECK(hash_after<Real>(scene, 60, {.threads = threads}) == expected);
             }
         }
     }

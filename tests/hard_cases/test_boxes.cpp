@@ -1,5 +1,5 @@
-// B1, B2, B4, B8, B9, B20, B25, B30 and B40 of docs/hard-cases.md, A28 of docs/exact-cases.md: what is built
-// of boxes stands where it should and falls where it must.
+// B1, B2, B4, B6, B8, B9, B20, B25, B30 and B40 of docs/hard-cases.md, A28 of docs/exact-cases.md: what is
+// built of boxes stands where it should and falls where it must.
 #include "support/box_scenes.hpp"
 #include "support/effort.hpp"
 #include "support/report.hpp"
@@ -208,6 +208,34 @@ TEST_SUITE("hard cases/boxes") {
             missed += std::fabs(run.spin(1) + 100) < 1;
         }
         CHECK(missed == 0);
+    }
+    TEST_CASE_TEMPLATE("B6: small boxes heap up on and beside one that is a thousand times larger", Real,
+                       float, double) {
+        const double small = 0.1, large = 1000 * small, friction = 0.5;
+        Scene scene = box_ground(friction, 20 * large);
+        scene.add(box_at(0, 0.5 * large, large, large, friction));
+        const auto add = [&](double x, double y) {
+            const double angle = 0.3 * jitter_of(scene.bodies.size());
+            scene.add(box_at(x, y, small, small, friction, angle));
+        };
+        for (int i = 0; i < 200; ++i) add(0.15 * (i % 20), large + 0.2 + 0.3 * (i / 20));
+        for (int i = 0; i < 100; ++i) add(0.5 * large + 0.2 + 0.15 * (i % 10), 0.2 + 0.3 * (i / 10));
+        BoxRun<Real> run(scene);
+        run.steps(scaled(300, 200));
+        double lowest_on = large, lowest_beside = large;
+        for (std::size_t i = 2; i <= run.last(); ++i) {
+            const Vec2 at = run.place(i);
+            double& lowest = std::fabs(at.x) < 0.5 * large ? lowest_on : lowest_beside;
+            lowest = std::fmin(lowest, std::fabs(at.x) < 0.5 * large ? at.y - large : at.y);
+        }
+        const OverlapReport overlaps = run.world.overlaps();
+        report("B6: boxes overlap by ", overlaps.max, " at most; lowest ", lowest_on, " m on the large one, ",
+               lowest_beside, " m beside; it moved by ",
+               std::fabs(run.place(1).x) + std::fabs(run.place(1).y - 0.5 * large));
+        CHECK(overlaps.max < 0.1);
+        CHECK(lowest_on > 0.45 * small);
+        CHECK(lowest_beside > 0.45 * small);
+        CHECK(run.rms_speed() < 1e-2);
     }
     TEST_CASE_TEMPLATE("a disc between a heavy box and a post is never expelled", Real, float, double) {
         Scene scene = box_ground(0.5);

@@ -1,4 +1,5 @@
-// Piles of rough discs under solver `soft`: overlap, rest, bits, and bodies that come and go.
+// Piles of rough discs under solver `soft`: overlap, rest, bits, and bodies that come and go. B15 of
+// docs/hard-cases.md: discs between walls that leave them no room.
 #include "constraints/contact_graph.hpp"
 #include "support/books.hpp"
 #include "support/effort.hpp"
@@ -169,5 +170,36 @@ TEST_SUITE("hard cases/piles") {
         report("nearest ", nearest - kLarge - kSmall, " m, fastest ", fastest, " m/s");
         CHECK(nearest > kLarge + 0.99 * kSmall);
         CHECK(fastest < 1e-3 * kSpeed);
+    }
+    TEST_CASE_TEMPLATE("B15: 25 x 25 discs that fill a box stay where they are", Real, float, double) {
+        for (const double friction : {0.0, 0.5}) {
+            CAPTURE(friction);
+            constexpr int kSide = 25;
+            constexpr double kRadius = 0.1;
+            Scene scene;
+            scene.gravity = {0, -10};
+            const Material material{.friction = friction};
+            scene.walls = Walls{
+                .min = {0, 0}, .max = {2 * kSide * kRadius, 2 * kSide * kRadius + 1}, .material = material};
+            for (int i = 0; i < kSide * kSide; ++i)
+                scene.add({.shape = Disc{kRadius},
+                           .position = {(2 * (i % kSide) + 1) * kRadius, (2 * (i / kSide) + 1) * kRadius},
+                           .material = material});
+            BasicWorld<Real> world(scene);
+            for (int i = 0; i < 600; ++i) world.step(kStep);
+            double fastest = 0, farthest = 0;
+            for (std::uint32_t i = 0; i < scene.bodies.size(); ++i) {
+                const BodyState state = world.state({i, 0});
+                const Vec2 from = scene.bodies[i].position;
+                fastest = std::fmax(fastest, std::hypot(state.velocity.x, state.velocity.y));
+                farthest =
+                    std::fmax(farthest, std::hypot(state.position.x - from.x, state.position.y - from.y));
+            }
+            report("B15: friction ", friction, ": fastest ", fastest, " m/s, moved ", farthest / kRadius,
+                   " radii, overlap ", world.overlaps().max);
+            CHECK(fastest < 1e-3);
+            CHECK(farthest < 0.05 * kRadius);
+            CHECK(world.overlaps().max < 0.01);
+        }
     }
 }

@@ -80,6 +80,40 @@ TEST_SUITE("physics/box impacts") {
         report("A14: energy of elastic boxes off by ", worst);
         CHECK(worst < (sizeof(Real) == sizeof(float) ? 4e-6 : 1e-14));
     }
+    TEST_CASE_TEMPLATE("A14: boxes that bounce off each other keep their angular momentum to round-off", Real,
+                       float, double) {
+        // Both move and spin while they near each other: their points of contact do not stay where they were
+        // found. Elastic and smooth they do not stay together either, so that there are impacts alone.
+        double worst = 0;
+        int met = 0;
+        for (int number = 0; number < 100; ++number) {
+            BoxRun<Real> run(two_boxes(number, 1, 0));
+            const double before = run.world.ledger().angular_momentum, spin = run.spin(0);
+            run.steps(60);
+            met += run.spin(0) != spin;
+            worst = std::fmax(worst, std::fabs(run.world.ledger().angular_momentum - before));
+        }
+        report("A14: of 100 met ", met, "; angular momentum off by ", worst, " kg m²/s");
+        CHECK(met > 80);
+        CHECK(worst < (sizeof(Real) == sizeof(float) ? 1e-4 : 1e-12));
+    }
+    TEST_CASE("A14: inelastic, rough impacts of boxes keep their angular momentum to round-off") {
+        // In the step of the first impact. A few boxes go on to press on each other in it: as contacts, whose
+        // points are those of the step's start.
+        int met = 0, exact = 0;
+        for (int number = 0; number < 100; ++number)
+            for (const double friction : {0.0, 0.6}) {
+                BoxRun<double> run(two_boxes(number, 0.5, friction));
+                const double before = run.world.ledger().angular_momentum, spin = run.spin(0);
+                for (int i = 0; i < 60 && run.spin(0) == spin; ++i) run.steps(1);
+                if (run.spin(0) == spin) continue;
+                ++met;
+                exact += std::fabs(run.world.ledger().angular_momentum - before) < 1e-12;
+            }
+        report("A14: of 200 met ", met, ", kept angular momentum to 1e-12 ", exact);
+        CHECK(met > 160);
+        CHECK(exact > 0.98 * met);
+    }
     TEST_CASE_TEMPLATE("A15: a box that hits another flat in line leaves as the impact formula says", Real,
                        float, double) {
         for (const double restitution : {0.5, 1.0})

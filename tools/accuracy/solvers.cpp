@@ -35,6 +35,14 @@ const std::vector<SweptSolver> kOurs{
      "step ends, "
      "so bounces are first order in the step",
      true},
+    {Solver::rattle,
+     {kSingle, kDouble},
+     true,
+     {4, 1, 2, 8, 16},
+     {1},
+     "solves joints to round-off with second-order steps that neither gain nor lose energy on the long run; "
+     "it "
+     "has no contacts"},
     {Solver::pairwise,
      {kDouble},
      true,

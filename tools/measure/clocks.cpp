@@ -17,9 +17,10 @@ double wall_seconds() {
 }
 
 double seconds_of_a_clock_reading() {
-    constexpr int kTries = 10, kReadings = 5'000;
+    constexpr int kAttempts = 10, kReadings = 5'000;
     double unused = 0, least = 1;
-    for (int attempt = 0; attempt < kTries; ++attempt) {  // the least: interruptions are no part of a reading
+    for (int attempt = 0; attempt < kAttempts;
+         ++attempt) {  // the least: interruptions are no part of a reading
         const double start = thread_seconds();
         for (int i = 0; i < kReadings; ++i) unused += wall_seconds();
         least = std::min(least, (thread_seconds() - start) / kReadings);

@@ -83,11 +83,12 @@ Point point_at(const Json& point, std::size_t error, double x, const Edges& edge
             .label = label_of(point)};
 }
 
-/// A colour of the page's palette for each solver and engine, the same in all charts.
+/// A colour of the page's palette for each solver and engine, the same in all charts. `rattle` and `pairwise`
+/// have no case in common.
 int colour_of(const Json& point) {
     static const std::map<std::string, int> colours{{"event", 0},    {"impulse", 1}, {"soft", 2},
                                                     {"pairwise", 4}, {"Box2D 3", 3}, {"Box2D 2", 6},
-                                                    {"Chipmunk", 5}};
+                                                    {"Chipmunk", 5}, {"rattle", 4}};
     const auto found = colours.find(plain(point.at("solver")));
     return found != colours.end() ? found->second : kColourOfFailures;
 }

@@ -13,6 +13,8 @@ constexpr double kUnbounded = 1e301;
 constexpr double kLargestTurn = 0.3;
 /// Share of what the rows lack that a round of Newton's method must not leave.
 constexpr double kLeastProgress = 0.5;
+/// Rounds of it where not all rows hold: their own lack says nothing in the unit of a velocity.
+constexpr int kFewestRounds = 2;
 /// Springs without damping have no compliance; this takes its place.
 constexpr double kLeastGamma = 1e-12;
 
@@ -122,8 +124,10 @@ void JointSystem::measure_gear(Gear& gear) {
 void JointSystem::set_substep(double h) {
     h_ = h;
     extras_.clear();
+    has_springs_ = false;
     for (Member& member : joints) {
         if (!member.joint->is_spring()) continue;
+        has_springs_ = true;
         member.whole = spring_terms(member.joint->frequency, member.joint->damping_ratio, h);
         member.half = half_of(member.whole);
     }
@@ -321,10 +325,12 @@ void JointSystem::restore_velocities() {
 void JointSystem::solve_curved(int rounds, double least) {
     double before = 0;
     if (rounds > 1) keep_velocities();
+    // What is held may lack nothing while springs, motors and limits have still to act.
+    const int fewest = has_springs_ || !extras_.empty() ? kFewestRounds : 0;
     for (int round = 0; round < rounds; ++round) {
         find_right_sides(true);
         const double now = largest_right_side();
-        if (now < least) return;
+        if (round >= fewest && now < least) return;
         if (round > 0 && now > kLeastProgress * before) {
             restore_velocities();
             return solve_flat();

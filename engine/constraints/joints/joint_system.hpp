@@ -198,6 +198,7 @@ class JointSystem {
     std::vector<std::int32_t> loops_;  // joints that are no part of the tree
     std::vector<Gear> gears_;
     std::size_t loop_rows_ = 0, drive_rows_ = 0;
+    bool has_springs_ = false;
     double h_ = 0;  // s
     Part part_ = Part::whole;
     double largest_error_ = 0;

@@ -26,6 +26,15 @@ enum class BodyType : std::uint8_t {
 inline constexpr std::uint16_t kDefaultCategory = 1;
 inline constexpr std::uint16_t kDefaultMask = 0xFFFF;
 
+/// What a body touches, in a world that runs: `Body::group`, `category` and `mask`.
+struct Filter {
+    std::int32_t group = 0;
+    std::uint16_t category = kDefaultCategory;
+    std::uint16_t mask = kDefaultMask;
+
+    friend bool operator==(const Filter&, const Filter&) = default;
+};
+
 /// One body as a person describes it. Everything has a default; SI units.
 struct Body {
     std::string name{};  ///< empty, or unique in the scene

@@ -131,6 +131,14 @@ class BasicWorld {
     /// zero where nothing can move the body: it is static, was quarantined, or its rotation is fixed.
     void set_velocity(BodyId body, Vec2 velocity);
     void set_angular_velocity(BodyId body, double angular_velocity);
+    /// Changes what a body touches, from the next step on: joints, velocities and all else stay. It wakes,
+    /// and so do sleepers around it; contacts that stay keep their impulses. Cost: that of finding all pairs
+    /// anew in the next step; nothing if the filter is the one it has.
+    /// @throws Error (stale_handle); (inconsistent) if the solver is `event`, which knows no filters. The
+    /// world is then unchanged.
+    void set_filter(BodyId body, const Filter& filter);
+    /// @throws Error (stale_handle)
+    Filter filter(BodyId body) const;
 
     /// Goes on with another solver from the next step on. Positions, velocities and energy stay; forces of
     /// contacts are found anew; bodies that sleep wake. `plan()` says what runs. A world of `automatic` does

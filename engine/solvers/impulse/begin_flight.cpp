@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "shapes/walls.hpp"
 #include "solvers/impulse/stages.hpp"
 #include "solvers/shared/pack_motion.hpp"
@@ -64,11 +66,12 @@ void begin_flight(ImpulseSimulation<Real>& sim) {
 
     const BeginFlight<Real> all = arguments_of(sim);
     const auto kernel = all.radius ? sim.kernels->begin_flight : sim.kernels->begin_flight_uniform_radius;
-    sim.wall_rows.prepare(count, kRowsPerChunk);
+    const std::size_t rows = std::exchange(sim.knows_standing, true) ? world.bodies.moving() : count;
+    sim.wall_rows.prepare(rows, kRowsPerChunk);
     pack_motion(
-        sim, all, kernel, kRowsPerChunk,
-        [&](std::size_t rows, std::size_t per_chunk, const auto& fly) {
-            sim.executor.for_each_chunk(rows, per_chunk, fly);
+        sim, rows, all, kernel, kRowsPerChunk,
+        [&](std::size_t packed, std::size_t per_chunk, const auto& fly) {
+            sim.executor.for_each_chunk(packed, per_chunk, fly);
         },
         [&](BeginFlight<Real>& k, std::size_t chunk) { k.wall_rows = sim.wall_rows.part(chunk); },
         [&](const FlightCounts<Real>& counts, std::size_t chunk) {

@@ -10,7 +10,7 @@ void end_special_flights(ImpulseSimulation<Real>& sim) {
     Bodies<Real>& bodies = sim.world.bodies;
     Flights<Real>& flights = sim.impulse.flights;
     const auto real = [](double value) { return static_cast<Real>(value); };
-    for (const std::int32_t row : sim.world.immovable_rows) {
+    for (const std::int32_t row : sim.world.immovable_rows_below(padded(bodies.moving()))) {
         const auto i = static_cast<std::size_t>(row);
         const Flight f = flights.flight(row);
         const bool moves = (bodies.flags_of(i) & kKinematic) != 0;
@@ -51,7 +51,7 @@ void end_flight(ImpulseSimulation<Real>& sim) {
                             bodies.velocity_y.data(),
                             g.x != 0 || end.drag != 0 ? dithered : 0,
                             g.y != 0 || end.drag != 0 ? dithered : 0};
-    sim.executor.for_each_chunk(bodies.count, kRowsPerChunk,
+    sim.executor.for_each_chunk(bodies.moving(), kRowsPerChunk,
                                 [&](std::size_t, std::size_t first, std::size_t last) {
                                     sim.kernels->end_flight(k, first, padded(last));
                                 });
@@ -68,19 +68,19 @@ void advance_rotation(ImpulseSimulation<Real>& sim) {
     const FlightClock clock = flight_clock_at(sim.flight_dt, sim.world.drag.angular);
     sim.immovable_turns.clear();  // drag does not slow what nothing moves
     if (clock.drag != 0)
-        for (const std::int32_t row : sim.world.immovable_rows) {
+        for (const std::int32_t row : sim.world.immovable_rows_below(padded(bodies.moving()))) {
             const auto i = static_cast<std::size_t>(row);
             sim.immovable_turns.push_back({bodies.angle[i], bodies.angular_velocity[i]});
         }
     const AdvanceRotation<Real> k{bodies.angle.data(), bodies.angular_velocity.data(),
                                   static_cast<Real>(clock.s), static_cast<Real>(clock.u)};
-    sim.executor.for_each_chunk(bodies.count, kRowsPerChunk,
+    sim.executor.for_each_chunk(bodies.moving(), kRowsPerChunk,
                                 [&](std::size_t, std::size_t first, std::size_t last) {
                                     sim.kernels->advance_rotation(k, first, padded(last));
                                 });
     std::size_t n = 0;
     if (clock.drag == 0) return;
-    for (const std::int32_t row : sim.world.immovable_rows) {
+    for (const std::int32_t row : sim.world.immovable_rows_below(padded(bodies.moving()))) {
         const auto i = static_cast<std::size_t>(row);
         const auto [angle, spin] = sim.immovable_turns[n++];
         bodies.angle[i] = static_cast<Real>(angle + clock.t * static_cast<double>(spin));

@@ -13,7 +13,7 @@ double slack_of(const ImpulseSimulation<Real>& sim) {
     const Flights<Real>& flights = sim.impulse.flights;
     if (flights.accelerations.empty()) return 0;
     double largest = length_squared(flights.common_acceleration);
-    for (const std::int32_t row : sim.world.immovable_rows)
+    for (const std::int32_t row : sim.world.immovable_rows_below(sim.world.bodies.moving()))
         largest = std::fmax(largest, length_squared(flights.acceleration(row)));
     return 2 * std::sqrt(largest) * flights.end.q;
 }
@@ -30,7 +30,7 @@ double near_of(const ImpulseSimulation<Real>& sim) {
 template <class Real>
 void list_wall_meetings(ImpulseSimulation<Real>& sim, double near) {
     const Flights<Real>& flights = sim.impulse.flights;
-    sim.wall_rows.for_each_below(sim.world.bodies.count, [&](std::int32_t row) {
+    sim.wall_rows.for_each_below(sim.world.bodies.moving(), [&](std::int32_t row) {
         if (flights.is_immovable(row)) return;
         const Flight f = flights.flight(row);
         const Vec2 end = position_at(f, flights.end.s, flights.end.q);

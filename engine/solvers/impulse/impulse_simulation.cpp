@@ -10,6 +10,7 @@ void ImpulseSimulation<Real>::forget_derived_state() {
     this->candidates.invalidate();
     impulse.forget_contacts();
     impulse.flights.accelerations.clear();
+    knows_standing = false;
 }
 
 template <class Real>
@@ -18,8 +19,8 @@ void ImpulseSimulation<Real>::keep_start_of_substep() {
     start_.books = this->world.books, has_start_ = true;
     const Bodies<Real>& bodies = this->world.bodies;
     if (!bodies.has_rotation) return;
-    start_.angle.assign(bodies.angle.begin(), bodies.angle.begin() + bodies.count);
-    start_.spin.assign(bodies.angular_velocity.begin(), bodies.angular_velocity.begin() + bodies.count);
+    start_.angle.assign(bodies.angle.begin(), bodies.angle.begin() + bodies.moving());
+    start_.spin.assign(bodies.angular_velocity.begin(), bodies.angular_velocity.begin() + bodies.moving());
 }
 
 template <class Real>

@@ -34,6 +34,8 @@ class ImpulseSimulation : public Simulation<Real> {
     };
 
     ImpulseSolver<Real> impulse;
+    /// Whether the flights of standing bodies are those of the present rows and places.
+    bool knows_standing = false;
     // The lists below are those of the present substep.
     ChunkedList wall_rows;
     std::vector<FoundMeeting> meetings;                     ///< that the solver has to look at
@@ -53,6 +55,7 @@ class ImpulseSimulation : public Simulation<Real> {
     static void visit_all(Self& self, Archive& archive) {
         Simulation<Real>::visit_common(self, archive);
         archive(self.impulse);
+        if constexpr (!std::is_const_v<Self>) self.knows_standing = false;
     }
 };
 

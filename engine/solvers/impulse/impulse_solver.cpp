@@ -50,7 +50,7 @@ void ImpulseSolver<Real>::begin_substep(const Candidates<Real>& candidates, doub
     flights.rest_speed = kRestFraction * gravity * flights.end.s;
     deflections_.resize(std::max(deflections_.size(), flights.bodies->count));
     budget_ = kMostImpacts + kMostImpactsPerBody * flights.bodies->count;
-    tiles_ = Tiles(candidates.grid(), flights.bodies->count);
+    tiles_ = Tiles(candidates.grid(), flights.bodies->moving());
 }
 
 template <class Real>

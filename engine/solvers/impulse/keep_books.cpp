@@ -12,7 +12,7 @@ void book_linear_drag(ImpulseSimulation<Real>& sim) {
     const FlightClock& end = flights.end;
     double energy = 0;
     Vec2 momentum;
-    for (std::size_t row = 0; row < sim.world.bodies.count; ++row) {
+    for (std::size_t row = 0; row < sim.world.bodies.moving(); ++row) {
         if (sim.world.bodies.is_immovable(row)) continue;
         const Flight f = flights.flight(static_cast<std::int32_t>(row));
         const double mass = sim.world.bodies.mass[row];
@@ -36,7 +36,7 @@ template <class Real>
 void book_angular_drag(ImpulseSimulation<Real>& sim) {
     const Bodies<Real>& bodies = sim.world.bodies;
     const double u = flight_clock_at(sim.flight_dt, sim.world.drag.angular).u;
-    for (std::size_t row = 0; row < bodies.count; ++row)
+    for (std::size_t row = 0; row < bodies.moving(); ++row)
         sim.world.books.drag -= (1 - u * u) * sim.world.sums_of(row).energy.rotational;
 }
 

@@ -20,8 +20,6 @@ constexpr std::size_t kContactsPerTask = 256;
 
 template <class Real>
 void Manifolds<Real>::add_pair(const WorldState<Real>& world, std::int32_t a, std::int32_t b, bool boxes) {
-    if (world.has_filters() && !world.may_collide(static_cast<std::size_t>(a), static_cast<std::size_t>(b)))
-        return;
     const Bodies<Real>& bodies = world.bodies;
     if (a > b) std::swap(a, b);
     const auto i = static_cast<std::size_t>(a), k = static_cast<std::size_t>(b);
@@ -32,6 +30,7 @@ void Manifolds<Real>::add_pair(const WorldState<Real>& world, std::int32_t a, st
         return;
     const bool a_moves = !bodies.is_immovable(i), b_moves = k < bodies.count && !bodies.is_immovable(k);
     if (!a_moves && !b_moves) return;
+    if (world.has_filters() && !world.may_collide(i, k)) return;
     if (!a_moves) std::swap(a, b);
     const BodyId id_a = bodies.id[static_cast<std::size_t>(a)], id_b = bodies.id[static_cast<std::size_t>(b)];
     if (items_.empty()) return bodies_.add(a, b, {id_a, id_b, 0});

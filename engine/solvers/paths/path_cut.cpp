@@ -12,15 +12,11 @@ namespace {
 
 /// Contacts of a body that are compared with each other; more end their paths at the body.
 constexpr std::size_t kMostCompared = 12;
-/// Two loaded contacts are joined before any other two: how well contacts face each other is -1 ... 1.
+/// Two loaded contacts are joined before any other two: how well contacts face each other, minus the cosine
+/// of the angle between where they push the body, is -1 ... 1.
 constexpr float kLoadedFirst = 4;
+constexpr float kTiny = 1e-30f;  // m², so that a contact in the centre of mass has an arm of length 0
 constexpr std::uint32_t kMostColours = 64;  // bits of a word
-
-/// -cosine of the angle between where two contacts push a body: 1 where they face each other.
-float facing(float ax, float ay, float bx, float by) {
-    constexpr float kTiny = 1e-30f;  // m⁴, so that contacts in the centre of mass have an angle
-    return -(ax * bx + ay * by) / std::sqrt((ax * ax + ay * ay) * (bx * bx + by * by) + kTiny);
-}
 
 }  // namespace
 
@@ -31,7 +27,7 @@ void PathCut::cut(std::span<const ContactLink> contacts, std::size_t rows, std::
         if (first_at_[row + 1] - first_at_[row] > 1) join_at(contacts, static_cast<std::int32_t>(row));
     walk(contacts, rows, longest);
     colour(contacts, rows);
-    lay_out(contacts.size());
+    lay_out(contacts, rows);
 }
 
 void PathCut::list_contacts_of_bodies(std::span<const ContactLink> contacts, std::size_t rows) {
@@ -53,9 +49,17 @@ void PathCut::list_contacts_of_bodies(std::span<const ContactLink> contacts, std
 /// Joins the contacts of a body by twos: first the two that face each other best, then the best of the rest.
 void PathCut::join_at(std::span<const ContactLink> contacts, std::int32_t row) {
     const auto r = static_cast<std::size_t>(row);
+    const auto side = [&](std::uint32_t contact) {
+        return 2 * contact + (contacts[contact].a == row ? 0 : 1);
+    };
+    const auto join = [&](std::uint32_t i, std::uint32_t j) {
+        joined_[side(i)] = static_cast<std::int32_t>(j), joined_[side(j)] = static_cast<std::int32_t>(i);
+    };
+    if (first_at_[r + 1] - first_at_[r] == 2)
+        return join(contact_at_[first_at_[r]], contact_at_[first_at_[r] + 1]);
     struct Arm {
         std::uint32_t contact;
-        float x, y;
+        float x, y;  // no unit: where the contact pushes the body, seen from its centre of mass
         bool is_loaded;
     };
     std::array<Arm, kMostCompared> arms{};
@@ -66,8 +70,9 @@ void PathCut::join_at(std::span<const ContactLink> contacts, std::int32_t row) {
             const ContactLink& link = contacts[i];
             if (link.is_loaded != loaded) continue;
             const bool is_a = link.a == row;
-            arms[count++] = {i, is_a ? link.arm_a_x : link.arm_b_x, is_a ? link.arm_a_y : link.arm_b_y,
-                             loaded};
+            const float x = is_a ? link.arm_a_x : link.arm_b_x, y = is_a ? link.arm_a_y : link.arm_b_y;
+            const float scale = 1 / std::sqrt(x * x + y * y + kTiny);
+            arms[count++] = {i, scale * x, scale * y, loaded};
         }
     struct Two {
         float score;
@@ -77,21 +82,17 @@ void PathCut::join_at(std::span<const ContactLink> contacts, std::int32_t row) {
     std::size_t two_count = 0;
     for (std::uint8_t i = 0; i < count; ++i)
         for (auto j = static_cast<std::uint8_t>(i + 1); j < count; ++j)
-            twos[two_count++] = {facing(arms[i].x, arms[i].y, arms[j].x, arms[j].y) +
-                                     (arms[i].is_loaded && arms[j].is_loaded ? kLoadedFirst : 0),
+            twos[two_count++] = {(arms[i].is_loaded && arms[j].is_loaded ? kLoadedFirst : 0) -
+                                     (arms[i].x * arms[j].x + arms[i].y * arms[j].y),
                                  i, j};
     std::array<bool, kMostCompared> is_taken{};
-    const auto side = [&](std::uint32_t contact) {
-        return 2 * contact + (contacts[contact].a == row ? 0 : 1);
-    };
     for (std::size_t left = count; left > 1; left -= 2) {
         const Two* best = nullptr;
         for (std::size_t t = 0; t < two_count; ++t)
             if (!is_taken[twos[t].i] && !is_taken[twos[t].j] && (!best || twos[t].score > best->score))
                 best = &twos[t];
         is_taken[best->i] = is_taken[best->j] = true;
-        const std::uint32_t i = arms[best->i].contact, j = arms[best->j].contact;
-        joined_[side(i)] = static_cast<std::int32_t>(j), joined_[side(j)] = static_cast<std::int32_t>(i);
+        join(arms[best->i].contact, arms[best->j].contact);
     }
 }
 
@@ -194,24 +195,29 @@ void PathCut::colour(std::span<const ContactLink> contacts, std::size_t rows) {
 }
 
 /// Bundles of each colour, the longest paths first.
-void PathCut::lay_out(std::size_t contacts) {
+void PathCut::lay_out(std::span<const ContactLink> contacts, std::size_t rows) {
+    loaded_count_.assign(rows, 0);
+    for (const ContactLink& link : contacts)
+        for (const std::int32_t row : {link.a, link.b})
+            if (link.is_loaded && row >= 0) ++loaded_count_[static_cast<std::size_t>(row)];
     order_.resize(coloured_.size());
     for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
     std::stable_sort(order_.begin(), order_.end(), [&](std::uint32_t i, std::uint32_t j) {
         const Piece &p = coloured_[i], &q = coloured_[j];
         return p.colour != q.colour ? p.colour < q.colour : p.length > q.length;
     });
-    places_.resize(contacts);
-    first_link_.assign(1, 0), first_bundle_.assign(1, 0), first_contacts_.clear();
+    places_.resize(contacts.size());
+    first_link_.assign(1, 0), first_bundle_.assign(1, 0), first_contacts_.clear(), is_slender_.clear();
     longest_ = 0, paths_ = coloured_.size();
     for (std::size_t i = 0; i < order_.size();) {
         const std::uint32_t colour = coloured_[order_[i]].colour;
         const std::size_t length = coloured_[order_[i]].length, bundle = bundles();
-        first_contacts_.resize(first_contacts_.size() + kPathLanes, -1);
+        first_contacts_.resize(first_contacts_.size() + kPathLanes, -1), is_slender_.push_back(0);
         for (std::uint8_t lane = 0; lane < kPathLanes && i < order_.size(); ++lane, ++i) {
             const Piece& piece = coloured_[order_[i]];
             if (piece.colour != colour) break;
             first_contacts_[bundle * kPathLanes + lane] = sequence_[piece.first].contact;
+            if (is_slender(contacts, piece)) is_slender_[bundle] = 1;
             for (std::uint32_t k = 0; k < piece.length; ++k) {
                 const Step& s = sequence_[piece.first + k];
                 places_[static_cast<std::size_t>(s.contact)] = {
@@ -226,11 +232,21 @@ void PathCut::lay_out(std::size_t contacts) {
     }
 }
 
+bool PathCut::is_slender(std::span<const ContactLink> contacts, const Piece& piece) const {
+    int alone = 0;  // bodies between two links of the path that no other load leads to
+    for (std::uint32_t s = piece.first; s + 1 < piece.first + piece.length; ++s) {
+        const ContactLink& link = contacts[static_cast<std::size_t>(sequence_[s].contact)];
+        const std::int32_t row = sequence_[s].is_reversed ? link.a : link.b;
+        if (link.is_loaded && loaded_count_[static_cast<std::size_t>(row)] <= 2) ++alone;
+    }
+    return alone > kSlender;
+}
+
 std::size_t PathCut::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
     return of(first_at_) + of(contact_at_) + of(joined_) + of(is_seen_) + of(piece_of_row_) + of(sequence_) +
-           of(pieces_) + of(coloured_) + of(used_) + of(order_) + of(count_) + of(places_) + of(first_link_) +
-           of(first_bundle_) + of(first_contacts_);
+           of(pieces_) + of(coloured_) + of(used_) + of(loaded_count_) + of(order_) + of(count_) +
+           of(places_) + of(first_link_) + of(first_bundle_) + of(first_contacts_) + of(is_slender_);
 }
 
 }  // namespace carom

@@ -28,6 +28,7 @@ class PathCut {
   public:
     /// Colours that whole paths get, by preference; more are for what is left over.
     static constexpr int kColours = 8;
+    static constexpr int kSlender = 8;
 
     /// Where a contact is.
     struct Place {
@@ -52,6 +53,9 @@ class PathCut {
     std::span<const std::size_t> first_bundle() const { return first_bundle_; }
     /// The contact where the path of each lane of each bundle begins; -1: there is no path.
     std::span<const std::int32_t> first_contacts() const { return first_contacts_; }
+    /// A bundle has 1 if one of its paths is slender, as a tower is, else 0: no load leads to more than
+    /// kSlender of its bodies but along it.
+    std::span<const std::uint8_t> is_slender() const { return is_slender_; }
     std::size_t paths() const { return paths_; }
     std::size_t longest() const { return longest_; }
 
@@ -59,8 +63,8 @@ class PathCut {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.places_, self.first_link_, self.first_bundle_, self.first_contacts_, self.longest_,
-                self.paths_);
+        archive(self.places_, self.first_link_, self.first_bundle_, self.first_contacts_, self.is_slender_,
+                self.longest_, self.paths_);
     }
 
   private:
@@ -78,7 +82,8 @@ class PathCut {
     void walk(std::span<const ContactLink> contacts, std::size_t rows, std::size_t longest);
     void walk_from(std::span<const ContactLink> contacts, std::size_t contact, std::size_t longest);
     void colour(std::span<const ContactLink> contacts, std::size_t rows);
-    void lay_out(std::size_t contacts);
+    void lay_out(std::span<const ContactLink> contacts, std::size_t rows);
+    bool is_slender(std::span<const ContactLink> contacts, const Piece& piece) const;
 
     std::vector<std::uint32_t> first_at_;  // by row: its contacts, in contact_at_
     std::vector<std::uint32_t> contact_at_;
@@ -87,11 +92,13 @@ class PathCut {
     std::vector<std::uint32_t> piece_of_row_;  // the last piece that came through a row
     std::vector<Step> sequence_;
     std::vector<Piece> pieces_, coloured_;
-    std::vector<std::uint64_t> used_;  // by row: colours
+    std::vector<std::uint64_t> used_;          // by row: colours
+    std::vector<std::uint32_t> loaded_count_;  // by row: loaded contacts
     std::vector<std::uint32_t> order_, count_;
     std::vector<Place> places_;
     std::vector<std::size_t> first_link_{0}, first_bundle_{0};
     std::vector<std::int32_t> first_contacts_;
+    std::vector<std::uint8_t> is_slender_;
     std::size_t longest_ = 0, paths_ = 0;
 };
 

@@ -31,16 +31,40 @@ struct StruckBody {
     }
 };
 
+/// Levers of a contact's two points, then of both for friction, in rims of the body.
+using Levers = std::array<double, 3>;
+
+/// Shifts the levers of two bodies that move so that both are about one point of the world, half way between
+/// where each body has carried the point since the contact was found. An impulse along one line gives the two
+/// no angular momentum; about a point of each body it gives them the impulse times the way that the points
+/// have gone apart, which is of the order of the step.
+template <class Real>
+void share_points(const Bodies<Real>& bodies, const BodyRecords<Real>& records,
+                  const PathContact<Real>& contact, Vec2 n, Vec2 t, Levers& lever_a, Levers& lever_b) {
+    const auto row_a = static_cast<std::size_t>(contact.near), row_b = static_cast<std::size_t>(contact.far);
+    const auto place = [&](std::size_t row) {
+        return Vec2{static_cast<double>(bodies.position_x[row]) + records.displacement[2 * row],
+                    static_cast<double>(bodies.position_y[row]) + records.displacement[2 * row + 1]};
+    };
+    const Vec2 apart = place(row_b) - place(row_a);
+    const double rim_a = bodies.rim(row_a), rim_b = bodies.rim(row_b);
+    // r x n = -(r . t), r . n: from a's points to b's.
+    const double along = dot(apart, t) - (rim_b * lever_b[0] - rim_a * lever_a[0]),
+                 above = dot(apart, n) + (rim_b * lever_b[2] - rim_a * lever_a[2]);
+    for (std::size_t k = 0; k < 2; ++k) lever_a[k] -= 0.5 * along / rim_a, lever_b[k] += 0.5 * along / rim_b;
+    lever_a[2] += 0.5 * above / rim_a, lever_b[2] -= 0.5 * above / rim_b;
+}
+
 /// @return whether there was an impact
 template <class Real>
-bool carry_out(const PathContact<Real>& contact, double rest_speed, double h, BodyRecords<Real>& records,
-               Books& books) {
+bool carry_out(const PathContact<Real>& contact, double rest_speed, double h, const Bodies<Real>& bodies,
+               BodyRecords<Real>& records, Books& books) {
     const PathLink<Real>& link = contact.link;
     const std::size_t lane = contact.lane;
     const double e = contact.restitution;
     const StruckBody<Real> a(records, contact.near), b(records, contact.far);
     const Vec2 n{link.normal_x[lane], link.normal_y[lane]}, t{-n.y, n.x};
-    const std::array<double, 3> lever_a{link.near1[lane], link.near2[lane], link.near_t[lane]},
+    Levers lever_a{link.near1[lane], link.near2[lane], link.near_t[lane]},
         lever_b{link.far1[lane], link.far2[lane], link.far_t[lane]};
     const auto relative = [&](Vec2 va, double ua, Vec2 vb, double ub, std::size_t k) {
         return dot(vb - va, k < 2 ? n : t) + ub * lever_b[k] - ua * lever_a[k];
@@ -65,6 +89,12 @@ bool carry_out(const PathContact<Real>& contact, double rest_speed, double h, Bo
         meets[k] = v[k] < -rest_speed && gap + h * soon < 0;
     }
     if (!meets[0] && !meets[1]) return false;
+    if (a.w > 0 && b.w > 0) {
+        share_points(bodies, records, contact, n, t, lever_a, lever_b);
+        for (std::size_t k = 0; k < 2; ++k) v[k] = relative(a.start, a.start_rim, b.start, b.start_rim, k);
+        meets[0] = meets[0] && v[0] < 0, meets[1] = meets[1] && v[1] < 0;
+        if (!meets[0] && !meets[1]) return false;
+    }
     const double w = a.w + b.w;
     const auto mass = [&](std::size_t i, std::size_t k) {
         return (i < 2) == (k < 2) ? w + a.w2 * lever_a[i] * lever_a[k] + b.w2 * lever_b[i] * lever_b[k]
@@ -94,7 +124,7 @@ bool carry_out(const PathContact<Real>& contact, double rest_speed, double h, Bo
                  ktt = mass(2, 2), limit = static_cast<double>(link.friction[lane]) * sum;
     const double y = std::fmin(std::fmax(-vt / ktt, -limit), limit);
     const Vec2 impulse = sum * n + y * t;
-    const auto give = [&](const StruckBody<Real>& body, double sign, const std::array<double, 3>& lever) {
+    const auto give = [&](const StruckBody<Real>& body, double sign, const Levers& lever) {
         if (!(body.w > 0)) return;
         const Vec2 dv = (sign * body.w) * impulse;
         records.add_velocity(body.row, dv,
@@ -108,7 +138,7 @@ bool carry_out(const PathContact<Real>& contact, double rest_speed, double h, Bo
     if (is_far_moved && is_near_moved) return true;
     // What nothing moves: the energy that its own motion gives the other body comes from outside.
     const StruckBody<Real>& still = is_far_moved ? a : b;
-    const std::array<double, 3>& lever = is_far_moved ? lever_a : lever_b;
+    const Levers& lever = is_far_moved ? lever_a : lever_b;
     const Vec2 on_still = is_far_moved ? -impulse : impulse;
     const double spin = (is_far_moved ? -1 : 1) * (lever[0] * x[0] + lever[1] * x[1] + lever[2] * y);
     books.drive -= dot(on_still, still.start) + still.start_rim * spin;
@@ -120,7 +150,7 @@ bool carry_out(const PathContact<Real>& contact, double rest_speed, double h, Bo
 
 template <class Real>
 std::int64_t carry_out_impacts(const PathSolver<Real>& paths, const SubstepTerms& terms,
-                               BodyRecords<Real>& records, Books& books) {
+                               const Bodies<Real>& bodies, BodyRecords<Real>& records, Books& books) {
     const double rest_speed = kRestFalls * terms.fall_speed();
     std::int64_t impacts = 0;
     bool goes_on = true;
@@ -130,16 +160,16 @@ std::int64_t carry_out_impacts(const PathSolver<Real>& paths, const SubstepTerms
             const bool is_pressed =
                 contact.link.normal1[contact.lane] + contact.link.normal2[contact.lane] > 0;
             if (!(contact.restitution > 0) || is_pressed) return;
-            if (!carry_out(contact, rest_speed, terms.substep_dt, records, books)) return;
+            if (!carry_out(contact, rest_speed, terms.substep_dt, bodies, records, books)) return;
             ++impacts, goes_on = true;
         });
     }
     return impacts;
 }
 
-template std::int64_t carry_out_impacts(const PathSolver<float>&, const SubstepTerms&, BodyRecords<float>&,
-                                        Books&);
-template std::int64_t carry_out_impacts(const PathSolver<double>&, const SubstepTerms&, BodyRecords<double>&,
-                                        Books&);
+template std::int64_t carry_out_impacts(const PathSolver<float>&, const SubstepTerms&, const Bodies<float>&,
+                                        BodyRecords<float>&, Books&);
+template std::int64_t carry_out_impacts(const PathSolver<double>&, const SubstepTerms&, const Bodies<double>&,
+                                        BodyRecords<double>&, Books&);
 
 }  // namespace carom

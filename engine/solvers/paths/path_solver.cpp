@@ -1,4 +1,5 @@
 #include "solvers/paths/path_solver.hpp"
+#include <cstdlib>
 
 #include <algorithm>
 #include <array>
@@ -26,6 +27,10 @@ constexpr std::size_t kFewContacts = 1024;
 constexpr int kBoldIterations = 4, kMostIterations = 40, kMostOfRestless = 8, kSweepsOfUnsettled = 4;
 /// By which a contact may miss its law, in shares of what gravity adds to a speed in a substep.
 constexpr double kTolerance = 2e-3;
+/// Paths whose contacts all were slower than this may rest for a substep, in shares of the same,
+constexpr double kRestingSpeed = 0.25;
+/// and what such a path moves in a substep is less than this share of the thickness of its bodies.
+constexpr double kRestingShare = 1e-4;
 /// Two points whose rows are alike by more than this are solved as one: det K / (k11 k22).
 constexpr double kLeastDeterminant = 1e-3;
 /// Paths are cut anew after so many steps, since loads have changed.
@@ -90,7 +95,7 @@ void PathSolver<Real>::cut_paths(const WorldState<Real>& world) {
         contact_links_.push_back(link);
     }
     is_cut_calm_ = is_calm_;
-    cut_.cut(contact_links_, bodies.count, is_calm_ ? kLongestPath : kLongestOfRestless);
+    cut_.cut(contact_links_, bodies.moving(), is_calm_ ? kLongestPath : kLongestOfRestless);
     since_cut_ = 0, ++counters.cuts;
 }
 
@@ -114,6 +119,7 @@ void PathSolver<Real>::lay_out(const WorldState<Real>& world, const EdgeCandidat
     records.add_still_rows(row - first_still_row_);
     links_.resize_for_overwrite(cut_.links());
     heads_.resize_for_overwrite(kPathLanes * cut_.bundles());
+    restless_.resize_for_overwrite(kPathLanes * cut_.bundles());
     const auto none = static_cast<Real>(kNoPoint);
     loops.executor->for_each_chunk(
         cut_.bundles(), kBundlesPerTask, kNanosecondsToFill * kPathLanes,
@@ -223,6 +229,9 @@ SolvePaths<Real> PathSolver<Real>::arguments(const SubstepTerms& terms, BodyReco
     k.h = static_cast<Real>(terms.substep_dt), k.inverse_h = static_cast<Real>(1 / terms.substep_dt);
     k.recovery = static_cast<Real>(kRecovery), k.push = static_cast<Real>(kPushThicknesses);
     k.velocity_tolerance = static_cast<Real>(kTolerance * terms.fall_speed());
+    k.restless = restless_.data(), k.is_slender = cut_.is_slender().data(), k.resting_speed = 0;
+    k.resting_thickness =
+        static_cast<Real>(kRestingSpeed * terms.fall_speed() * terms.substep_dt / kRestingShare);
     k.bold_iterations = kBoldIterations;
     k.most_iterations = is_cut_calm_ ? kMostIterations : kMostOfRestless;
     k.sweeps_of_unsettled = kSweepsOfUnsettled;
@@ -261,10 +270,11 @@ void PathSolver<Real>::warm_start(const SubstepTerms& terms, BodyRecords<Real>& 
 
 template <class Real>
 void PathSolver<Real>::solve(const SubstepTerms& terms, BodyRecords<Real>& records,
-                             const StepLoops<Real>& loops, int passes, bool sweeps) {
+                             const StepLoops<Real>& loops, int passes, bool sweeps, bool may_rest) {
     if (manifolds.live().empty()) return;
     const PathKernels<Real>& kernels = loops.kernels->convex->paths;
-    const SolvePaths<Real> k = arguments(terms, records);
+    SolvePaths<Real> k = arguments(terms, records);
+    if (may_rest && rolling_.empty()) k.resting_speed = static_cast<Real>(kRestingSpeed * terms.fall_speed());
     for (int pass = 0; pass < passes; ++pass) run(kernels.solve, k, loops);
     solved_ += static_cast<std::int64_t>(cut_.paths()) * passes;
     for (int turn = 0; turn < kTurnsOfRolling && !rolling_.empty(); ++turn) {
@@ -303,7 +313,7 @@ template <class Real>
 std::size_t PathSolver<Real>::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
     return manifolds.bytes() + rolling_.bytes() + of(row_of_far_) + of(contact_links_) + cut_.bytes() +
-           links_.bytes() + heads_.bytes() + scratch_.bytes();
+           links_.bytes() + heads_.bytes() + restless_.bytes() + scratch_.bytes();
 }
 
 template class PathSolver<float>;

@@ -53,8 +53,9 @@ class PathSolver {
     /// @param passes  times that the paths are solved; more than one where there are no impulses to start
     /// from
     /// @param sweeps  whether to sweep over all contacts at the end
+    /// @param may_rest  whether to leave out bundles of paths that hardly moved when they were solved last
     void solve(const SubstepTerms& terms, BodyRecords<Real>& records, const StepLoops<Real>& loops,
-               int passes, bool sweeps);
+               int passes, bool sweeps, bool may_rest = false);
     /// Moves the surfaces of kinematic bodies on by a substep.
     void advance(const SubstepTerms& terms, BodyRecords<Real>& records);
     const PathRolling<Real>& rolling() const { return rolling_; }
@@ -128,6 +129,7 @@ class PathSolver {
     Column<PathLink<Real>> links_;
     Column<std::int32_t> heads_;
     std::size_t first_still_row_ = 0;  // in the records: of padding and of what nothing moves
+    Column<Real> restless_;            // m/s, kernels/path_arguments.hpp
     Column<std::byte> scratch_;
 };
 

@@ -131,7 +131,7 @@ void SurfaceFinder<Real>::find_walls(const WorldState<Real>& world, const Subste
                                      const ContactDistance& near, ManifoldList<Real>& list) {
     const Bodies<Real>& bodies = world.bodies;
     const Walls& walls = *world.walls;
-    for (std::size_t row = 0; row < bodies.count; ++row) {
+    for (std::size_t row = 0; row < bodies.moving(); ++row) {
         if (bodies.is_disc(row) || bodies.shape[row] < 0 || bodies.is_immovable(row)) continue;
         if (bodies.flags_of(row) & kSensor) continue;
         const double way = reach_in_step(bodies, row, terms.dt);

@@ -133,26 +133,10 @@ void LocalSolve<Real>::load(const SolveContacts<Real>& of_pairs, const SolveCont
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
         Contact& c = contacts_[i];
         const SolveContacts<Real>& k = i < pair_count_ ? of_pairs : of_supports;
-        const ContactColumns<Real>& columns = k.contacts;
-        const auto value = [&](const Real* column, double without) {
-            return column ? static_cast<double>(column[c.contact]) : without;
-        };
-        const bool is_rough = columns.friction_impulse != nullptr, rolls = columns.rolling_impulse != nullptr;
-        c.impulses = {value(columns.normal_impulse, 0), value(columns.friction_impulse, 0),
-                      value(columns.rolling_impulse, 0)};
-        c.step = {};
-        c.surface_normal = value(columns.surface_normal, 0);
-        c.surface_tangent = value(columns.surface_tangent, 0);
-        c.surface_rolling = value(columns.surface_rolling, 0);
-        ContactTerms<double>& terms = c.terms;
-        terms.nx = columns.normal_x[c.contact], terms.ny = columns.normal_y[c.contact];
-        terms.floor = columns.floor[c.contact];
-        terms.friction = is_rough ? value(columns.friction, static_cast<double>(k.uniform_friction)) : 0;
-        terms.rolling = rolls ? value(columns.rolling, static_cast<double>(k.uniform_rolling)) : 0;
-        terms.of_a = value(columns.rolling_share, 0.5);
+        c.read(k);
         with_sides(c, [&](const auto& a, const auto& b) {
-            terms.mass = 1 / inverse_mass(a, b);
-            terms.tangent_mass = tangent_mass<kEveryEffect>(a, b, terms.mass);
+            c.terms.mass = 1 / inverse_mass(a, b);
+            c.terms.tangent_mass = tangent_mass<kEveryEffect>(a, b, c.terms.mass);
         });
     }
 }
@@ -214,16 +198,17 @@ void LocalSolve<Real>::conjugate_step(double share) {
 }
 
 template <class Real>
-void LocalSolve<Real>::solve(const SolveContacts<Real>& of_pairs, const SolveContacts<Real>& of_supports,
-                             double fall) {
-    if (contacts_.empty()) return;
+double LocalSolve<Real>::solve(const SolveContacts<Real>& of_pairs, const SolveContacts<Real>& of_supports,
+                               double fall) {
+    if (contacts_.empty()) return 0;
     load(of_pairs, of_supports);
     const bool rolls = of_pairs.contacts.rolling_impulse != nullptr;
     const std::size_t most = std::max<std::size_t>(kMostSolves / contacts_.size(), 1);
-    double first = 0, before = 0;
+    double first = 0, before = 0, left = 0;
     for (std::size_t sweeps = 1;; ++sweeps) {
         for (Contact& c : contacts_) c.before = c.impulses;
-        if ((rolls ? sweep<kEveryEffect>() : sweep<kDoesNotRoll>()) <= kAccuracy * fall) break;
+        left = rolls ? sweep<kEveryEffect>() : sweep<kDoesNotRoll>();
+        if (left <= kAccuracy * fall) break;
         // The change by a sweep is the gradient of what is to become least.
         const double now = change();
         if (sweeps == 1) first = now, first_records_ = records_, first_contacts_ = contacts_;
@@ -240,6 +225,7 @@ void LocalSolve<Real>::solve(const SolveContacts<Real>& of_pairs, const SolveCon
         before = now;
     }
     store(of_pairs, of_supports);
+    return left;
 }
 
 template <class Real>

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "constraints/contact_law.hpp"
 #include "constraints/contact_rows.hpp"
 #include "kernels/contact_arguments.hpp"
+#include "solvers/shared/local_contact.hpp"
 
 namespace carom {
 
@@ -34,20 +34,13 @@ class LocalSolve {
     /// After the sweeps of a substep.
     /// @param k  of pairs and of supports
     /// @param fall  m/s, what gravity adds in a substep
-    void solve(const SolveContacts<Real>& of_pairs, const SolveContacts<Real>& of_supports, double fall);
+    /// @return m/s, the largest change of the last sweep over contacts
+    double solve(const SolveContacts<Real>& of_pairs, const SolveContacts<Real>& of_supports, double fall);
 
     std::size_t bytes() const;
 
   private:
-    struct Contact {
-        std::int32_t a, b;           // of records_; b < 0: nothing moves it
-        std::uint32_t contact;       // of the pairs, or of the supports
-        ContactTerms<double> terms;  // friction and rolling are zero where there is none
-        double surface_normal, surface_tangent, surface_rolling;  // m/s, of b where nothing moves it
-        ContactImpulses<double> impulses;
-        ContactImpulses<double> before;  // an iteration
-        ContactImpulses<double> step;    // of the conjugate gradient
-    };
+    using Contact = LocalContact;
 
     std::int32_t body_of(std::int32_t row);
     void load(const SolveContacts<Real>& of_pairs, const SolveContacts<Real>& of_supports);

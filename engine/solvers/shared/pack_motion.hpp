@@ -30,18 +30,18 @@ BeginFlight<Real> flight_arguments(const Simulation<Real>& sim, const FlightCloc
     return k;
 }
 
-/// Runs a begin_flight kernel over all rows: packs their motion, lists those that leave their margins or the
-/// limits, and finds the largest speed.
+/// Runs a begin_flight kernel over rows from the first on: packs their motion, lists those that leave their
+/// margins or the limits, and finds the largest speed.
+/// @param rows  how many
 /// @param loop  calls its last argument for chunks of rows: Executor::for_each_chunk
 /// @param finish  finish(k, chunk) completes the arguments of a chunk
 /// @param done  done(counts, chunk) takes what else the kernel has listed
 template <class Real, class Kernel, class Loop, class Finish, class Done>
-void pack_motion(Simulation<Real>& sim, const BeginFlight<Real>& all, Kernel kernel,
+void pack_motion(Simulation<Real>& sim, std::size_t rows, const BeginFlight<Real>& all, Kernel kernel,
                  std::size_t rows_per_chunk, const Loop& loop, const Finish& finish, const Done& done) {
-    const std::size_t count = sim.world.bodies.count;
-    for (ChunkedList* list : {&sim.displaced_rows, &sim.lost_rows}) list->prepare(count, rows_per_chunk);
-    sim.chunk_fastest.assign((count + rows_per_chunk - 1) / rows_per_chunk, 0);
-    loop(count, rows_per_chunk, [&](std::size_t chunk, std::size_t first, std::size_t last) {
+    for (ChunkedList* list : {&sim.displaced_rows, &sim.lost_rows}) list->prepare(rows, rows_per_chunk);
+    sim.chunk_fastest.assign((rows + rows_per_chunk - 1) / rows_per_chunk, 0);
+    loop(rows, rows_per_chunk, [&](std::size_t chunk, std::size_t first, std::size_t last) {
         BeginFlight<Real> k = all;
         k.displaced_rows = sim.displaced_rows.part(chunk), k.lost_rows = sim.lost_rows.part(chunk);
         finish(k, chunk);

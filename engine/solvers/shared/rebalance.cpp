@@ -61,7 +61,7 @@ void Rebalance<Real>::mark_near(std::span<const LostContact> lost) {
         const auto row = static_cast<std::size_t>(contact.row);
         const Real x = bodies.position_x[row], y = bodies.position_y[row],
                    reach = static_cast<Real>(kNearRadii) * bodies.radius[row];
-        for (std::size_t other = 0; other < bodies.count; ++other)
+        for (std::size_t other = 0; other < bodies.moving(); ++other)
             is_near_[other] |= std::fabs(bodies.position_x[other] - x) < reach &&
                                std::fabs(bodies.position_y[other] - y) < reach;
     }

@@ -109,6 +109,8 @@ class Simulation {
     std::vector<double> chunk_fastest;  ///< m²/s², by chunk
     std::vector<std::int32_t> displaced, lost;
     ChunkedList displaced_rows, lost_rows;
+    std::vector<std::int32_t> row_order;   ///< while rows are sorted
+    std::size_t immovable_when_asked = 0;  ///< when it was asked how many bodies stand
 
     /// Parts that strong drag needs a step of dt [s] to be cut into, or that were asked for, if those are
     /// more.

@@ -16,10 +16,12 @@ void begin_flight(SoftSimulation<Real>& sim) {
     BeginFlight<Real> all = flight_arguments(sim, flight_clock_at(sim.flight_dt, 0));
     all.motion = sim.motion.data();
     const auto kernel = all.radius ? sim.kernels->pack_motion : sim.kernels->pack_motion_uniform_radius;
+    // The records of standing bodies stay as long as rows, places and masses do.
+    const std::size_t rows = sim.soft.knows_rows() ? sim.world.bodies.moving() : count;
     pack_motion(
-        sim, all, kernel, sim.soft.rows_per_task(),
-        [&](std::size_t rows, std::size_t per_chunk, const auto& fly) {
-            sim.executor.for_each_chunk(rows, per_chunk, kNanosecondsToFly, fly);
+        sim, rows, all, kernel, sim.soft.rows_per_task(),
+        [&](std::size_t packed, std::size_t per_chunk, const auto& fly) {
+            sim.executor.for_each_chunk(packed, per_chunk, kNanosecondsToFly, fly);
         },
         [](BeginFlight<Real>&, std::size_t) {}, [](const FlightCounts<Real>&, std::size_t) {});
     quarantine_lost(sim, sim.motion);

@@ -113,7 +113,7 @@ void SubstepBooks<Real>::book_free_flight(const StepView<Real>& step, const Worl
     const SubstepTerms& terms = step.terms;
     const double h = terms.substep_dt, spin_loss = terms.spin_decay - 1;
     const auto from = starts_of_substep(step.records);
-    for (std::size_t row = 0; row < step.records.count(); ++row) {
+    for (std::size_t row = 0; row < step.records.moving(); ++row) {
         if (world.bodies.is_immovable(row)) continue;
         const double mass = world.bodies.mass[row];
         const DoubleBody start = from(static_cast<std::int32_t>(row));

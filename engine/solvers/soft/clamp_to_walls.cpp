@@ -40,8 +40,9 @@ void clamp_to_walls(SoftSimulation<Real>& sim) {
     Bodies<Real>& bodies = world.bodies;
     const Enclosure<Real> box(&*world.walls);
     constexpr std::size_t kBlock = 256;  // rows that are asked together
-    for (std::size_t first = 0; first < bodies.count; first += kBlock) {
-        const std::size_t last = first + kBlock < bodies.count ? first + kBlock : bodies.count;
+    const std::size_t rows = bodies.moving();
+    for (std::size_t first = 0; first < rows; first += kBlock) {
+        const std::size_t last = first + kBlock < rows ? first + kBlock : rows;
         const Real *x = bodies.position_x.data(), *y = bodies.position_y.data();
         int outside = 0;
         for (std::size_t row = first; row < last; ++row) outside |= box.is_outside(x[row], y[row]) ? 1 : 0;

@@ -54,7 +54,7 @@ bool EndProjection<Real>::mark_deflected(const Inputs& in, double largest) {
     const double dt = in.flight.dt;
     const Column<Real>&motion = in.flight.motion, &displacement = in.step.records.displacement;
     const Vec2 fall = 0.5 * dt * dt * in.world.gravity;
-    for (std::size_t row = 0; row < in.step.records.count(); ++row) {
+    for (std::size_t row = 0; row < in.step.records.moving(); ++row) {
         const double radius = in.world.bodies.radius[row];
         if (radius >= largest || !in.world.bodies.is_moving_disc(row)) continue;
         const Vec2 off{
@@ -123,7 +123,7 @@ template <class Real>
 void EndProjection<Real>::find_thrown(const Inputs& in) {
     const std::vector<Vec2>& place = projection_.place;
     thrown_.clear();
-    for (std::size_t row = 0; row < in.step.records.count(); ++row)
+    for (std::size_t row = 0; row < in.step.records.moving(); ++row)
         if (projection_.is_marked[row] == kDeflectedMark &&
             in.flight.candidates.outside_of_margin(row, in.world.bodies.radius[row], place[row]) > 0)
             thrown_.push_back(static_cast<std::int32_t>(row));
@@ -257,7 +257,7 @@ void EndProjection<Real>::push_in_rounds(const Inputs& in, bool any_deflected) {
         list_pairs_of_thrown(in);
         if (!projection_.part()) break;
         bool any_new = false;
-        for (std::size_t row = 0; row < in.step.records.count(); ++row) {
+        for (std::size_t row = 0; row < in.step.records.moving(); ++row) {
             any_new |= projection_.is_moved[row] && !projection_.is_marked[row];
             projection_.is_marked[row] |= projection_.is_moved[row];
         }

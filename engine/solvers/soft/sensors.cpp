@@ -13,6 +13,8 @@ namespace {
 constexpr double kFastThicknesses = 0.5;
 /// As near as this share of the thickness counts as met on the way.
 constexpr double kMeetingTarget = 1e-3;
+/// Edges are looked for in the circle around a sensor, this much wider against rounding.
+constexpr double kWiderCircle = 1 + 1e-9;
 
 }  // namespace
 
@@ -130,20 +132,22 @@ void SensorFinder<Real>::look_at_edges(std::size_t sensor) {
         if (length_squared(at - place) >= near * near) continue;
         if (world_.has_filters() && !world_.may_collide(sensor, row)) continue;
         const Rotation turn = rotation_by(bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0);
-        for (std::int32_t i = edges.first; i < edges.first + edges.count; ++i) {
-            const Edge& edge = world_.edges[i];
+        bool is_inside = false;
+        const auto look_at = [&](std::int32_t number) {
+            if (is_inside) return;
+            const Edge& edge = world_.edges[number];
             const Vec2 along = edge.b - edge.a;
             const double length = std::sqrt(length_squared(along));
             const Vec2 middle = at + rotate(turn, 0.5 * (edge.a + edge.b));
             const double reach = 0.5 * length + extent;
-            if (length_squared(middle - place) >= reach * reach) continue;
+            if (length_squared(middle - place) >= reach * reach) return;
             const Vec2 direction = rotate(turn, (1 / length) * along);
             const PlacedConvex line{
                 convex_shape_of<double>(Capsule{length, 0}), middle, {direction.x, direction.y}};
-            if (!overlaps(line)) continue;
-            inside.push_back({bodies.id[sensor], edges.id});
-            break;
-        }
+            is_inside = overlaps(line);
+        };
+        world_.edges.for_each_near(edges, rotate_back(turn, place - at), kWiderCircle * extent, look_at);
+        if (is_inside) inside.push_back({bodies.id[sensor], edges.id});
     }
 }
 

@@ -14,7 +14,7 @@ void rows_changed(SoftSimulation<Real>& sim) {
 template <class Real>
 bool do_edges_move(const WorldState<Real>& world) {
     const Bodies<Real>& bodies = world.bodies;
-    for (const std::int32_t row : world.immovable_rows) {
+    for (const std::int32_t row : world.immovable_rows_below(bodies.moving())) {
         const auto i = static_cast<std::size_t>(row);
         if ((bodies.flags_of(i) & kEdges) == 0) continue;
         if (bodies.velocity_x[i] != 0 || bodies.velocity_y[i] != 0) return true;

@@ -29,7 +29,7 @@ void SoftSimulation<Real>::keep_former_place(std::size_t row) {
 template <class Real>
 void SoftSimulation<Real>::note_change(bool may_follow) {
     ++changes_;
-    if (!may_follow || !this->candidates.may_follow(changes_, this->world.bodies.count))
+    if (!may_follow || !this->candidates.may_follow(changes_, this->world.bodies.moving()))
         forget_derived_state();
 }
 
@@ -51,7 +51,9 @@ void SoftSimulation<Real>::remove(std::size_t row) {
 template <class Real>
 void SoftSimulation<Real>::note_added(std::size_t row) {
     const Radii* radii = this->candidates.known_radii();
-    const double radius = this->world.bodies.radius[row];
+    const Bodies<Real>& bodies = this->world.bodies;
+    const double radius = bodies.radius[row];
+    if (bodies.standing > 0 && !bodies.stands(row)) soft.graph.trail.follow_made_room(row, bodies.count - 1);
     note_change(this->world.bodies.is_disc(row) && radii && radius >= radii->usual &&
                 radius <= radii->largest);
 }
@@ -85,8 +87,8 @@ template <class Real>
 void SoftSimulation<Real>::follow_changes() {
     const WorldState<Real>& state = this->world;
     const std::size_t count = state.bodies.count, changes = changes_;
-    const bool may_follow = this->candidates.may_follow(changes, count) && state.bodies.asleep == 0 &&
-                            state.joints.empty() && !state.bodies.has_shapes &&
+    const bool may_follow = this->candidates.may_follow(changes, state.bodies.moving()) &&
+                            state.bodies.asleep == 0 && state.joints.empty() && !state.bodies.has_shapes &&
                             !state.effects.rolling_resistance && kinds_of_graph == kinds_of_columns() &&
                             graph_of_rebuild == this->candidates.rebuild_count();
     changes_ = 0;

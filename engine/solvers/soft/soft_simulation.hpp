@@ -3,8 +3,8 @@
 #include "broadphase/edge_candidates.hpp"
 #include "sleeping/sleepers.hpp"
 #include "solvers/shared/simulation.hpp"
+#include "solvers/soft/impacts/tunnelling.hpp"
 #include "solvers/soft/soft_solver.hpp"
-#include "solvers/soft/tunnelling.hpp"
 
 namespace carom {
 

@@ -35,8 +35,9 @@ void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Colum
                                       const Executor& executor) {
     read_effects(world, settings_);
     settings_.iterations = iterations(world);
-    if (masses_.derive(world.bodies, settings_.effects.friction && !settings_.is_smooth_heap))
-        if (!std::exchange(follows_rows_, false)) pair_finder_.forget(), uneven_.clear();
+    const bool are_new =
+        masses_.derive(world.bodies, settings_.effects.friction && !settings_.is_smooth_heap);
+    if (are_new && !std::exchange(follows_rows_, false)) pair_finder_.forget(), uneven_.clear();
     loops_ = {&kernels, &settings_.kernels_of(kernels, masses_.some_are_fixed()), &executor, rows_per_task()};
     const FlightClock clock = flight_clock_at(h, world.drag.linear);
     terms_.substep_dt = h, terms_.elapsed = 0;
@@ -44,22 +45,23 @@ void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Colum
     terms_.spin_decay = flight_clock_at(h, world.drag.angular).u;
     if (world.effects.joints) joints.find_groups(world);
     // A record for the padding of each group, so that no two tasks write to the same.
-    records_.begin(world, motion, masses_,
+    records_.begin(world, motion, masses_, are_new ? world.bodies.count : world.bodies.moving(),
                    std::max(ContactGraph<Real>::padding_rows(graph.groups), joints.rows_beyond()), terms_,
                    loops_);
 }
 
 template <class Real>
 void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
-                                     Column<Real>& motion, double dt) {
+                                     Column<Real>& motion, double dt, bool flies_together) {
     motion.resize(4 * padded(records_.count() + ContactGraph<Real>::padding_rows(graph.groups)));
     terms_.dt = dt;
     settings_.set_lengths(terms_);
     warm_start_.begin_step(graph, terms_.substep_dt, dt);
-    const bool is_new = pair_finder_.find(view(), world.bodies, masses_, motion);
+    const bool is_new = pair_finder_.find(view(), world.bodies, masses_, motion,
+                                          flies_together && !world.bodies.has_shapes && world.joints.empty());
     if (is_new && masses_.are_uneven()) uneven_.find(graph.pairs, masses_.inverse_column(), records_.count());
     support_finder_.find(view(), world, edges);
-    uneven_.begin_step(graph.pairs, supports_);
+    uneven_.begin_step(view(), world, masses_.are_mixed());
     counters.contacts = static_cast<std::int64_t>(
         std::accumulate(graph.pairs.live_count.begin(), graph.pairs.live_count.end(), supports_.contacts()));
     counters.colours = static_cast<std::int64_t>(graph.pairs.count.size());
@@ -77,7 +79,9 @@ void SoftSolver<Real>::find_manifolds(const WorldState<Real>& world, const EdgeC
 template <class Real>
 void SoftSolver<Real>::solve_paths(int number, bool is_last) {
     const bool starts_anew = number == 0 && warm_start_.starts_anew();
-    paths.solve(terms_, records_, loops_, starts_anew ? kFirstPasses : 1, is_last || starts_anew);
+    // What is at rest is solved in every second substep; not where a scene asks for contacts solved better.
+    const bool may_rest = number % 2 == 1 && settings_.iterations == kDefaultIterations;
+    paths.solve(terms_, records_, loops_, starts_anew ? kFirstPasses : 1, is_last || starts_anew, may_rest);
 }
 
 template <class Real>
@@ -121,8 +125,7 @@ void SoftSolver<Real>::solve_joints_and_contacts(WorldState<Real>& world) {
 template <class Real>
 void SoftSolver<Real>::solve_uneven_contacts() {
     if (masses_.are_uneven())
-        uneven_.solve(Sweeps::arguments(view(), graph.pairs), Sweeps::arguments(view(), supports_),
-                      terms_.fall_speed());
+        uneven_.solve(view(), Sweeps::arguments(view(), graph.pairs), Sweeps::arguments(view(), supports_));
 }
 
 template <class Real>
@@ -168,7 +171,7 @@ template <class Real>
 std::size_t SoftSolver<Real>::bytes() const {
     return graph.bytes() + paths.bytes() + impacts.bytes() + joints.bytes() + masses_.bytes() +
            records_.bytes() + supports_.bytes() + support_finder_.bytes() + warm_start_.bytes() +
-           sweeps_.bytes() + loads_.bytes() + uneven_.bytes() + projection_.bytes();
+           sweeps_.bytes() + loads_.bytes() + uneven_.bytes() + projection_.bytes() + pair_finder_.bytes();
 }
 
 template class SoftSolver<float>;

@@ -9,19 +9,19 @@
 #include "solvers/paths/path_books.hpp"
 #include "solvers/paths/path_impacts.hpp"
 #include "solvers/paths/path_solver.hpp"
-#include "solvers/shared/local_solve.hpp"
 #include "solvers/soft/books.hpp"
-#include "solvers/soft/contact_settings.hpp"
-#include "solvers/soft/contact_sweeps.hpp"
-#include "solvers/soft/impacts.hpp"
+#include "solvers/soft/contacts/contact_settings.hpp"
+#include "solvers/soft/contacts/contact_sweeps.hpp"
+#include "solvers/soft/contacts/load_correction.hpp"
+#include "solvers/soft/contacts/pair_finder.hpp"
+#include "solvers/soft/contacts/residual.hpp"
+#include "solvers/soft/contacts/support_finder.hpp"
+#include "solvers/soft/contacts/uneven_contacts.hpp"
+#include "solvers/soft/contacts/warm_start.hpp"
+#include "solvers/soft/impacts/impacts.hpp"
 #include "solvers/soft/joints/soft_joints.hpp"
-#include "solvers/soft/load_correction.hpp"
-#include "solvers/soft/pair_finder.hpp"
 #include "solvers/soft/project_positions.hpp"
-#include "solvers/soft/residual.hpp"
 #include "solvers/soft/step_view.hpp"
-#include "solvers/soft/support_finder.hpp"
-#include "solvers/soft/warm_start.hpp"
 #include "solvers/substeps/body_masses.hpp"
 #include "solvers/substeps/body_records.hpp"
 #include "state/world_state.hpp"
@@ -75,8 +75,9 @@ class SoftSolver {
                         const Vec2 gravity, const KernelTable<Real>& kernels, const Executor& executor);
     /// Contacts that can touch in this step, by colour.
     /// @param motion  [rows][4] at the start of the step; gets rows for the padding of groups
+    /// @param flies_together  whether a good part of the bodies are fast together
     void find_contacts(const WorldState<Real>& world, const EdgeCandidates<Real>& edges, Column<Real>& motion,
-                       double dt);
+                       double dt, bool flies_together);
     /// Finds the contacts of shapes and lays them out along paths.
     void find_manifolds(const WorldState<Real>& world, const EdgeCandidates<Real>& edges);
     /// Tells what bounces from what rests (impacts.hpp).
@@ -91,8 +92,8 @@ class SoftSolver {
     /// Gives bodies last step's impulses of shapes.
     void warm_start_paths() { paths.warm_start(terms_, records_, loops_); }
     /// Carries out the impacts of shapes in a substep.
-    void carry_out_shape_impacts(Books& books) {
-        paths.counters.impacts += carom::carry_out_impacts(paths, terms_, records_, books);
+    void carry_out_shape_impacts(const Bodies<Real>& bodies, Books& books) {
+        paths.counters.impacts += carom::carry_out_impacts(paths, terms_, bodies, records_, books);
     }
     /// Solves the contacts of shapes in substep `number`.
     void solve_paths(int number, bool is_last);
@@ -157,6 +158,8 @@ class SoftSolver {
 
     /// Masses, shapes or rows have changed: what was derived from them is made anew.
     void forget_rows() { masses_.forget(), joints.forget(); }
+    /// Whether nothing of that has changed since the last step.
+    bool knows_rows() const { return masses_.are_known(); }
     /// Rows have changed, and the graph has followed them.
     void follow_rows() { follows_rows_ = masses_.are_known(), masses_.forget(); }
 
@@ -171,7 +174,8 @@ class SoftSolver {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.graph, self.paths, self.counters, self.impacts.counters, self.warm_start_, self.loads_);
+        archive(self.graph, self.paths, self.counters, self.impacts.counters, self.warm_start_, self.loads_,
+                self.uneven_);
         if constexpr (!std::is_const_v<Self>)
             self.forget_rows(), self.records_.forget(), self.impacts.forget();
     }
@@ -198,7 +202,7 @@ class SoftSolver {
     WarmStart<Real> warm_start_;
     ContactSweeps<Real> sweeps_;
     LoadCorrection<Real> loads_;
-    LocalSolve<Real> uneven_;
+    UnevenContacts<Real> uneven_;
     EndProjection<Real> projection_;
     SubstepBooks<Real> books_;
 };

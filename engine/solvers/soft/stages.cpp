@@ -8,7 +8,6 @@ namespace carom {
 
 template <class Real>
 void sort_rows(SoftSimulation<Real>& sim) {
-    if (sim.candidates.wants_sorted_rows()) sim.candidates.prepare_order(sim.world.bodies.count);
     sort_rows_by_place(sim, [&](const std::int32_t* order) {
         sim.soft.graph.trail.follow_sorted(order, sim.world.bodies.count);
         sim.soft.forget_rows();
@@ -28,7 +27,7 @@ bool moves_few_contacts(const SoftSimulation<Real>& sim) {
                (world.bodies.has_rotation && world.bodies.angular_velocity[row] != 0);
     };
     const auto moved = static_cast<std::size_t>(std::count_if(pairs.begin(), pairs.end(), moves));
-    return moved * kBodiesPerMovedPair <= world.bodies.count;
+    return moved * kBodiesPerMovedPair <= world.bodies.moving();
 }
 
 template <class Real>

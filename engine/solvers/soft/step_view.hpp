@@ -2,7 +2,7 @@
 
 #include "constraints/contact_graph.hpp"
 #include "constraints/contact_rows.hpp"
-#include "solvers/soft/contact_settings.hpp"
+#include "solvers/soft/contacts/contact_settings.hpp"
 #include "solvers/substeps/body_records.hpp"
 #include "solvers/substeps/step_terms.hpp"
 

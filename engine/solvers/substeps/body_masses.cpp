@@ -1,10 +1,18 @@
 #include "solvers/substeps/body_masses.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "solvers/shared/local_solve.hpp"
 
 namespace carom {
+namespace {
+
+constexpr double kVeryUneven = 101;  // ratio of masses, with room for rounded ones
+/// Heavy and light bodies are mixed if there is one of either in so many bodies.
+constexpr std::size_t kMixed = 64;
+
+}  // namespace
 
 template <class Real>
 bool BodyMasses<Real>::derive(const Bodies<Real>& bodies, bool has_friction) {
@@ -13,7 +21,7 @@ bool BodyMasses<Real>::derive(const Bodies<Real>& bodies, bool has_friction) {
     some_are_fixed_ = false;
     if (vary_) inverse_.resize(bodies.count);
     double lightest = 0, heaviest = 0;  // inverse
-    for (std::size_t row = 0; row < bodies.count && vary_; ++row) {
+    for (std::size_t row = 0; row < bodies.moving() && vary_; ++row) {
         const bool may_turn = has_friction || !bodies.is_disc(row);
         const bool is_fixed = may_turn && (bodies.flags_of(row) & kFixedAngle) != 0;
         const double inverse = bodies.inverse_mass(row);
@@ -23,7 +31,16 @@ bool BodyMasses<Real>::derive(const Bodies<Real>& bodies, bool has_friction) {
         lightest = std::fmax(lightest, inverse);
         heaviest = heaviest > 0 ? std::fmin(heaviest, inverse) : inverse;
     }
+    if (vary_) std::fill(inverse_.begin() + bodies.moving(), inverse_.end(), Real(0));
     are_uneven_ = lightest > LocalSolve<Real>::kUneven * heaviest;
+    std::size_t light = 0, heavy = 0;
+    for (std::size_t row = 0; row < bodies.count && lightest > kVeryUneven * heaviest; ++row) {
+        const double inverse = bodies.inverse_mass(row);
+        if (!(inverse > 0)) continue;
+        light += inverse > kVeryUneven * heaviest ? 1 : 0;
+        heavy += lightest > kVeryUneven * inverse ? 1 : 0;
+    }
+    are_mixed_ = kMixed * std::min(light, heavy) >= std::max<std::size_t>(bodies.count, 1);
     return are_known_ = true;
 }
 

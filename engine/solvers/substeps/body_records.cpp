@@ -22,10 +22,10 @@ Real* BodyRecords<Real>::turn() {
 
 template <class Real>
 void BodyRecords<Real>::begin(const WorldState<Real>& world, const Column<Real>& motion,
-                              const BodyMasses<Real>& masses, std::size_t padding_rows,
+                              const BodyMasses<Real>& masses, std::size_t written, std::size_t padding_rows,
                               const SubstepTerms& terms, const StepLoops<Real>& loops) {
     const Bodies<Real>& bodies = world.bodies;
-    count_ = bodies.count, has_rotation_ = world.effects.rotation;
+    count_ = bodies.count, moving_ = bodies.moving(), has_rotation_ = world.effects.rotation;
     const std::size_t rows = padded(count_ + padding_rows);
     velocity.resize(4 * rows), displacement.resize(2 * rows);
     // Contacts of shapes ask for turns even where no body can turn.
@@ -45,7 +45,7 @@ void BodyRecords<Real>::begin(const WorldState<Real>& world, const Column<Real>&
     k.displacement = displacement.data(), k.turn = turn();
     const auto kernel = loops.kernels->begin_substeps[has_rotation_ ? 1 : 0];
     loops.executor->for_each_chunk(
-        count_, loops.rows_per_task, kNanosecondsToBegin,
+        written, loops.rows_per_task, kNanosecondsToBegin,
         [&](std::size_t, std::size_t first, std::size_t last) { kernel(k, first, padded(last)); });
     // Padding must not fall.
     std::fill(velocity.data() + 4 * count_, velocity.data() + 4 * rows, Real(0));
@@ -81,7 +81,7 @@ void BodyRecords<Real>::advance(bool is_last, const SubstepTerms& terms, const S
     k.joined = joined;
     const auto kernel = loops.kernels->advance_bodies[(has_rotation_ ? 1 : 0) + (joined ? 2 : 0)];
     loops.executor->for_each_chunk(
-        count_, loops.rows_per_task, kNanosecondsToAdvance,
+        moving_, loops.rows_per_task, kNanosecondsToAdvance,
         [&](std::size_t, std::size_t first, std::size_t last) { kernel(k, first, padded(last)); });
 }
 
@@ -97,16 +97,16 @@ void BodyRecords<Real>::end(Bodies<Real>& bodies, ChunkedList& lost_rows, std::v
     k.angular_velocity = has_rotation_ ? bodies.angular_velocity.data() : nullptr;
     k.largest_position = static_cast<Real>(kLargestPosition);
     k.largest_speed = static_cast<Real>(kLargestSpeed);
-    lost_rows.prepare(count_, loops.rows_per_task);
+    lost_rows.prepare(moving_, loops.rows_per_task);
     const auto kernel = loops.kernels->end_substeps[has_rotation_ ? 1 : 0];
-    loops.executor->for_each_chunk(count_, loops.rows_per_task, kNanosecondsToBegin,
+    loops.executor->for_each_chunk(moving_, loops.rows_per_task, kNanosecondsToBegin,
                                    [&](std::size_t chunk, std::size_t first, std::size_t last) {
                                        EndSubsteps<Real> part = k;
                                        part.lost = lost_rows.part(chunk);
                                        lost_rows.set_count(chunk, kernel(part, first, padded(last)));
                                    });
     lost.clear();
-    lost_rows.for_each_below(count_, [&](std::int32_t row) { lost.push_back(row); });
+    lost_rows.for_each_below(moving_, [&](std::int32_t row) { lost.push_back(row); });
 }
 
 template <class Real>

@@ -24,9 +24,12 @@ class BodyRecords {
     Column<Real> displacement;  ///< [rows][2], m, since the start of the step
 
     /// Records at the start of a step, with the velocities that the first substep foresees.
+    /// @param rows  to be written from the first on: all, or all but those of standing bodies if these are as
+    /// they were in the last step
     /// @param padding_rows  rows beyond the bodies
     void begin(const WorldState<Real>& world, const Column<Real>& motion, const BodyMasses<Real>& masses,
-               std::size_t padding_rows, const SubstepTerms& terms, const StepLoops<Real>& loops);
+               std::size_t rows, std::size_t padding_rows, const SubstepTerms& terms,
+               const StepLoops<Real>& loops);
     /// Moves the bodies through the substep that was solved; foresees the next, unless it was the last.
     /// @param joined  [rows], above zero for bodies that have joints; null where there are none
     void advance(bool is_last, const SubstepTerms& terms, const StepLoops<Real>& loops, const Real* joined);
@@ -50,6 +53,8 @@ class BodyRecords {
 
     /// Bodies, without padding; 0 before the first step.
     std::size_t count() const { return count_; }
+    /// The first of these: those that may move.
+    std::size_t moving() const { return moving_; }
     /// Where the body is at the end of the step, by its displacement [m].
     Vec2 end_of(std::size_t row, const StepFlight<Real>& flight) const {
         return flight.start_of(row) + Vec2{displacement[2 * row], displacement[2 * row + 1]};
@@ -69,7 +74,7 @@ class BodyRecords {
 
   private:
     bool has_rotation_ = false;
-    std::size_t count_ = 0;
+    std::size_t count_ = 0, moving_ = 0;
     Column<Real> turn_;                           // m, rim displacement since the start of the step
     Column<Real> start_x_, start_y_, start_rim_;  // m/s, velocities at the start of the substep
 };

@@ -34,6 +34,12 @@ struct Bodies {
         flags.push_back(with_flags);
     }
     std::size_t count() const { return x.size(); }
+    /// Bodies from the row `moving` on stand.
+    GridInput<Real> input_with_standing(std::size_t moving, bool are_known) const {
+        GridInput<Real> all = input();
+        all.standing = count() - moving, all.is_standing_known = are_known;
+        return all;
+    }
     GridInput<Real> input() const { return {count(), x.data(), y.data(), reach.data(), flags.data()}; }
 };
 
@@ -335,5 +341,31 @@ TEST_SUITE("broadphase/uniform_grid") {
         CHECK(grid.find_candidates(Executor(1)).count == 0);
         Column<std::int32_t> rows;
         CHECK(grid.find_near(0, 0, 1, rows) == 0);
+    }
+
+    TEST_CASE_TEMPLATE("standing bodies are found by all others, once they are known as well", Real, float,
+                       double) {
+        for (const World& world : kWorlds) {
+            CAPTURE(world.name);
+            Bodies<Real> bodies = make_bodies<Real>(world, 11);
+            const std::size_t moving = bodies.count() / 3;
+            for (std::size_t row = moving; row < bodies.count(); ++row) bodies.flags[row] = carom::kImmovable;
+            if (moving > 2) bodies.flags[1] = carom::kImmovable, bodies.flags[2] = carom::kDisabled;
+            const Executor executor(1);
+            UniformGrid<Real> grid;
+            const KernelTable<Real>& kernels = carom::runnable_kernel_tables().back()->of<Real>();
+            for (const bool are_known : {false, true, true}) {
+                grid.build(bodies.input_with_standing(moving, are_known), kernels, executor);
+                CHECK(wrong_pairs(bodies, listed(grid.find_candidates(executor))) == 0);
+                std::set<std::int32_t> order(grid.order().begin(), grid.order().end());
+                CHECK(order.size() == bodies.count());
+                for (std::size_t row = 0; row < bodies.count(); row += 37)
+                    CHECK(wrong_neighbours(bodies, grid, bodies.x[row], bodies.y[row], bodies.reach[row]) ==
+                          0);
+                for (std::size_t row = 0; row < moving; ++row)  // the others move
+                    bodies.x[row] =
+                        static_cast<Real>(static_cast<double>(bodies.x[row]) * 0.8 + 0.1 * world.extent);
+            }
+        }
     }
 }

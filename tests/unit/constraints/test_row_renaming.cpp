@@ -27,6 +27,15 @@ TEST_SUITE("constraints/row renaming") {
         CHECK_FALSE(trail.has_moved());
     }
 
+    TEST_CASE("a row that makes room for another body is found at the end") {
+        RowRenaming trail;
+        trail.start(4);
+        trail.follow_made_room(1, 4);  // 0, a new one, 2, 3, 1
+        CHECK(trail.new_rows() == std::vector<std::int32_t>{0, 4, 2, 3});
+        trail.follow_removed(0, 4);  // 1, a new one, 2, 3
+        CHECK(trail.new_rows() == std::vector<std::int32_t>{RowRenaming::kGone, 0, 2, 3});
+    }
+
     TEST_CASE("rows that were added since are nobody's, even when they are sorted among the old ones") {
         RowRenaming trail;
         trail.start(2);

@@ -27,7 +27,8 @@ struct RandomPaths {
     Column<PathLink<Real>> links;
     std::array<std::size_t, 2> first_link{};
     Column<std::int32_t> heads;
-    Column<Real> velocity, displacement, turn;
+    Column<Real> velocity, displacement, turn, restless;
+    std::uint8_t is_slender = 0;
     Column<std::byte> scratch;
 
     RandomPaths(std::uint64_t seed, std::size_t longest, double friction) : length(longest) {
@@ -39,6 +40,7 @@ struct RandomPaths {
         const auto still = static_cast<std::int32_t>(rows - 1);
         links.resize(length), heads.resize(kPathLanes);
         velocity.resize(4 * rows), displacement.resize(2 * rows), turn.resize(rows);
+        restless.resize(kPathLanes);
         scratch.resize(path_scratch_bytes(length));
         first_link = {0, length};
         for (std::size_t lane = 0; lane < kPathLanes; ++lane) {
@@ -76,6 +78,7 @@ struct RandomPaths {
         SolvePaths<Real> k{};
         k.links = links.data(), k.first_link = first_link.data(), k.heads = heads.data();
         k.velocity = velocity.data(), k.displacement = displacement.data(), k.turn = turn.data();
+        k.restless = restless.data(), k.is_slender = &is_slender;
         k.h = static_cast<Real>(kH), k.inverse_h = static_cast<Real>(1 / kH);
         k.recovery = Real(0.05), k.push = 6, k.velocity_tolerance = Real(1e-5);
         k.bold_iterations = 4, k.most_iterations = 60, k.sweeps_of_unsettled = 0, k.scratch = scratch.data();
@@ -154,6 +157,35 @@ TEST_SUITE("kernels/solve_paths") {
         CHECK(solved > 2500);
         CHECK(unsettled < 120);
     }
+    TEST_CASE_TEMPLATE("a bundle of which no path was fast is left out, but not one that is slender", Real,
+                       float, double) {
+        const auto& kernels = runnable_kernel_tables().front()->of<Real>();
+        const auto is_left_out = [&](Real resting_speed, bool is_slender, bool is_slow) {
+            RandomPaths<Real> paths(5, 8, 0.5);
+            const Column<Real> before = paths.velocity;
+            paths.is_slender = is_slender ? 1 : 0;
+            for (std::size_t lane = 0; lane < kPathLanes; ++lane) paths.restless[lane] = Real(0.1);
+            if (!is_slow) paths.restless[kPathLanes - 1] = 2;
+            SolvePaths<Real> k = paths.arguments();
+            k.resting_speed = resting_speed;
+            kernels.convex->paths.solve(k, 0, 1);
+            return have_equal_bits(before, paths.velocity);
+        };
+        CHECK(is_left_out(1, false, true));
+        CHECK_FALSE(is_left_out(0, false, true));
+        CHECK_FALSE(is_left_out(1, true, true));
+        CHECK_FALSE(is_left_out(1, false, false));
+        // What was solved says how fast it was: here up to several m/s, and a path that did not settle never
+        // rests.
+        RandomPaths<Real> paths(5, 8, 0.5);
+        SolvePaths<Real> k = paths.arguments();
+        k.most_iterations = 1;
+        const std::size_t unsettled = kernels.convex->paths.solve(k, 0, 1).unsettled;
+        REQUIRE(unsettled > 0);
+        CHECK(std::ranges::count(paths.restless, static_cast<Real>(kUnsettled)) ==
+              static_cast<std::ptrdiff_t>(unsettled));
+        CHECK(std::ranges::all_of(paths.restless, [](Real speed) { return speed > Real(0.1); }));
+    }
     TEST_CASE_TEMPLATE("every instruction set gives the same bits", Real, float, double) {
         for (std::uint64_t seed = 1; seed <= 12; ++seed) {
             RandomPaths<Real> first(seed, 1 + seed % 16, 0.5);
@@ -172,6 +204,7 @@ TEST_SUITE("kernels/solve_paths") {
                 CHECK(have_equal_bits(first.velocity, paths.velocity));
                 CHECK(have_equal_bits(first.displacement, paths.displacement));
                 CHECK(have_equal_bits(first.turn, paths.turn));
+                CHECK(have_equal_bits(first.restless, paths.restless));
                 CHECK(std::memcmp(first.links.data(), paths.links.data(),
                                   paths.length * sizeof(PathLink<Real>)) == 0);
             }

@@ -1,6 +1,6 @@
 #include <carom/scene.hpp>
 
-#include "scene/validation.hpp"
+#include "scene/validation/validation.hpp"
 
 #include <doctest/doctest.h>
 

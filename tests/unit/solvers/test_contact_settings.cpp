@@ -1,5 +1,5 @@
 // The lengths by which solver `soft` judges contacts, against bodies that are stepped by hand.
-#include "solvers/soft/contact_settings.hpp"
+#include "solvers/soft/contacts/contact_settings.hpp"
 
 #include <doctest/doctest.h>
 

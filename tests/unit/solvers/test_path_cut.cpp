@@ -116,6 +116,24 @@ TEST_SUITE("solvers/paths/path_cut") {
         CHECK(cut.links() == 12);
         CHECK(cut.longest() == 12);
     }
+    TEST_CASE(
+        "a tower is slender, until a load leads to its bodies from aside, and where nothing is loaded yet") {
+        const auto is_slender = [](int high, bool is_loaded, bool has_neighbours) {
+            std::vector<ContactLink> contacts{{0, ContactLink::kNothing, 0, -1, 0, 1, is_loaded}};
+            for (std::int32_t body = 1; body < high; ++body)
+                contacts.push_back({body - 1, body, 0, 1, 0, -1, is_loaded});
+            if (has_neighbours)
+                for (std::int32_t body = 0; body < high; ++body)
+                    contacts.push_back({body, high + body, 1, 0, -1, 0, is_loaded});
+            PathCut cut;
+            cut.cut(contacts, static_cast<std::size_t>(2 * high), 128);
+            return std::ranges::any_of(cut.is_slender(), [](std::uint8_t slender) { return slender != 0; });
+        };
+        CHECK(is_slender(12, true, false));
+        CHECK_FALSE(is_slender(12, true, true));
+        CHECK_FALSE(is_slender(12, false, false));
+        CHECK_FALSE(is_slender(PathCut::kSlender, true, false));
+    }
     TEST_CASE("a load goes straight through: contacts that face each other are joined") {
         // One body between four: left, right, below and above it.
         const std::vector<ContactLink> contacts{{0, 1, -1, 0, 1, 0, true},

@@ -1,9 +1,12 @@
 // Filters: which bodies touch which, by group, category and mask.
+#include "support/report.hpp"
+
 #include <doctest/doctest.h>
 
 #include <carom/carom.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 using namespace carom;
@@ -176,5 +179,142 @@ TEST_SUITE("world: filters") {
         CHECK(world.is_asleep(box));
         CHECK(world.state(lying).position.y < 0);
         CHECK(world.overlaps().max < 1e-3);
+    }
+    TEST_CASE(
+        "a filter that is changed while a world runs lets fall what was held and holds what would fall") {
+        for (const Solver solver : {Solver::soft, Solver::impulse})
+            for (const Body& falling : kFalling)
+                for (const Body& floor : kFloors)
+                    for (const bool of_floor : {false, true}) {
+                        const bool discs = falling.shape.index() == 0 && floor.shape.index() == 0;
+                        if (solver == Solver::impulse && !discs) continue;
+                        CAPTURE(falling.shape.index());
+                        CAPTURE(floor.shape.index());
+                        CAPTURE(of_floor);
+                        Scene scene;
+                        scene.gravity = {0, -10};
+                        scene.accuracy.solver = solver;
+                        const BodyId below = scene.add(floor);
+                        Body body = falling;
+                        body.position = {0.1, 0.8};
+                        const BodyId id = scene.add(body);
+                        World world(scene);
+                        const BodyId changed = of_floor ? below : id;
+                        for (int step = 0; step < 60; ++step) world.step(1.0 / 60);
+                        CHECK(world.state(id).position.y > 0);
+                        world.set_filter(changed, {.mask = 0});
+                        CHECK(world.filter(changed) == Filter{.mask = 0});
+                        const double speed = world.state(id).velocity.y;
+                        world.step(1.0 / 60);
+                        CHECK(world.state(id).velocity.y - speed ==
+                              doctest::Approx(-10.0 / 60).epsilon(1e-3));
+                        for (int step = 0; step < 30; ++step) world.step(1.0 / 60);
+                        CHECK(world.state(id).position.y < -0.3);
+                        // Back above the floor, it is held again.
+                        world.set_filter(changed, {.group = 4});
+                        world.set_filter(changed, {});
+                        CHECK(world.filter(changed) == Filter{});
+                        world.set_position(id, {0.1, 0.8}), world.set_velocity(id, {});
+                        for (int step = 0; step < 60; ++step) world.step(1.0 / 60);
+                        CHECK(world.state(id).position.y > 0);
+                    }
+    }
+
+    TEST_CASE("a world whose bodies were all of one group looks for pairs once one has left it") {
+        for (const bool leaves : {false, true}) {
+            Scene scene;
+            const BodyId left =
+                scene.add({.shape = Disc{0.5}, .position = {-2, 0}, .velocity = {3, 0}, .group = -1});
+            const BodyId right =
+                scene.add({.shape = Disc{0.5}, .position = {2, 0}, .velocity = {-3, 0}, .group = -1});
+            World world(scene);
+            for (int step = 0; step < 5; ++step) world.step(1.0 / 60);
+            if (leaves) world.set_filter(right, {.group = -2});
+            for (int step = 0; step < 60; ++step) world.step(1.0 / 60);
+            CHECK((world.state(left).position.x < world.state(right).position.x) == leaves);
+        }
+    }
+
+    TEST_CASE("what sleeps on a body wakes when its filter changes") {
+        for (const Body& falling : kFalling)
+            for (const Body& floor : kFloors)
+                for (const bool of_floor : {false, true}) {
+                    CAPTURE(falling.shape.index());
+                    CAPTURE(floor.shape.index());
+                    Scene scene;
+                    scene.gravity = {0, -10};
+                    scene.effects.sleep = true;
+                    const BodyId below = scene.add(floor);
+                    Body body = falling;
+                    body.position = {0, 0.3}, body.material.friction = 0.5;
+                    const BodyId id = scene.add(body);
+                    World world(scene);
+                    for (int step = 0; step < 400; ++step) world.step(1.0 / 60);
+                    CHECK(world.is_asleep(id));
+                    world.set_filter(of_floor ? below : id, {.category = 0});
+                    CHECK_FALSE(world.is_asleep(id));
+                    for (int step = 0; step < 30; ++step) world.step(1.0 / 60);
+                    CHECK(world.state(id).position.y < -0.3);
+                }
+    }
+
+    TEST_CASE_TEMPLATE(
+        "a filter that says the same leaves a pile at rest, and a state goes on to the same bits", Real,
+        float, double) {
+        Scene scene;
+        scene.gravity = {0, -10};
+        scene.walls = Walls{.min = {0, 0}, .max = {12, 60}, .material = {.friction = 0.5}};
+        for (int i = 0; i < 200; ++i)
+            scene.add({.shape = Disc{0.4 + 0.1 * ((i * 7) % 5) / 4},
+                       .position = {0.6 + 1.2 * (i % 9), 0.6 + 1.1 * (i / 9)},
+                       .material = {.friction = 0.5}});
+        BasicWorld<Real> world(scene);
+        for (int step = 0; step < 900; ++step) world.step(1.0 / 60);
+        const std::uint64_t before = world.state_hash();
+        world.set_filter({50, 0}, {});
+        CHECK(world.state_hash() == before);
+        const auto rms = [&](const BasicWorld<Real>& of) {
+            double sum = 0;
+            for (std::uint32_t i = 0; i < 200; ++i) {
+                const Vec2 v = of.state({i, 0}).velocity;
+                sum += v.x * v.x + v.y * v.y;
+            }
+            return std::sqrt(sum / 200);
+        };
+        double worst = 0;
+        for (std::uint32_t step = 0; step < 60; ++step) {
+            // Another category, that all masks have: nothing touches anything else than before.
+            const auto bit = static_cast<std::uint16_t>(step % 2 == 0 ? kRed : kDefaultCategory);
+            world.set_filter({3 * step, 0}, {.category = bit});
+            world.step(1.0 / 60);
+            worst = std::max(worst, rms(world));
+        }
+        test::report("rms speed at most ", worst);
+        CHECK(worst < 1e-4);
+        std::vector<std::byte> state(world.state_bytes());
+        world.save_state(state);
+        BasicWorld<Real> other(Scene{});
+        other.restore_state(state);
+        for (std::uint32_t step = 0; step < 20; ++step)
+            for (BasicWorld<Real>* each : {&world, &other}) {
+                each->set_filter({7 * step, 0}, {.mask = static_cast<std::uint16_t>(step % 2)});
+                each->step(1.0 / 60);
+            }
+        CHECK(world.state_hash() == other.state_hash());
+    }
+
+    TEST_CASE("a filter of a body that is gone is refused, and any under the solver event") {
+        Scene scene;
+        scene.accuracy.solver = Solver::event;
+        const BodyId body = scene.add({.shape = Disc{0.5}});
+        World world(scene);
+        CHECK_THROWS_WITH_AS(world.set_filter(body, {.group = 2}), doctest::Contains("World::set_filter"),
+                             Error);
+        CHECK_THROWS_WITH_AS(world.set_filter(body, {.group = 2}), doctest::Contains("no filters"), Error);
+        world.set_filter(body, {});
+        CHECK(world.filter(body) == Filter{});
+        world.remove(body);
+        CHECK_THROWS_AS(world.set_filter(body, {}), Error);
+        CHECK_THROWS_AS(static_cast<void>(world.filter(body)), Error);
     }
 }

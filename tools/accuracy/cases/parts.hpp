@@ -3,7 +3,9 @@
 #include <carom/generators.hpp>
 #include <carom/scene.hpp>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <vector>
@@ -29,6 +31,63 @@ inline Body disc(double radius, double mass, Vec2 position, Vec2 velocity, const
     return body;
 }
 
+inline Body box(double width, double height, Vec2 position, double angle, double friction) {
+    Body body = disc(1, 1, position, {}, bouncy(0, friction));
+    body.shape = Box{width, height};
+    body.mass.reset();
+    body.angle = angle;
+    return body;
+}
+
+/// The same, as nothing moves it.
+inline Body block(double width, double height, Vec2 position, double angle, double friction) {
+    Body body = box(width, height, position, angle, friction);
+    body.type = BodyType::static_body;
+    return body;
+}
+
+/// A floor at y = 0 from `left` to `right`: a block, which other engines can lay boxes on.
+inline Body ground(double left, double right, double friction) {
+    return block(right - left, 10, {0.5 * (left + right), -5}, 0, friction);
+}
+
+/// A disc of a mechanism: it touches no other of them.
+inline Body bob(Vec2 position, double mass, double radius = 0.1) {
+    Body body = disc(radius, mass, position, {}, {});
+    body.group = -1;
+    return body;
+}
+
+/// A bob that nothing moves: joints hang on it. (The adapters of other engines know joints of two bodies.)
+inline Body pivot(Vec2 position) {
+    Body body = bob(position, 1);
+    body.type = BodyType::static_body;
+    return body;
+}
+
+inline double distance(Vec2 a, Vec2 b) {
+    return std::hypot(a.x - b.x, a.y - b.y);
+}
+
+/// Integrates y' = rate(y) by the classical method of Runge and Kutta: the reference where there is no
+/// formula.
+template <std::size_t kCount, class Rate>
+void integrate(std::array<double, kCount>& y, double time, double longest_step, const Rate& rate) {
+    using State = std::array<double, kCount>;
+    const int steps = static_cast<int>(std::ceil(time / longest_step - 1e-9));
+    const double h = time / steps;
+    const auto moved = [&](const State& by, double share) {
+        State sum = y;
+        for (std::size_t i = 0; i < kCount; ++i) sum[i] += share * by[i];
+        return sum;
+    };
+    for (int step = 0; step < steps; ++step) {
+        const State k1 = rate(y), k2 = rate(moved(k1, 0.5 * h)), k3 = rate(moved(k2, 0.5 * h)),
+                    k4 = rate(moved(k3, h));
+        for (std::size_t i = 0; i < kCount; ++i) y[i] += h / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
+    }
+}
+
 /// A floor at y = 0, without sides.
 inline Walls floor_of(const Material& material) {
     Walls walls;
@@ -36,6 +95,11 @@ inline Walls floor_of(const Material& material) {
     walls.left = walls.right = walls.top = false;
     walls.material = material;
     return walls;
+}
+
+/// Steps that end at every multiple of 1/30 s, of scenes that take longer.
+inline std::vector<double> steps_of_structures() {
+    return {1.0 / 30, 1.0 / 60, 1.0 / 120, 1.0 / 240, 1.0 / 480};
 }
 
 /// Steps that end at every multiple of 1/30 s.

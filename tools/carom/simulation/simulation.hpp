@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -45,6 +46,11 @@ class Simulation {
     /// The events of the last step.
     virtual Events events() const { return {}; }
     virtual JointErrors joint_errors() const { return {}; }
+    /// N, of a joint of the scene on its body b, the mean of the last step; not a number if it is not known.
+    virtual Vec2 joint_force(std::size_t) const {
+        constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+        return {kUnknown, kUnknown};
+    }
     virtual std::vector<std::size_t> quarantined() const = 0;
     virtual std::uint64_t state_hash() const = 0;
 };

@@ -60,6 +60,9 @@ class WorldSimulation final : public Simulation {
     Plan plan() const override { return world_.plan(); }
     OverlapReport overlaps() const override { return world_.overlaps(); }
     JointErrors joint_errors() const override { return world_.joint_errors(); }
+    Vec2 joint_force(std::size_t joint) const override {
+        return world_.joint_force(JointId::of(static_cast<std::uint32_t>(joint)));
+    }
     Events events() const override { return world_.events(); }
     std::vector<std::size_t> quarantined() const override {
         std::vector<std::size_t> bodies;

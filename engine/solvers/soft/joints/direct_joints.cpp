@@ -85,12 +85,15 @@ void DirectJoints<Real>::begin_step(const JointStep<Real>& step, bool touches, b
         system_.joints[j].impulse = system_.joints[j].joint->impulse;
         system_.joints[j].force = {}, system_.joints[j].torque = 0;
     }
-    if (!touches_) half_kick(step, -1);
+    const auto is_free = [&](std::uint32_t slot) { return step.world.joints[slot].is_free; };
+    was_free_ = std::all_of(slots_.begin(), slots_.end(), is_free);
+    if (was_free_) half_kick(step, -1);
 }
 
 /// Velocities at whole times less half of what gravity adds in a substep are those between two substeps, and
 /// that again at the end (end_step): so each substep advances from the middle of one to the middle of the
-/// next. What contacts hold has no such half.
+/// next. A group that touches something keeps velocities between substeps to the end, as contacts do, and
+/// its next step begins with them: so neither the first touch nor the last changes its energy.
 template <class Real>
 void DirectJoints<Real>::half_kick(const JointStep<Real>& step, double sign) {
     const Vec2 kick = 0.5 * sign * step.terms.gravity_change;
@@ -192,7 +195,7 @@ void DirectJoints<Real>::solve_first(const JointStep<Real>& step, int substep) {
         if (substep == 0) system_.give_impulses();
         system_.solve_curved(1);
     } else {
-        system_.prepare(!touches_ && substep == 0 ? JointSystem::Part::half : JointSystem::Part::whole);
+        system_.prepare(was_free_ && substep == 0 ? JointSystem::Part::half : JointSystem::Part::whole);
         correct(step);
         system_.pull();
         if (converges_)
@@ -261,6 +264,7 @@ void DirectJoints<Real>::store(JointStore& joints, double dt) const {
     for (std::size_t j = 0; j < slots_.size(); ++j) {
         StoredJoint& joint = joints[slots_[j]];
         const JointSystem::Member& member = system_.joints[j];
+        joint.is_free = !touches_;
         joint.impulse = touches_ ? member.impulse : last_impulse_[j];
         joint.force = (1 / dt) * member.force, joint.torque = member.torque / dt;
     }

@@ -62,7 +62,8 @@ class DirectJoints {
     std::vector<SystemBody> before_;                   // that were read
     std::vector<std::array<double, 3>> last_impulse_;  // N s, by joint: of the last substep of a step
     double least_error_ = 0, most_error_ = 0;          // m
-    bool touches_ = false, is_beside_ = false, converges_ = false;
+    bool touches_ = false, was_free_ = true;           // in this step; in the last one
+    bool is_beside_ = false, converges_ = false;
 };
 
 extern template class DirectJoints<float>;

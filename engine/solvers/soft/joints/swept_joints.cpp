@@ -66,7 +66,7 @@ void SweptJoints<Real>::Kind::for_each_column(const Fn& fn) {
     for (Column<Real>* column : {&start_arm_a_x, &start_arm_a_y, &start_arm_b_x, &start_arm_b_y, &arm_a_x,
                                  &arm_a_y, &arm_b_x, &arm_b_y})
         fn(*column, unsigned{kArms});
-    for (Column<Real>* column : {&per_rim_a, &per_rim_b}) fn(*column, unsigned{kRims});
+    for (Column<Real>* column : {&per_rim_a, &per_rim_b, &seen_a, &seen_b}) fn(*column, unsigned{kRims});
     for (Column<Real>* column :
          {&impulse_z, &impulse_w, &value, &alpha, &gamma, &lower, &upper, &speed, &most})
         fn(*column, unsigned{kDrives});
@@ -103,6 +103,8 @@ JointColumns<Real> SweptJoints<Real>::Kind::columns() {
             arm_b_y.data(),
             per_rim_a.data(),
             per_rim_b.data(),
+            seen_a.data(),
+            seen_b.data(),
             impulse_z.data(),
             impulse_w.data(),
             value.data(),
@@ -226,6 +228,7 @@ void SweptJoints<Real>::begin_step(const JointStep<Real>& step, const StepLoops<
     kernels_ = loops.kernels;
     if (!is_loaded_) load(step.world);
     arguments_.assign(kKinds, {});
+    stiffness_.begin(static_cast<std::size_t>(first_beyond_));
     for (std::size_t kind = 0; kind < kKinds; ++kind) {
         Kind& own = kinds_[kind];
         struct End {
@@ -262,6 +265,14 @@ void SweptJoints<Real>::begin_step(const JointStep<Real>& step, const StepLoops<
             own.start_arm_a_x[i] = real(a.arm.x), own.start_arm_a_y[i] = real(a.arm.y);
             own.start_arm_b_x[i] = real(b.arm.x), own.start_arm_b_y[i] = real(b.arm.y);
             own.per_rim_a[i] = real(a.per_rim), own.per_rim_b[i] = real(b.per_rim);
+            Vec2 pull{own.impulse_x[i], own.impulse_y[i]};  // N s, on b
+            if (kind != kHinges) {
+                const Vec2 d = (b.place + b.arm) - (a.place + a.arm);
+                const double distance = std::sqrt(length_squared(d));
+                const double along = kind == kSprings ? sum_of_impulses(own, i) : pull.x;
+                pull = distance > 0 ? (along / distance) * d : Vec2{};
+            }
+            stiffness_.add(own.a[i], -dot(a.arm, pull)), stiffness_.add(own.b[i], dot(b.arm, pull));
             longest_ = std::max(
                 {longest_, std::fabs(a.arm.x), std::fabs(a.arm.y), std::fabs(b.arm.x), std::fabs(b.arm.y)});
         }
@@ -276,6 +287,10 @@ void SweptJoints<Real>::begin_step(const JointStep<Real>& step, const StepLoops<
                       : kind == kAngles ? kLargestTurn
                                         : kLargestCorrection);
     }
+    for (Kind& own : kinds_)
+        if (!own.seen_a.empty())
+            stiffness_.see(bodies, step.terms.substep_dt, own.a, own.seen_a),
+                stiffness_.see(bodies, step.terms.substep_dt, own.b, own.seen_b);
 }
 
 /// What does not change from step to step, and the impulses of the last one.
@@ -410,8 +425,9 @@ void SweptJoints<Real>::book(const JointStep<Real>& step, Books& books) const {
         for (std::size_t i = 0; i < own.slot.size(); ++i) {
             if (own.slot[i] < 0) continue;
             if (kind == kAngles) {
-                for (const auto& [number, per_rim, sign] : {std::tuple{own.a[i], own.per_rim_a[i], -0.5},
-                                                            std::tuple{own.b[i], own.per_rim_b[i], 0.5}}) {
+                for (const auto& [number, per_rim, sign] :
+                     {std::tuple{own.a[i], own.per_rim_a[i] * own.seen_a[i], -0.5},
+                      std::tuple{own.b[i], own.per_rim_b[i] * own.seen_b[i], 0.5}}) {
                     const Real* record = &step.records.velocity[4 * static_cast<std::size_t>(number)];
                     if (number >= first_beyond_ || !(record[3] > Real(0))) continue;
                     books.joints +=
@@ -435,8 +451,10 @@ void SweptJoints<Real>::book(const JointStep<Real>& step, Books& books) const {
             const bool has_arms = kind != kRods;
             const Vec2 arm_a = has_arms ? Vec2{own.arm_a_x[i], own.arm_a_y[i]} : Vec2{},
                        arm_b = has_arms ? Vec2{own.arm_b_x[i], own.arm_b_y[i]} : Vec2{};
-            books.immovable_momentum -= work_on(own.a[i], -1 * j, arm_a, has_arms ? own.per_rim_a[i] : 0);
-            books.immovable_momentum -= work_on(own.b[i], j, arm_b, has_arms ? own.per_rim_b[i] : 0);
+            books.immovable_momentum -=
+                work_on(own.a[i], -1 * j, arm_a, has_arms ? own.per_rim_a[i] * own.seen_a[i] : 0);
+            books.immovable_momentum -=
+                work_on(own.b[i], j, arm_b, has_arms ? own.per_rim_b[i] * own.seen_b[i] : 0);
         }
     }
 }
@@ -464,7 +482,7 @@ void SweptJoints<Real>::store(JointStore& joints, double substep_dt) const {
 
 template <class Real>
 std::size_t SweptJoints<Real>::bytes() const {
-    std::size_t bytes = no_turn_.bytes();
+    std::size_t bytes = no_turn_.bytes() + stiffness_.bytes();
     for (const Kind& kind : kinds_) {
         bytes += kind.a.bytes() + kind.b.bytes() + kind.slot.bytes() +
                  kind.sources.capacity() * sizeof(typename Kind::Source);

@@ -7,6 +7,7 @@
 #include "kernels/joint_arguments.hpp"
 #include "parallel/phases.hpp"
 #include "solvers/soft/joints/joint_step.hpp"
+#include "solvers/soft/joints/joint_stiffness.hpp"
 
 namespace carom {
 
@@ -63,7 +64,7 @@ class SweptJoints {
         Column<std::int32_t> a, b, slot;
         Column<Real> start_x, start_y, length, impulse_x, impulse_y, normal_x, normal_y, per_length;
         Column<Real> start_arm_a_x, start_arm_a_y, start_arm_b_x, start_arm_b_y;
-        Column<Real> arm_a_x, arm_a_y, arm_b_x, arm_b_y, per_rim_a, per_rim_b;
+        Column<Real> arm_a_x, arm_a_y, arm_b_x, arm_b_y, per_rim_a, per_rim_b, seen_a, seen_b;
         Column<Real> impulse_z, impulse_w, value, alpha, gamma, lower, upper, speed, most;
         std::vector<std::size_t> begin;  // of each group, and the end
         /// What a joint is made of, in the order of the columns: joints themselves lie apart in memory.
@@ -96,9 +97,10 @@ class SweptJoints {
     std::array<Kind, kKinds> kinds_;
     TaskGroups groups_;
     std::size_t joints_ = 0, parts_of_joints_ = 0, colours_ = 0;
-    std::int32_t first_beyond_ = 0;             // row
-    bool is_loaded_ = false;                    // whether columns have what the store keeps
-    double longest_ = 0;                        // m, arm of hinges
+    std::int32_t first_beyond_ = 0;  // row
+    bool is_loaded_ = false;         // whether columns have what the store keeps
+    double longest_ = 0;             // m, arm of hinges
+    JointStiffness stiffness_;
     Column<Real> no_turn_;                      // in place of turns in worlds where nothing turns
     std::vector<SweepJoints<Real>> arguments_;  // by kind
     const KernelTable<Real>* kernels_ = nullptr;

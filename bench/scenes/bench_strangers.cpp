@@ -1,0 +1,148 @@
+#include <carom/carom.hpp>
+
+#include <benchmark/benchmark.h>
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <string>
+#include <vector>
+
+#include "measure/gas.hpp"
+#include "measure/text.hpp"
+
+// 200 discs, and what has nothing to do with them: static discs far away, the rest of a long terrain, a speed
+// that all share, a disc much smaller than the others.
+//     strangers/<case>/<float|double>
+// `ratio` is the median time of a step over that of the same scene without it, both in processor time of the
+// thread. docs/decisions/0033-costs-of-strangers.md has the figures.
+
+namespace carom::bench {
+namespace {
+
+constexpr double kStep = measure::kStep;
+constexpr int kFirst = 60, kMeasured = 180;  // steps
+
+Material material_of(double friction, double restitution) {
+    return {.friction = friction, .restitution = restitution};
+}
+
+/// A thin gas beside so many static discs.
+Scene beside_static(Solver solver, int strangers) {
+    const Material elastic = material_of(0, 1);
+    Scene scene;
+    scene.accuracy.solver = solver;
+    scene.walls = Walls{.min = {-2, -2}, .max = {1000, 1000}, .material = elastic};
+    for (int i = 0; i < 200; ++i)
+        scene.add({.shape = Disc{0.5},
+                   .position = {3.0 * (i % 20), 3.0 * (i / 20)},
+                   .velocity = {std::cos(2.4 * i), std::sin(2.4 * i)},
+                   .material = elastic});
+    const int columns = static_cast<int>(std::ceil(std::sqrt(strangers)));
+    for (int i = 0; i < strangers; ++i)
+        scene.add({.type = BodyType::static_body,
+                   .shape = Disc{0.5},
+                   .position = {200 + 1.5 * (i % columns), 200 + 1.5 * (i / columns)},
+                   .material = elastic});
+    return scene;
+}
+
+Scene rough(Vec2 gravity = {0, -10}) {
+    Scene scene;
+    scene.accuracy.solver = Solver::soft;
+    scene.gravity = gravity;
+    return scene;
+}
+
+/// Discs that fall onto hills and roll.
+Scene on_terrain(int points) {
+    Scene scene = rough();
+    std::vector<Vec2> hills;
+    for (int i = 0; i < points; ++i)
+        hills.push_back({0.5 * (points / 2 - i), 2 * std::sin(0.05 * i) + 0.2 * std::sin(0.9 * i)});
+    scene.add({.type = BodyType::static_body, .shape = Chain{hills}, .material = material_of(0.5, 0)});
+    for (int i = 0; i < 200; ++i)
+        scene.add({.shape = Disc{0.5},
+                   .position = {-25 + 1.25 * (i % 40), 8 + 1.3 * (i / 40)},
+                   .material = material_of(0.5, 0)});
+    return scene;
+}
+
+/// Discs side by side that fall at a common speed [m/s].
+Scene falling(double speed) {
+    Scene scene = rough();
+    for (int i = 0; i < 200; ++i)
+        scene.add({.shape = Disc{0.4 + 0.2 * ((i * 37) % 101) / 101},
+                   .position = {1.1 * (i % 10), 1.1 * (i / 10)},
+                   .velocity = {0.3 * std::sin(1.7 * i), -speed + 0.5 * std::sin(3.1 * i)},
+                   .material = material_of(0.5, 0)});
+    return scene;
+}
+
+/// A pile of 400 with one small disc, where the radius is above zero [m].
+Scene with_small(double radius) {
+    Scene scene = rough();
+    scene.walls = Walls{.min = {0, 0}, .max = {22, 500}, .top = false, .material = material_of(0.5, 0)};
+    for (int i = 0; i < 400; ++i)
+        scene.add({.shape = Disc{0.4 + 0.2 * ((i * 37) % 101) / 101},
+                   .position = {0.7 + 1.25 * (i % 16), 0.7 + 1.25 * (i / 16)},
+                   .material = material_of(0.5, 0)});
+    if (radius > 0)
+        scene.add({.shape = Disc{radius}, .position = {10.3, 40}, .material = material_of(0.5, 0)});
+    return scene;
+}
+
+/// @return s, median of a step
+template <class World>
+double time_of_step(const Scene& scene) {
+    const auto now = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
+    constexpr int kTogether = 5;  // steps: the clock ticks in microseconds
+    World world(scene, {.threads = 1});
+    for (int i = 0; i < kFirst; ++i) world.step(kStep);
+    std::vector<double> times;
+    for (int i = 0; i < kMeasured / kTogether; ++i) {
+        const double start = now();
+        for (int k = 0; k < kTogether; ++k) world.step(kStep);
+        times.push_back((now() - start) / kTogether);
+    }
+    const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
+    std::nth_element(times.begin(), middle, times.end());
+    return *middle;
+}
+
+template <class World>
+void run_strangers(benchmark::State& state, const Scene& with, const Scene& without) {
+    double time = 0;
+    for (auto _ : state) {
+        time = time_of_step<World>(with);
+        state.SetIterationTime(time);
+    }
+    state.counters["ratio"] = time / time_of_step<World>(without);
+}
+
+const bool kAdded = [] {
+    const auto add = [](const std::string& name, const Scene& with, const Scene& without) {
+        const auto add_for = [&](const char* precision, auto run) {
+            benchmark::RegisterBenchmark(
+                measure::joined("strangers/", name, "/", precision).c_str(),
+                [run, with, without](benchmark::State& state) { run(state, with, without); })
+                ->Unit(benchmark::kMicrosecond)
+                ->UseManualTime()
+                ->Iterations(1);
+        };
+        add_for("float", &run_strangers<World>);
+        add_for("double", &run_strangers<World64>);
+    };
+    for (const int strangers : {10000, 100000})
+        for (const Solver solver : {Solver::soft, Solver::impulse})
+            add((solver == Solver::soft ? "static-soft-" : "static-impulse-") + std::to_string(strangers),
+                beside_static(solver, strangers), beside_static(solver, 0));
+    for (const int points : {2000, 60000})
+        add("terrain-" + std::to_string(points), on_terrain(points), on_terrain(200));
+    add("falling-150", falling(150), falling(0));
+    add("small-1e-3", with_small(1e-3), with_small(0));
+    add("small-1e-6", with_small(1e-6), with_small(0));
+    return true;
+}();
+
+}  // namespace
+}  // namespace carom::bench

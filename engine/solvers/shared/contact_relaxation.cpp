@@ -1,0 +1,335 @@
+#include "solvers/shared/contact_relaxation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom {
+namespace {
+
+// docs/decisions/0032-piles-of-uneven-masses.md has what other values do.
+
+/// Stiffness of a contact in masses of its heavier body: softer ones give way, stiffer ones take more sweeps.
+constexpr double kStiffness = 1;
+/// A contact gives way by what gravity adds to a velocity in a substep if its load changes by all of it,
+constexpr double kGivesWay = 1;
+/// and is stiffened, by this factor at least, if it gives way by more than this share of it.
+constexpr double kGivesWayMost = 0.2, kStiffening = 10;
+/// Coulomb's law calls for another round if a share of it changes by more than this.
+constexpr double kShareOff = 0.1;
+constexpr int kRounds = 2;
+constexpr int kSweeps = 10;  // a round, at most
+/// Steps of Newton's method for one body, whose contacts come and go with its velocity.
+constexpr int kSteps = 4;
+/// A body is where it should be if its velocity is as near as this share of what gravity adds to it.
+constexpr double kAccuracy = 0.1;
+/// Mass of a rim that does not turn, in masses of its body.
+constexpr double kRimMass = 1e20;
+/// What contacts may add to the energy of all bodies in a substep, in units of m (what gravity adds to a
+/// velocity)²: a load that is let go gives back what its contacts gave way by.
+constexpr double kSlack = 10;
+
+std::size_t index(std::int32_t body) {
+    return static_cast<std::size_t>(body);
+}
+
+/// x <- A⁻¹ x, by Cholesky's factor.
+template <int kSize>
+void solve_small(const std::array<double, kSize * kSize>& a, std::array<double, kSize>& x) {
+    std::array<double, kSize * kSize> l{};
+    for (std::size_t j = 0; j < kSize; ++j) {
+        double pivot = a[kSize * j + j];
+        for (std::size_t k = 0; k < j; ++k) pivot -= l[kSize * j + k] * l[kSize * j + k];
+        // What round-off has eaten does not move.
+        l[kSize * j + j] = pivot > 0 ? std::sqrt(pivot) : HUGE_VAL;
+        for (std::size_t i = j + 1; i < kSize; ++i) {
+            double sum = a[kSize * i + j];
+            for (std::size_t k = 0; k < j; ++k) sum -= l[kSize * i + k] * l[kSize * j + k];
+            l[kSize * i + j] = sum / l[kSize * j + j];
+        }
+    }
+    for (std::size_t i = 0; i < kSize; ++i) {
+        for (std::size_t k = 0; k < i; ++k) x[i] -= l[kSize * i + k] * x[k];
+        x[i] /= l[kSize * i + i];
+    }
+    for (std::size_t i = kSize; i-- > 0;) {
+        for (std::size_t k = i + 1; k < kSize; ++k) x[i] -= l[kSize * k + i] * x[k];
+        x[i] /= l[kSize * i + i];
+    }
+}
+
+}  // namespace
+
+template <int kSize>
+void ContactRelaxation<kSize>::begin(std::span<const LocalContact> contacts, std::size_t bodies) {
+    mass_.resize(bodies), start_.resize(bodies), free_.resize(bodies), velocity_.resize(bodies);
+    first_.assign(bodies + 2, 0);
+    for (const LocalContact& c : contacts) {
+        ++first_[index(c.a) + 2];
+        if (c.b >= 0) ++first_[index(c.b) + 2];
+    }
+    for (std::size_t body = 2; body < first_.size(); ++body) first_[body] += first_[body - 1];
+    of_bodies_.resize(first_.back());
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        const LocalContact& c = contacts[i];
+        of_bodies_[first_[index(c.a) + 1]++] = static_cast<std::uint32_t>(i);
+        if (c.b >= 0) of_bodies_[first_[index(c.b) + 1]++] = static_cast<std::uint32_t>(i);
+    }
+}
+
+template <int kSize>
+void ContactRelaxation<kSize>::set_body(std::size_t body, double inverse_mass, const Velocity& start,
+                                        const Velocity& free, const Velocity& swept) {
+    for (std::size_t k = 0; k < kSize; ++k) mass_[body][k] = (k < 2 ? 1 : 0.5) / std::fabs(inverse_mass);
+    // What does not turn keeps its angle whatever acts on it.
+    if constexpr (kIsRough)
+        if (inverse_mass < 0) mass_[body][2] = kRimMass * mass_[body][0];
+    start_[body] = start, free_[body] = free, velocity_[body] = swept;
+}
+
+template <int kSize>
+void ContactRelaxation<kSize>::describe(std::span<const LocalContact> contacts, double fall) {
+    fall_ = fall;
+    laws_.resize(contacts.size());
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        const LocalContact& c = contacts[i];
+        Law law{};
+        const double nx = c.terms.nx, ny = c.terms.ny;
+        law.a = c.a, law.b = c.b, law.floor = c.terms.floor;
+        law.of_a[0][0] = -nx, law.of_a[0][1] = -ny, law.of_b[0][0] = nx, law.of_b[0][1] = ny;
+        law.surface[0] = c.b < 0 ? c.surface_normal : 0, law.carried[0] = c.impulses.normal;
+        if constexpr (kIsRough) {
+            const double s = c.terms.of_a;
+            law.friction = c.terms.friction, law.rolling = c.terms.rolling;
+            law.of_a[1] = {ny, -nx, -1}, law.of_b[1] = {-ny, nx, -1};
+            law.of_a[2] = {0, 0, -s}, law.of_b[2] = {0, 0, 1 - s};
+            if (c.b < 0) law.surface[1] = c.surface_tangent, law.surface[2] = c.surface_rolling;
+            law.carried[1] = c.impulses.tangent, law.carried[2] = c.impulses.rolling;
+        }
+        double heavier = mass_[index(c.a)][0];
+        if (c.b >= 0) heavier = std::fmax(heavier, mass_[index(c.b)][0]);
+        law.stiffness = std::fmax(kStiffness * heavier, c.impulses.normal / (kGivesWay * fall));
+        laws_[i] = law;
+    }
+}
+
+template <int kSize>
+auto ContactRelaxation<kSize>::velocity_of(const Law& law) const -> Rows {
+    Rows velocity = law.surface;
+    for (std::size_t r = 0; r < kRows; ++r)
+        for (std::size_t k = 0; k < kSize; ++k) {
+            velocity[r] += law.of_a[r][k] * velocity_[index(law.a)][k];
+            if (law.b >= 0) velocity[r] += law.of_b[r][k] * velocity_[index(law.b)][k];
+        }
+    return velocity;
+}
+
+template <int kSize>
+double ContactRelaxation<kSize>::impulse_of(const Law& law, std::size_t row, double velocity) {
+    if (row == 0) return std::fmax(0.0, law.carried[0] + law.stiffness * (law.floor - velocity));
+    return law.share[row] * (law.carried[row] - law.stiffness * velocity);
+}
+
+template <int kSize>
+auto ContactRelaxation<kSize>::impulses_of(const Law& law) const -> Rows {
+    const Rows velocity = velocity_of(law);
+    Rows impulses;
+    for (std::size_t r = 0; r < kRows; ++r) impulses[r] = impulse_of(law, r, velocity[r]);
+    return impulses;
+}
+
+/// Coulomb's law at the present velocities, by a secant: what slides is a damper that takes as much as the
+/// law allows at this speed. @return whether any share has changed much
+template <int kSize>
+bool ContactRelaxation<kSize>::find_shares() {
+    bool any = false;
+    if constexpr (kIsRough)
+        for (Law& law : laws_) {
+            const Rows velocity = velocity_of(law);
+            const double normal = impulse_of(law, 0, velocity[0]);
+            const Rows limit{0, law.friction * normal, law.rolling * normal};
+            for (std::size_t r = 1; r < kRows; ++r) {
+                const double wanted = std::fabs(law.carried[r] - law.stiffness * velocity[r]);
+                const double share = wanted > limit[r] ? limit[r] / wanted : 1;
+                any |= std::fabs(share - law.share[r]) > kShareOff * std::fmax(share, law.share[r]);
+                law.share[r] = share;
+            }
+        }
+    return any;
+}
+
+/// The function that is to become least [J].
+template <int kSize>
+double ContactRelaxation<kSize>::value() const {
+    double sum = 0;
+    for (std::size_t body = 0; body < mass_.size(); ++body)
+        for (std::size_t k = 0; k < kSize; ++k) {
+            const double change = velocity_[body][k] - free_[body][k];
+            sum += mass_[body][k] * change * change;
+        }
+    for (const Law& law : laws_) {
+        const Rows impulses = impulses_of(law);
+        sum += impulses[0] * impulses[0] / law.stiffness;
+        for (std::size_t r = 1; r < kRows; ++r)
+            if (law.share[r] > 0) sum += impulses[r] * impulses[r] / (law.share[r] * law.stiffness);
+    }
+    return 0.5 * sum;
+}
+
+/// What the contacts add to the energy of the bodies beyond the slack [J], but for what moving supports
+/// drive.
+template <int kSize>
+double ContactRelaxation<kSize>::gain() const {
+    double gain = 0;
+    for (std::size_t body = 0; body < mass_.size(); ++body) {
+        gain -= kSlack * mass_[body][0] * fall_ * fall_;
+        for (std::size_t k = 0; k < kSize; ++k) {
+            const double from = free_[body][k], to = velocity_[body][k];
+            gain += 0.5 * mass_[body][k] * (to - from) * (to + from);
+        }
+    }
+    for (std::size_t i = 0; i < laws_.size(); ++i)
+        for (std::size_t r = 0; r < kRows; ++r) gain += impulses_[i][r] * laws_[i].surface[r];
+    return gain;
+}
+
+/// Brings a body to where the function is least for it alone. @return whether that changed its velocity
+template <int kSize>
+bool ContactRelaxation<kSize>::relax(std::size_t body) {
+    bool has_moved = false;
+    for (int step = 0; step < kSteps; ++step) {
+        Velocity gradient;
+        std::array<double, kSize * kSize> second{};
+        for (std::size_t k = 0; k < kSize; ++k) {
+            gradient[k] = mass_[body][k] * (velocity_[body][k] - free_[body][k]);
+            second[(kSize + 1) * k] = mass_[body][k];
+        }
+        for (std::size_t e = first_[body]; e < first_[body + 1]; ++e) {
+            const Law& law = laws_[of_bodies_[e]];
+            const Directions& side = index(law.a) == body ? law.of_a : law.of_b;
+            const Rows velocity = velocity_of(law);
+            for (std::size_t r = 0; r < kRows; ++r) {
+                const double impulse = impulse_of(law, r, velocity[r]);
+                if (impulse == 0) continue;
+                const double stiffness = (r == 0 ? 1 : law.share[r]) * law.stiffness;
+                for (std::size_t m = 0; m < kSize; ++m) {
+                    gradient[m] -= side[r][m] * impulse;
+                    for (std::size_t n = 0; n <= m; ++n)
+                        second[kSize * m + n] += stiffness * side[r][m] * side[r][n];
+                }
+            }
+        }
+        double largest = 0;
+        for (std::size_t k = 0; k < kSize; ++k)
+            largest = std::fmax(largest, std::fabs(gradient[k]) / mass_[body][k]);
+        if (!(largest > kAccuracy * fall_)) break;
+        has_moved = true;
+        solve_small<kSize>(second, gradient);
+        for (std::size_t k = 0; k < kSize; ++k) velocity_[body][k] -= gradient[k];
+    }
+    return has_moved;
+}
+
+/// Sweeps over the bodies whose neighbours have moved until none has, or as often as is of use.
+template <int kSize>
+void ContactRelaxation<kSize>::sweep() {
+    is_due_.assign(mass_.size(), 1);
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+        bool any = false;
+        for (std::size_t body = 0; body < mass_.size(); ++body) {
+            if (!is_due_[body]) continue;
+            is_due_[body] = 0;
+            if (!relax(body)) continue;
+            any = true;
+            for (std::size_t e = first_[body]; e < first_[body + 1]; ++e) {
+                const Law& law = laws_[of_bodies_[e]];
+                const std::int32_t other = index(law.a) == body ? law.b : law.a;
+                if (other >= 0) is_due_[index(other)] = 1;
+            }
+        }
+        if (!any) break;
+    }
+    impulses_.resize(laws_.size());
+    for (std::size_t i = 0; i < laws_.size(); ++i) impulses_[i] = impulses_of(laws_[i]);
+}
+
+/// @return whether any contact gave way too far
+template <int kSize>
+bool ContactRelaxation<kSize>::stiffen() {
+    bool any = false;
+    for (Law& law : laws_) {
+        const double velocity = velocity_of(law)[0], impulse = impulse_of(law, 0, velocity);
+        if (!(impulse > 0) || law.floor - velocity <= kGivesWayMost * fall_) continue;
+        law.stiffness = std::fmax(kStiffening * law.stiffness, impulse / (kGivesWay * fall_));
+        any = true;
+    }
+    return any;
+}
+
+/// Begins with velocities of before and contacts that carry nothing.
+template <int kSize>
+void ContactRelaxation<kSize>::start_without_loads() {
+    for (Law& law : laws_) law.carried = {};
+    velocity_ = start_;
+    find_shares();
+}
+
+/// Scales what contacts do down to where it leaves the bodies the least energy.
+template <int kSize>
+void ContactRelaxation<kSize>::take_back() {
+    double along = 0, squared = 0;
+    for (std::size_t body = 0; body < mass_.size(); ++body)
+        for (std::size_t k = 0; k < kSize; ++k) {
+            const double change = velocity_[body][k] - free_[body][k];
+            along += mass_[body][k] * change * free_[body][k], squared += mass_[body][k] * change * change;
+        }
+    const double share = squared > 0 ? std::fmax(0.0, std::fmin(-along / squared, 1.0)) : 0;
+    for (std::size_t body = 0; body < mass_.size(); ++body)
+        for (std::size_t k = 0; k < kSize; ++k)
+            velocity_[body][k] = free_[body][k] + share * (velocity_[body][k] - free_[body][k]);
+    for (Rows& impulses : impulses_)
+        for (double& impulse : impulses) impulse *= share;
+}
+
+template <int kSize>
+void ContactRelaxation<kSize>::solve(std::span<LocalContact> contacts, double fall) {
+    describe(contacts, fall);
+    // What the sweeps over impulses made of the velocities may be worse than those of before.
+    find_shares();
+    const double by_sweeps = value();
+    swept_ = velocity_, velocity_ = start_;
+    if (!(value() < by_sweeps)) velocity_ = swept_;
+    find_shares();
+    for (int round = 0; round < kRounds; ++round) {
+        sweep();
+        if (gain() > 0) {
+            start_without_loads();
+            sweep();
+            if (gain() > 0) take_back();
+            break;
+        }
+        if (round + 1 == kRounds) break;
+        const bool slides = find_shares(), gives_way = stiffen();
+        if (!slides && !gives_way) break;
+        for (std::size_t i = 0; i < laws_.size(); ++i) laws_[i].carried = impulses_[i];
+    }
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        contacts[i].impulses.normal = impulses_[i][0];
+        if constexpr (kIsRough)
+            contacts[i].impulses.tangent = impulses_[i][1], contacts[i].impulses.rolling = impulses_[i][2];
+    }
+}
+
+template <int kSize>
+std::size_t ContactRelaxation<kSize>::bytes() const {
+    return laws_.capacity() * sizeof(Law) + is_due_.capacity() +
+           (first_.capacity() + of_bodies_.capacity()) * sizeof(std::uint32_t) +
+           (mass_.capacity() + start_.capacity() + free_.capacity() + velocity_.capacity() +
+            swept_.capacity()) *
+               sizeof(Velocity) +
+           impulses_.capacity() * sizeof(Rows);
+}
+
+template class ContactRelaxation<2>;
+template class ContactRelaxation<3>;
+
+}  // namespace carom

@@ -1,0 +1,153 @@
+#include "solvers/soft/contacts/contact_sweeps.hpp"
+
+#include <algorithm>
+
+namespace carom {
+namespace {
+
+/// Share of an overlap that one substep takes away. Below 0.15 piles sink deeper, above 0.5 they jitter.
+constexpr double kRecovery = 0.4;
+// Factors by which a substep's first sweep over pairs goes farther: docs/decisions/0004-soft-solver.md has
+// the measurements.
+constexpr double kOverRelaxation = 1.7;  // of normal impulses
+constexpr double kCalmOverRelaxation = 1.3;
+/// The factor of the next sweeps over pairs but the last, without friction:
+/// docs/decisions/0023-frictionless-heaps.md.
+constexpr double kSmoothOverRelaxation = 1.7;
+/// Without friction, heaps leave contacts an overlap of so many smaller radii:
+/// what moves bodies within it would not let them rest. Decision 0023 as well.
+constexpr double kSmoothSlop = 0.005;
+/// A contact is calm if the first sweep changes it by less than gravity does in this share of a substep.
+constexpr double kCalm = 1;
+
+// ns a contact on one thread, for the executor: docs/decisions/0012-threads-of-soft.md.
+constexpr double kNanosecondsToSweep = 2;
+
+/// One colour after the other. Within a batch no two contacts share a body that moves, so a whole run of
+/// colours is one call, and may be cut anywhere: to leave out the blocks that the first sweep found calm.
+template <class Real>
+void sweep_pairs(ContactRows<Real>& pairs, std::size_t group,
+                 const typename ContactSweeps<Real>::Sweep& sweep, const SolveContacts<Real>& on_pairs) {
+    using Blocks = typename ContactSweeps<Real>::Blocks;
+    const std::size_t first = pairs.first_place(group) / kContactBlock,
+                      last = pairs.first_place(group + 1) / kContactBlock;
+    const typename ContactRows<Real>::Run* run = pairs.run.data() + first;
+    std::uint8_t* needs_second_sweep = pairs.needs_second_sweep.data();
+    if (sweep.blocks == Blocks::all_and_mark)
+        std::fill(needs_second_sweep + first, needs_second_sweep + last, std::uint8_t{0});
+    if (sweep.blocks != Blocks::restless) {
+        for (std::size_t i = 0; i < pairs.run_count[group]; ++i)
+            sweep.pair_kernel(on_pairs, kContactBlock * run[i].first, kContactBlock * run[i].last);
+        return;
+    }
+    for (std::size_t i = 0; i < pairs.run_count[group]; ++i)
+        for (std::size_t block = run[i].first; block < run[i].last; ++block) {
+            const std::size_t begin = block;
+            while (block < run[i].last && needs_second_sweep[block]) ++block;
+            if (block > begin) sweep.pair_kernel(on_pairs, kContactBlock * begin, kContactBlock * block);
+        }
+}
+
+/// @param candidates  which have the colours of `supports`
+template <class Real>
+void sweep_supports(const ContactRows<Real>& candidates, const ContactRows<Real>& supports, std::size_t group,
+                    const typename ContactSweeps<Real>::Sweep& sweep,
+                    const SolveContacts<Real>& on_supports) {
+    for (std::size_t c = candidates.first_colour[group]; c < candidates.first_colour[group + 1]; ++c)
+        sweep.support_kernel(on_supports, supports.begin[c], supports.begin[c] + supports.length(c));
+}
+
+}  // namespace
+
+template <class Real>
+SolveContacts<Real> ContactSweeps<Real>::arguments(const StepView<Real>& step, ContactRows<Real>& rows) {
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    SolveContacts<Real> k{};
+    k.contacts = rows.columns();
+    k.velocity = step.records.velocity.data(), k.displacement = step.records.displacement.data();
+    k.uniform_friction = real(step.settings.friction), k.uniform_rolling = real(step.settings.rolling);
+    k.inverse_h = real(1 / step.terms.substep_dt), k.h = real(step.terms.substep_dt);
+    k.elapsed = real(step.terms.elapsed);
+    k.recovery = real(kRecovery), k.push = real(step.settings.largest_correction);
+    const double fall = step.terms.fall_speed();
+    const bool is_smooth = step.settings.is_smooth_heap;
+    k.calm = real(fall > 0 && !is_smooth ? kCalm * fall : -1);
+    k.slop = real(is_smooth ? kSmoothSlop * step.settings.radius : 0);
+    const bool has_next = step.settings.iterations > 1;  // which takes back what was too much
+    k.over_relaxation = has_next ? real(kOverRelaxation) : Real(1);
+    k.calm_over_relaxation = has_next ? real(kCalmOverRelaxation) : Real(1);
+    k.needs_second_sweep = rows.needs_second_sweep.data();
+    return k;
+}
+
+template <class Real>
+auto ContactSweeps<Real>::next(const StepView<Real>& step, Blocks blocks, int times) -> std::array<Sweep, 2> {
+    const ContactKernels<Real>& kernels = *step.loops.contacts;
+    const int relaxed = step.settings.is_smooth_heap ? std::max(times - 1, 0) : 0;
+    return {{{kernels.next_pairs, kernels.next_supports, blocks, relaxed, true},
+             {kernels.next_pairs, kernels.next_supports, blocks, times - relaxed}}};
+}
+
+template <class Real>
+void ContactSweeps<Real>::list_parts(std::span<const Sweep> sweeps, const ContactGraph<Real>& graph) {
+    using Kind = typename Part::Kind;
+    const TaskGroups& groups = graph.groups;
+    const bool any_far = graph.pairs.run_count[groups.far()] > 0,
+               any_crowded = graph.supports.first_colour[groups.chunks] <
+                             graph.supports.first_colour[groups.chunks + 1];
+    parts_.clear(), phases_.clear();
+    const auto add_part = [&](Kind kind, const Sweep& sweep, PhaseKind phase) {
+        parts_.push_back({kind, &sweep}), phases_.push_back(phase);
+    };
+    for (const Sweep& sweep : sweeps)
+        for (int i = 0; i < sweep.times; ++i) {
+            add_part(Kind::chunks, sweep, PhaseKind::side_by_side);
+            if (any_far) add_part(Kind::far, sweep, PhaseKind::alone);
+            add_part(Kind::borders, sweep, PhaseKind::side_by_side);
+            if (any_crowded) add_part(Kind::crowded_supports, sweep, PhaseKind::alone);
+        }
+}
+
+template <class Real>
+void ContactSweeps<Real>::run(const StepView<Real>& step, std::span<const Sweep> sweeps,
+                              const SolveContacts<Real>& on_pairs, const SolveContacts<Real>& on_supports) {
+    using Kind = typename Part::Kind;
+    list_parts(sweeps, step.graph);
+    const TaskGroups& groups = step.graph.groups;
+    SolveContacts<Real> relaxed = on_pairs;
+    relaxed.next_over_relaxation = static_cast<Real>(kSmoothOverRelaxation);
+    const auto part = [&](std::size_t phase, std::size_t task) {
+        const Sweep& sweep = *parts_[phase].sweep;
+        const Kind kind = parts_[phase].kind;
+        const auto pair_group = [&](std::size_t group) {
+            sweep_pairs(step.graph.pairs, group, sweep, sweep.is_relaxed ? relaxed : on_pairs);
+        };
+        const auto support_group = [&](std::size_t group) {
+            sweep_supports(step.graph.supports, step.supports, group, sweep, on_supports);
+        };
+        const std::size_t chunk = 2 * task;
+        if (kind == Kind::far) return pair_group(groups.far());
+        if (kind == Kind::crowded_supports) return support_group(groups.chunks);
+        if (kind == Kind::chunks) {
+            if (chunk >= groups.chunks) return;
+            pair_group(TaskGroups::inside(chunk));
+            if (!groups.has_border(chunk)) return;
+            pair_group(TaskGroups::across(chunk));
+            pair_group(TaskGroups::inside(chunk + 1));
+            return;
+        }
+        if (chunk > 0) {
+            if (groups.has_border(chunk - 1)) pair_group(TaskGroups::across(chunk - 1));
+            support_group(chunk - 1);
+        }
+        if (chunk < groups.chunks) support_group(chunk);
+    };
+    const double work = kNanosecondsToSweep * static_cast<double>(contacts_);
+    step.loops.executor->for_each_phase(phases_, groups.tasks(), work * static_cast<double>(sweeps.size()),
+                                        part);
+}
+
+template class ContactSweeps<float>;
+template class ContactSweeps<double>;
+
+}  // namespace carom

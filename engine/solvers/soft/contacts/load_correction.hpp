@@ -1,0 +1,40 @@
+#pragma once
+
+#include "solvers/shared/coarse_correction.hpp"
+#include "solvers/soft/contacts/contact_sweeps.hpp"
+
+namespace carom {
+
+/// The loads of large piles are corrected on a coarse grid, between the first sweep of a step's last substep
+/// and the next (solvers/shared/coarse_correction.hpp).
+template <class Real>
+class LoadCorrection {
+  public:
+    /// To be called once a substep, `number` from 0 on.
+    /// @return whether it is for `correct` to do what follows the first sweep
+    bool begin_substep(const StepView<Real>& step, int number, bool is_last);
+    /// Corrects the loads, if that is due, and sweeps once more.
+    void correct(const StepView<Real>& step, const StepFlight<Real>& flight, ContactSweeps<Real>& sweeps);
+    /// Takes back from the impulses what is not to last. After the books of the step, which have them as they
+    /// were.
+    void retain(const StepView<Real>& step, ContactSweeps<Real>& sweeps);
+
+    std::size_t bytes() const { return coarse_.bytes(); }
+
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.coarse_);
+    }
+
+  private:
+    SolveContacts<Real> arguments(const StepView<Real>& step, ContactRows<Real>& rows);
+
+    CoarseCorrection<Real> coarse_;
+    bool is_due_ = false;        // in this substep
+    bool is_corrected_ = false;  // in this step
+};
+
+extern template class LoadCorrection<float>;
+extern template class LoadCorrection<double>;
+
+}  // namespace carom

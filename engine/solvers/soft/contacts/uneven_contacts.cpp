@@ -1,0 +1,187 @@
+#include "solvers/soft/contacts/uneven_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "constraints/contact_law.hpp"
+
+namespace carom {
+namespace {
+
+// Shares of what gravity adds to a velocity in a substep.
+
+/// All contacts are relaxed if the local solve does not come to its end: it leaves a velocity off by this.
+constexpr double kMuch = 0.002;
+/// Sweeps leave little if none is off by this.
+constexpr double kLittle = 0.02;
+/// Steps in which sweeps must leave little before contacts are solved locally again.
+constexpr int kPatience = 60;
+
+std::size_t index(std::int32_t row) {
+    return static_cast<std::size_t>(row);
+}
+
+template <class Real>
+void store_impulses(ContactRows<Real>& rows, std::size_t i, const ContactImpulses<double>& impulses) {
+    rows.normal_impulse[i] = static_cast<Real>(impulses.normal);
+    if (!rows.friction_impulse.empty()) rows.friction_impulse[i] = static_cast<Real>(impulses.tangent);
+    if (!rows.rolling_impulse.empty()) rows.rolling_impulse[i] = static_cast<Real>(impulses.rolling);
+}
+
+}  // namespace
+
+/// Velocities without contacts are those of free flight: not where joints or shapes push bodies, too.
+template <class Real>
+void UnevenContacts<Real>::begin_step(const StepView<Real>& step, const WorldState<Real>& world,
+                                      bool are_mixed) {
+    local_.begin_step(step.graph.pairs, step.supports);
+    is_listed_ = false;
+    may_relax_ = are_mixed && world.joints.empty() && !world.bodies.has_shapes && step.terms.fall_speed() > 0;
+    if (!may_relax_) steps_left_ = 0;
+    if (steps_left_ == 0) return;
+    --steps_left_;
+    list(step);
+}
+
+/// Lists all contacts that can touch in this step.
+template <class Real>
+void UnevenContacts<Real>::list(const StepView<Real>& step) {
+    const ContactRows<Real>& pairs = step.graph.pairs;
+    is_listed_ = true;
+    contacts_.clear(), rows_.clear();
+    number_of_.assign(step.records.count(), -1);
+    const auto body_of = [&](std::int32_t row) {
+        std::int32_t& number = number_of_[index(row)];
+        if (number < 0) number = static_cast<std::int32_t>(rows_.size()), rows_.push_back(row);
+        return number;
+    };
+    const auto add = [&](std::size_t i, std::int32_t a, std::int32_t b) {
+        LocalContact contact{};
+        contact.a = a, contact.b = b, contact.contact = static_cast<std::uint32_t>(i);
+        contacts_.push_back(contact);
+    };
+    pairs.for_each([&](std::size_t i) {
+        if (!pairs.is_live[i / kContactBlock]) return;
+        const std::int32_t a = body_of(pairs.a[i]);
+        add(i, a, body_of(pairs.b[i]));
+    });
+    pair_count_ = contacts_.size();
+    step.supports.for_each([&](std::size_t i) { add(i, body_of(step.supports.a[i]), -1); });
+    if (step.settings.has_rotation)
+        rough_.begin(contacts_, rows_.size());
+    else
+        smooth_.begin(contacts_, rows_.size());
+}
+
+template <class Real>
+void UnevenContacts<Real>::load(const StepView<Real>& step, const SolveContacts<Real>& k,
+                                LocalContact& c) const {
+    c.read(k);
+    const DoubleBody a = body_at(step.records.velocity, rows_[index(c.a)]);
+    const auto find_masses = [&](const auto& b) {
+        c.terms.mass = 1 / inverse_mass(a, b);
+        c.terms.tangent_mass = tangent_mass<kEveryEffect>(a, b, c.terms.mass);
+    };
+    if (c.b < 0)
+        find_masses(DoubleSurface{c.surface_normal, c.surface_tangent, c.surface_rolling});
+    else
+        find_masses(body_at(step.records.velocity, rows_[index(c.b)]));
+}
+
+/// How far the contacts are from their laws, each on its own [m/s].
+template <class Real>
+double UnevenContacts<Real>::residual(const StepView<Real>& step) const {
+    double largest = 0;
+    for (const LocalContact& c : contacts_) {
+        const auto look_at = [&](DoubleBody a, auto b) {
+            Impulses impulses = c.impulses;
+            const Impulses added =
+                solve_contact<kEveryEffect>(a, b, c.terms, impulses, [](double wanted) { return wanted; });
+            const double change = std::fmax(std::fabs(added.normal), std::fabs(added.tangent));
+            largest = std::fmax(largest, change / c.terms.mass);
+        };
+        const DoubleBody a = body_at(step.records.velocity, rows_[index(c.a)]);
+        if (c.b < 0)
+            look_at(a, DoubleSurface{c.surface_normal, c.surface_tangent, c.surface_rolling});
+        else
+            look_at(a, body_at(step.records.velocity, rows_[index(c.b)]));
+    }
+    return largest;
+}
+
+template <class Real>
+template <int kSize>
+void UnevenContacts<Real>::relax(const StepView<Real>& step, ContactRelaxation<kSize>& relaxation) {
+    using Velocity = typename ContactRelaxation<kSize>::Velocity;
+    const SubstepTerms& terms = step.terms;
+    for (std::size_t body = 0; body < rows_.size(); ++body) {
+        const DoubleBody record = body_at(step.records.velocity, rows_[body]);
+        const std::array<double, 3> before = step.records.start_of_substep(rows_[body]);
+        Velocity start, free, swept;
+        for (std::size_t k = 0; k < kSize; ++k) start[k] = before[k], swept[k] = record.record[k];
+        free[0] = terms.decay * start[0] + terms.gravity_change.x;
+        free[1] = terms.decay * start[1] + terms.gravity_change.y;
+        if constexpr (kSize > 2) free[2] = terms.spin_decay * start[2];
+        relaxation.set_body(body, record.record[3], start, free, swept);
+    }
+    relaxation.solve(contacts_, terms.fall_speed());
+    for (std::size_t body = 0; body < rows_.size(); ++body)
+        for (std::size_t k = 0; k < kSize; ++k)
+            step.records.velocity[4 * index(rows_[body]) + k] =
+                static_cast<Real>(relaxation.velocity(body)[k]);
+    for (std::size_t i = 0; i < contacts_.size(); ++i)
+        store_impulses(i < pair_count_ ? step.graph.pairs : step.supports, contacts_[i].contact,
+                       contacts_[i].impulses);
+}
+
+/// Takes away a share of an overlap, by moving both bodies equally: geometry alone.
+template <class Real>
+void UnevenContacts<Real>::part(const StepView<Real>& step, const SolveContacts<Real>& k,
+                                const LocalContact& c) const {
+    Column<Real>& displacement = step.records.displacement;
+    const auto moved = [&](std::int32_t body) { return &displacement[2 * index(rows_[index(body)])]; };
+    const auto along = [&](const Real* at) {
+        return static_cast<double>(at[0]) * c.terms.nx + static_cast<double>(at[1]) * c.terms.ny;
+    };
+    double separation = static_cast<double>(k.contacts.separation[c.contact]) - along(moved(c.a));
+    separation += c.b < 0 ? c.surface_normal * static_cast<double>(k.elapsed) : along(moved(c.b));
+    const double unit = k.contacts.smaller ? static_cast<double>(k.contacts.smaller[c.contact]) : 1;
+    const double depth = -separation - static_cast<double>(k.slop) * unit;
+    if (!(depth > 0)) return;
+    const double push =
+        std::fmin(static_cast<double>(k.recovery) * depth, static_cast<double>(k.push) * unit);
+    const auto move = [&](std::int32_t body, double by) {
+        moved(body)[0] += static_cast<Real>(by * c.terms.nx),
+            moved(body)[1] += static_cast<Real>(by * c.terms.ny);
+    };
+    move(c.a, c.b < 0 ? -push : -0.5 * push);
+    if (c.b >= 0) move(c.b, 0.5 * push);
+}
+
+template <class Real>
+void UnevenContacts<Real>::solve(const StepView<Real>& step, const SolveContacts<Real>& on_pairs,
+                                 const SolveContacts<Real>& on_supports) {
+    const double fall = step.terms.fall_speed();
+    if (!is_listed_) {
+        const double left = local_.solve(on_pairs, on_supports, fall);
+        if (!may_relax_ || !(left > kMuch * fall)) return;
+        list(step);
+    }
+    const auto arguments = [&](std::size_t i) -> const SolveContacts<Real>& {
+        return i < pair_count_ ? on_pairs : on_supports;
+    };
+    for (std::size_t i = 0; i < contacts_.size(); ++i) load(step, arguments(i), contacts_[i]);
+    if (residual(step) > kLittle * fall) {
+        steps_left_ = kPatience;
+        if (step.settings.has_rotation)
+            relax(step, rough_);
+        else
+            relax(step, smooth_);
+    }
+    for (std::size_t i = 0; i < contacts_.size(); ++i) part(step, arguments(i), contacts_[i]);
+}
+
+template class UnevenContacts<float>;
+template class UnevenContacts<double>;
+
+}  // namespace carom

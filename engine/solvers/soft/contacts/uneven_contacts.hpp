@@ -1,0 +1,70 @@
+#pragma once
+
+#include <vector>
+
+#include "solvers/shared/contact_relaxation.hpp"
+#include "solvers/shared/local_solve.hpp"
+#include "solvers/soft/step_view.hpp"
+#include "state/world_state.hpp"
+
+namespace carom {
+
+/// What the sweeps of a substep leave where masses are uneven.
+///
+/// Few contacts around light bodies are solved for their impulses (solvers/shared/local_solve.hpp). Where
+/// that leaves much, since heavy and light bodies are mixed in a pile, all contacts of the world are relaxed
+/// for the velocities of bodies (solvers/shared/contact_relaxation.hpp) from then on, until the sweeps alone
+/// have left little for a while. What overlaps then is parted by equal shares whatever the masses: a light
+/// body between two heavy ones cannot make room. docs/decisions/0032-piles-of-uneven-masses.md.
+template <class Real>
+class UnevenContacts {
+  public:
+    /// Pairs are new. Cost: O(pairs) where masses are uneven.
+    void find(const ContactRows<Real>& pairs, const Column<Real>& inverse_mass, std::size_t rows) {
+        local_.find(pairs, inverse_mass, rows);
+    }
+    void clear() { local_.clear(); }
+    /// To be called when the contacts of a step are found.
+    /// @param are_mixed  whether bodies that differ by more than a hundred times are mixed
+    void begin_step(const StepView<Real>& step, const WorldState<Real>& world, bool are_mixed);
+    /// After the sweeps of a substep. Cost: O(contacts), times a few dozen while piles of uneven masses move.
+    void solve(const StepView<Real>& step, const SolveContacts<Real>& on_pairs,
+               const SolveContacts<Real>& on_supports);
+
+    std::size_t bytes() const {
+        return local_.bytes() + smooth_.bytes() + rough_.bytes() +
+               contacts_.capacity() * sizeof(LocalContact) +
+               (number_of_.capacity() + rows_.capacity()) * sizeof(std::int32_t);
+    }
+
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.steps_left_);
+    }
+
+  private:
+    using Impulses = ContactImpulses<double>;
+
+    void list(const StepView<Real>& step);
+    void load(const StepView<Real>& step, const SolveContacts<Real>& k, LocalContact& contact) const;
+    double residual(const StepView<Real>& step) const;
+    template <int kSize>
+    void relax(const StepView<Real>& step, ContactRelaxation<kSize>& relaxation);
+    void part(const StepView<Real>& step, const SolveContacts<Real>& k, const LocalContact& contact) const;
+
+    LocalSolve<Real> local_;
+    ContactRelaxation<2> smooth_;
+    ContactRelaxation<3> rough_;
+    bool may_relax_ = false;              // in this step
+    bool is_listed_ = false;              // likewise
+    int steps_left_ = 0;                  // for which all contacts are looked at
+    std::vector<LocalContact> contacts_;  // of the step: pairs, then supports
+    std::size_t pair_count_ = 0;
+    std::vector<std::int32_t> rows_;       // of the bodies that have contacts
+    std::vector<std::int32_t> number_of_;  // by row, in rows_
+};
+
+extern template class UnevenContacts<float>;
+extern template class UnevenContacts<double>;
+
+}  // namespace carom

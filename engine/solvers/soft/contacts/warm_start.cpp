@@ -1,0 +1,59 @@
+#include "solvers/soft/contacts/warm_start.hpp"
+
+#include <algorithm>
+
+namespace carom {
+namespace {
+
+/// Steps count as varying until their length has been the same for so long.
+constexpr double kVarying = 0.5;  // s
+/// While they vary, forces of contacts are means over so long: what a short step needed to stop a slow
+/// approach would be a kick in a long one.
+constexpr double kMeanOver = 0.05;  // s
+
+}  // namespace
+
+/// What lasts from step to step is force: after substeps of another length the impulses are of another size.
+template <class Real>
+void WarmStart<Real>::begin_step(ContactGraph<Real>& graph, double substep_dt, double dt) {
+    is_rebalanced_ = false;
+    are_known_ = substep_dt_ > 0;
+    kept_ = are_known_ ? substep_dt / substep_dt_ : 0;
+    dt_ = dt;
+    if (substep_dt == substep_dt_ && varying_left_ == 0) return;
+    varying_left_ = are_known_ && substep_dt != substep_dt_ ? kVarying : std::max(0.0, varying_left_ - dt);
+    const auto kept = static_cast<Real>(kept_);
+    const std::array<Column<Real>*, 6> impulses = impulses_of(graph);
+    if (substep_dt != substep_dt_)
+        for (Column<Real>* column : impulses)
+            for (Real& impulse : *column) impulse *= kept;
+    substep_dt_ = substep_dt;
+    if (!(varying_left_ > 0) || !(dt < kMeanOver)) return;
+    for (std::size_t i = 0; i < impulses.size(); ++i) before_[i] = *impulses[i];
+}
+
+template <class Real>
+void WarmStart<Real>::end_step(ContactGraph<Real>& graph) {
+    if (!(varying_left_ > 0) || !(dt_ < kMeanOver)) return;
+    const auto share = static_cast<Real>(dt_ / kMeanOver);
+    const std::array<Column<Real>*, 6> impulses = impulses_of(graph);
+    for (std::size_t i = 0; i < impulses.size(); ++i)
+        for (std::size_t k = 0; k < std::min(impulses[i]->size(), before_[i].size()); ++k) {
+            Real& impulse = (*impulses[i])[k];
+            impulse = before_[i][k] + share * (impulse - before_[i][k]);
+        }
+}
+
+template <class Real>
+void WarmStart<Real>::rebalance(const StepView<Real>& step, const Bodies<Real>& bodies) {
+    std::vector<LostContact>& lost = step.graph.lost;
+    std::sort(lost.begin(), lost.end());
+    is_rebalanced_ = rebalance_.balance(lost, step.graph.pairs, step.supports, bodies, step.settings.friction,
+                                        step.settings.rolling, step.terms.gravity_change);
+    lost.clear();
+}
+
+template class WarmStart<float>;
+template class WarmStart<double>;
+
+}  // namespace carom

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "constraints/contact_rows.hpp"
+#include "solvers/substeps/step_terms.hpp"
+#include "state/world_state.hpp"
+
+namespace carom {
+
+/// The last line of defence of solver `soft` against tunnelling: nothing ends a step behind an edge that it
+/// was before.
+///
+/// Contacts are planes for the length of a step. That is wrong where a very fast disc slides along one edge
+/// into another, where an edge turns so far in one step that it overtakes what it pushes, and where a slow
+/// disc is shot out of its margin, in the middle of a step, through an edge that was none of its candidates.
+template <class Real>
+class Tunnelling {
+  public:
+    /// Puts discs that have got past an edge in this step back to it.
+    /// @param supports  all that the contact graph has
+    /// Cost: O(supports); for each disc that was shot out of its margin O(edges)
+    void undo(WorldState<Real>& world, const StepFlight<Real>& flight, const ContactRows<Real>& supports);
+
+    std::size_t bytes() const {
+        return crossings_.capacity() * sizeof(Crossing) + strays_.capacity() * sizeof(std::int32_t);
+    }
+
+  private:
+    /// A disc whose centre crossed an edge.
+    struct Crossing {
+        std::int32_t row, edge;
+        double time;       // share of the step
+        Vec2 from, point;  // m, in the frame of the edge's body: before, and where it crossed
+    };
+    void note_crossing(const WorldState<Real>& world, const StepFlight<Real>& flight, std::int32_t disc,
+                       std::int32_t number);
+    void note_crossings(const WorldState<Real>& world, const StepFlight<Real>& flight, std::int32_t disc);
+    void find_strays(const WorldState<Real>& world, const StepFlight<Real>& flight);
+    void find_crossings(const WorldState<Real>& world, const StepFlight<Real>& flight,
+                        const ContactRows<Real>& supports);
+    void put_back(WorldState<Real>& world, const StepFlight<Real>& flight, const Crossing& passed,
+                  bool to_start);
+
+    std::vector<Crossing> crossings_;   // of this step
+    std::vector<std::int32_t> strays_;  // rows that have left their margins in this step
+};
+
+extern template class Tunnelling<float>;
+extern template class Tunnelling<double>;
+
+}  // namespace carom
