@@ -9,7 +9,7 @@ namespace carom {
 template <class Real>
 struct PathKernels {
     using Pass = PathCounts (*)(const SolvePaths<Real>&, std::size_t first, std::size_t last);
-    Pass warm_start, solve, sweep;
+    Pass carry, warm_start, solve, sweep;
 };
 
 /// The kernels of convex shapes of one instruction set in one precision. They are compiled in files of their

@@ -12,7 +12,8 @@ template <class Real, class Isa>
 constexpr ConvexKernels<Real> make_convex_kernels() {
     return {.find_manifolds = &find_manifolds<Real, Isa>,
             .find_box_manifolds = &find_box_manifolds<Real, Isa>,
-            .paths = {&warm_start_paths<Real, Isa>, &solve_paths<Real, Isa>, &sweep_all_paths<Real, Isa>}};
+            .paths = {&carry_paths<Real, Isa>, &warm_start_paths<Real, Isa>, &solve_paths<Real, Isa>,
+                      &sweep_all_paths<Real, Isa>}};
 }
 
 /// The kernels of convex shapes, instantiated for each instruction set by its file.

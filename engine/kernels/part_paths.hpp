@@ -15,13 +15,31 @@ struct PathPlace {
     typename Lanes::Batch turn;
 
     template <class Real>
-    PathPlace(const SolvePaths<Real>& k, const std::int32_t* rows)
-        : at(Lanes::load_rows2(k.displacement, rows)), turn(Lanes::gather_at(k.turn, rows)) {}
+    PathPlace(const Real* displacement, const Real* turns, const std::int32_t* rows)
+        : at(Lanes::load_rows2(displacement, rows)), turn(Lanes::gather_at(turns, rows)) {}
     template <class Real>
     void store(const SolvePaths<Real>& k, const std::int32_t* rows) const {
         Lanes::store_rows2(k.displacement, rows, at), Lanes::scatter_at(k.turn, rows, turn);
     }
 };
+
+/// The separations at the start of the step, of those at the start of the one before.
+template <class Lanes, class Real>
+void carry_batch(const PathBatch<Real>& p) {
+    using F = typename Lanes::Batch;
+    const SolvePaths<Real>& k = p.k;
+    PathPlace<Lanes> near(k.come, k.turned, p.head);
+    for (std::size_t i = 0; i < p.length; ++i) {
+        PathLink<Real>& link = p.link[i];
+        const LinkLanes<Lanes, Real> l(link, p.lane);
+        const PathPlace<Lanes> far(k.come, k.turned, p.far_rows(i));
+        F s1, s2, along;
+        l.relative(far.at[0] - near.at[0], far.at[1] - near.at[1], near.turn, far.turn, s1, s2, along);
+        Lanes::store(link.separation1 + p.lane, Lanes::load(link.separation1 + p.lane) + s1);
+        Lanes::store(link.separation2 + p.lane, Lanes::load(link.separation2 + p.lane) + s2);
+        near = far;
+    }
+}
 
 /// Floors of a substep, and a share of the overlaps taken away by displacing and turning bodies.
 template <class Lanes, class Real>
@@ -29,12 +47,12 @@ void part_paths(const PathBatch<Real>& p) {
     using F = typename Lanes::Batch;
     const SolvePaths<Real>& k = p.k;
     const F zero(0);
-    PathPlace<Lanes> near(k, p.head);
+    PathPlace<Lanes> near(k.displacement, k.turn, p.head);
     bool has_moved = false;  // near, by the link before
     for (std::size_t i = 0; i < p.length; ++i) {
         PathLink<Real>& link = p.link[i];
         const LinkLanes<Lanes, Real> l(link, p.lane);
-        PathPlace<Lanes> far(k, p.far_rows(i));
+        PathPlace<Lanes> far(k.displacement, k.turn, p.far_rows(i));
         F s1, s2, along;
         l.relative(far.at[0] - near.at[0], far.at[1] - near.at[1], near.turn, far.turn, s1, s2, along);
         s1 += Lanes::load(link.separation1 + p.lane), s2 += Lanes::load(link.separation2 + p.lane);

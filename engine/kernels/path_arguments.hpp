@@ -41,29 +41,33 @@ struct alignas(64) PathLink {
 /// Paths of contacts, a bundle after the other.
 template <class Real>
 struct SolvePaths {
-    PathLink<Real>* links;           // of bundle i: first_link[i] ... first_link[i + 1]
-    const std::size_t* first_link;   //
-    const std::int32_t* heads;       // [bundles][kPathLanes]: rows where the paths begin
-    Real* velocity;                  // [rows][4], kernels/contact_arguments.hpp
-    Real* displacement;              // [rows][2], m, since the start of the step
-    Real* turn;                      // [rows], m, rim displacement since the start of the step
-    Real h;                          // s, of the substep
-    Real inverse_h;                  // 1/s
-    Real recovery;                   // share of an overlap that a substep takes away, by displacement
-    Real push;                       // 1/s: largest displacement of that kind in thicknesses a second
-    Real velocity_tolerance;         // m/s, by which a contact may miss its law
-    Real* restless;                  // [bundles][kPathLanes], m/s: the largest relative speed that each path
-                                     // had when it was solved last, where bodies thinner than
-                                     // resting_thickness count as faster in proportion; kUnsettled if it
-                                     // did not settle
-    const std::uint8_t* is_slender;  // [bundles]: not 0 = never left out
-    Real resting_speed;              // m/s: bundles of which no path is more restless are left out
-    Real resting_thickness;          // m
-    int bold_iterations;             // that change all rows of the active set that are wrong; the others
-                                     // change the worst alone
-    int most_iterations;             // of the active set
-    int sweeps_of_unsettled;         // over paths that settle neither as a whole nor in pieces
-    void* scratch;                   // of path_scratch_bytes(longest bundle) bytes, aligned to 64
+    PathLink<Real>* links;          // of bundle i: first_link[i] ... first_link[i + 1]
+    const std::size_t* first_link;  //
+    const std::int32_t* heads;      // [bundles][kPathLanes]: rows where the paths begin
+    Real* velocity;                 // [rows][4], kernels/contact_arguments.hpp
+    Real* displacement;             // [rows][2], m, since the start of the step
+    Real* turn;                     // [rows], m, rim displacement since the start of the step
+    const Real* come;               // [rows][2], m, in the step before, for carry_paths
+    const Real* turned;             // [rows], m, rim displacement in the step before, likewise
+    Real h;                         // s, of the substep
+    Real inverse_h;                 // 1/s
+    Real recovery;                  // share of an overlap that a substep takes away, by displacement
+    Real push;                      // 1/s: largest displacement of that kind in thicknesses a second
+    Real velocity_tolerance;        // m/s, by which a contact may miss its law
+    Real* restless;                 // [bundles][kPathLanes], m/s: the largest relative speed that each path
+                                    // had when it was solved last, where bodies thinner than
+                                    // resting_thickness count as faster in proportion; kUnsettled if it
+                                    // did not settle
+    const std::uint8_t*
+        is_slender;           // [bundles]: not 0 = of paths that alone hold their bodies, never left out
+    Real resting_speed;       // m/s: bundles of which no path is more restless are left out
+    Real resting_thickness;   // m
+    int bold_iterations;      // that change all rows of the active set that are wrong; the others
+                              // change the worst alone
+    int most_iterations;      // of the active set
+    int most_of_slender;      // likewise, of bundles that are slender
+    int sweeps_of_unsettled;  // over paths that settle neither as a whole nor in pieces
+    void* scratch;            // of path_scratch_bytes(longest bundle) bytes, aligned to 64
 };
 
 /// Bytes that a link needs while its path is solved; those of the widest batch.

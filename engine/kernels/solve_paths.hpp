@@ -24,9 +24,10 @@ constexpr double kFrictionTolerance = 0.1;
 /// Links of a piece of a path that does not settle as a whole, and iterations of its active set.
 constexpr std::size_t kPiece = 8;
 constexpr int kIterationsOfPiece = 12;
-/// Up to this iteration the worst row of each piece of a path changes, later that of the whole path alone:
-/// rows so far from each other hardly turn each other round.
+/// Up to this iteration the worst row of each piece of a path changes, later that of four pieces: rows so far
+/// from each other hardly turn each other round.
 constexpr int kIterationsByPieces = 16;
+constexpr std::size_t kLongPiece = 4 * kPiece;
 /// Speeds that no solution reaches [m/s]: an iteration that does is void.
 constexpr double kUnsound = 1e15;
 
@@ -382,7 +383,7 @@ typename Lanes::Mask solve_exactly(const PathBatch<Real>& p, LinkScratch<Lanes>*
     auto bad = F(0) <= F(0);
     for (int i = 0; i < most_iterations && simd::any(bad & where); ++i) {
         eliminate<Lanes>(p, scratch);
-        const std::size_t stretch = i < k.bold_iterations ? 0 : i < kIterationsByPieces ? kPiece : p.length;
+        const std::size_t stretch = i < k.bold_iterations ? 0 : i < kIterationsByPieces ? kPiece : kLongPiece;
         bad = substitute<Lanes>(p, scratch, by_speed, by_impulse, most, stretch);
         counts.iterations += p.length;
     }
@@ -420,6 +421,16 @@ bool rests(const SolvePaths<Real>& k, std::size_t bundle) {
     return *std::max_element(speeds, speeds + kPathLanes) < k.resting_speed;
 }
 
+/// Separations of contacts that are carried on from the step before, moved by what the bodies have come in
+/// it.
+template <class Real, class Isa>
+PathCounts carry_paths(const SolvePaths<Real>& arguments, std::size_t first, std::size_t last) {
+    using Lanes = simd::Lanes<Real, Isa>;
+    const SolvePaths<Real> k = arguments;  // a copy: no store can change it
+    for_each_path_batch<Lanes>(k, first, last, [](const PathBatch<Real>& p) { carry_batch<Lanes>(p); });
+    return {};
+}
+
 /// The first pass of a substep over bundles: floors, displacements, and the exact solve of each path.
 template <class Real, class Isa>
 PathCounts solve_paths(const SolvePaths<Real>& arguments, std::size_t first, std::size_t last) {
@@ -429,12 +440,15 @@ PathCounts solve_paths(const SolvePaths<Real>& arguments, std::size_t first, std
     const SolvePaths<Real> k = arguments;  // a copy: no store can change it
     auto* scratch = static_cast<LinkScratch<Lanes>*>(k.scratch);
     PathCounts counts;
+    bool is_left_out = false;  // the bundle, by what its lanes did before any of them is solved
     for_each_path_batch<Lanes>(k, first, last, [&](const PathBatch<Real>& p) {
         const auto first_lane = static_cast<std::size_t>(p.head - k.heads);
-        if (rests(k, first_lane / kPathLanes)) return;
+        if (p.lane == 0) is_left_out = rests(k, first_lane / kPathLanes);
+        if (is_left_out) return;
         part_paths<Lanes>(p);
         F restless;
-        const auto bad = solve_exactly<Lanes>(p, scratch, k.most_iterations, F(0) <= F(0), counts, restless);
+        const int most = k.is_slender[first_lane / kPathLanes] != 0 ? k.most_of_slender : k.most_iterations;
+        const auto bad = solve_exactly<Lanes>(p, scratch, most, F(0) <= F(0), counts, restless);
         Lanes::store(k.restless + first_lane, simd::select(bad, F(static_cast<Real>(kUnsettled)), restless));
         if (!simd::any(bad)) return;
         counts.unsettled += static_cast<std::size_t>(__builtin_popcount(simd::bitmask(bad)));

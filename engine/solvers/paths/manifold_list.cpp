@@ -5,15 +5,6 @@
 namespace carom {
 
 template <class Real>
-template <class Self, class Fn>
-void ManifoldList<Real>::for_each_found_column(Self& self, const Fn& fn) {
-    for (auto* column :
-         {&self.normal_x, &self.normal_y, &self.lever_a1, &self.lever_a2, &self.lever_b1, &self.lever_b2,
-          &self.lever_a_t, &self.lever_b_t, &self.separation1, &self.separation2})
-        fn(*column);
-}
-
-template <class Real>
 void ManifoldList<Real>::clear() {
     a.clear(), b.clear(), item_a.clear(), item_b.clear();
     names.clear(), memory.clear();

@@ -20,12 +20,15 @@ template <class Real>
 struct ManifoldMemory {
     Real normal_x = 0, normal_y = 0;             // of the step that the impulses are of
     Real normal1 = 0, normal2 = 0, tangent = 0;  // N s, of a substep
+    Real separation1 = 0, separation2 = 0;       // m, at the start of the step, of a contact carried on
 
     bool is_loaded() const { return normal1 + normal2 > 0; }
     void rescale(Real factor) { normal1 *= factor, normal2 *= factor, tangent *= factor; }
     /// The same contact seen from its other body: the normal turns round, and with it the order of the
     /// points.
-    ManifoldMemory reversed() const { return {-normal_x, -normal_y, normal2, normal1, tangent}; }
+    ManifoldMemory reversed() const {
+        return {-normal_x, -normal_y, normal2, normal1, tangent, separation2, separation1};
+    }
 };
 
 /// Names a contact whatever row its bodies have.
@@ -66,7 +69,7 @@ struct ManifoldList {
     std::vector<ManifoldName> names;  ///< of every contact
     std::vector<ManifoldMemory<Real>> memory;
 
-    // Found anew in every step: kernels/manifold_arguments.hpp.
+    // As they were found: kernels/manifold_arguments.hpp.
     Column<Real> normal_x, normal_y, lever_a1, lever_a2, lever_b1, lever_b2, lever_a_t, lever_b_t,
         separation1, separation2;
 
@@ -85,13 +88,20 @@ struct ManifoldList {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.a, self.b, self.item_a, self.item_b, self.names, self.memory);
+        archive(self.a, self.b, self.item_a, self.item_b, self.names, self.memory, self.margin,
+                self.thickness, self.friction, self.restitution);
+        for_each_found_column(self, [&](auto& column) { archive(column); });
         if constexpr (!std::is_const_v<Self>) self.fit();
     }
 
   private:
     template <class Self, class Fn>
-    static void for_each_found_column(Self& self, const Fn& fn);
+    static void for_each_found_column(Self& self, const Fn& fn) {
+        for (auto* column :
+             {&self.normal_x, &self.normal_y, &self.lever_a1, &self.lever_a2, &self.lever_b1, &self.lever_b2,
+              &self.lever_a_t, &self.lever_b_t, &self.separation1, &self.separation2})
+            fn(*column);
+    }
 };
 
 extern template struct ManifoldList<float>;

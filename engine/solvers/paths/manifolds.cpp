@@ -5,7 +5,6 @@
 
 #include "effects/friction.hpp"
 #include "effects/restitution.hpp"
-#include "math/rotation.hpp"
 #include "narrowphase/box_box.hpp"
 #include "solvers/paths/meeting.hpp"
 
@@ -45,7 +44,7 @@ void Manifolds<Real>::add_pair(const WorldState<Real>& world, std::int32_t a, st
 template <class Real>
 void Manifolds<Real>::renew(const WorldState<Real>& world, const Candidates<Real>& candidates,
                             const EdgeCandidates<Real>& edges, std::span<const SleeperPair> sleepers) {
-    live_.clear();
+    live_.clear(), found_within_ = {};
     surface_finder_.renew(world, edges);
     if (!world.bodies.has_shapes) return bodies_.clear(), surfaces_.clear();
     std::swap(bodies_, old_), bodies_.clear();
@@ -125,12 +124,15 @@ void Manifolds<Real>::add(const WorldState<Real>& world, const Candidates<Real>&
                           const EdgeCandidates<Real>& edges) {
     if (!world.bodies.has_shapes) return;
     surface_finder_.add(world, edges);
+    if (candidates.new_pairs().empty()) return;
     const std::size_t before = bodies_.count();
     list_boxes(world.shapes);
     for (const bool boxes : {true, false})
         for (const auto& pair : candidates.new_pairs()) add_pair(world, pair.a, pair.b, boxes);
+    if (bodies_.count() == before) return;
     bodies_.fit();
     find_box_blocks(world.bodies, before / kRowPadding);
+    first_new_block_ = std::min(first_new_block_, before / kRowPadding);
 }
 
 /// Files the contacts that carry something by their body a.
@@ -207,20 +209,19 @@ void Manifolds<Real>::rescale(double factor) {
 }
 
 template <class Real>
-void Manifolds<Real>::pose_bodies(const WorldState<Real>& world) {
-    const Bodies<Real>& bodies = world.bodies;
-    const std::size_t rows = bodies.rows();
-    pose_.resize(4 * rows), pose_angle_.resize(rows);
-    for (std::size_t row = 0; row < rows; ++row) {
-        Real* pose = &pose_[4 * row];
-        pose[0] = bodies.position_x[row], pose[1] = bodies.position_y[row];
-        const double angle = bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0;
-        if (angle == pose_angle_[row] && (pose[2] != 0 || pose[3] != 0)) continue;
-        const Rotation turn = rotation_by(angle);
-        pose[2] = static_cast<Real>(turn.cos), pose[3] = static_cast<Real>(turn.sin);
-        pose_angle_[row] = angle;
-    }
-    items_.add_poses(pose_);
+bool Manifolds<Real>::must_find(std::size_t block) const {
+    if (block >= first_new_block_) return true;
+    const std::size_t last = std::min(bodies_.count(), (block + 1) * kRowPadding);
+    for (std::size_t i = block * kRowPadding; i < last; ++i)
+        if (poses_.has_moved(bodies_.a[i]) || poses_.has_moved(bodies_.b[i])) return true;
+    return false;
+}
+
+template <class Real>
+void Manifolds<Real>::note_thicknesses(std::size_t first) {
+    for (std::size_t i = first; i < bodies_.count(); ++i)
+        for (const std::int32_t row : {bodies_.a[i], bodies_.b[i]})
+            poses_.note_thickness(row, bodies_.thickness[i]);
 }
 
 template <class Real>
@@ -232,16 +233,42 @@ bool Manifolds<Real>::find(const WorldState<Real>& world, const EdgeCandidates<R
         surfaces_.clear(), live_.clear(), was_live_.clear();
         return true;
     }
-    pose_bodies(world);
+    const Within within{near.share, near.fall, terms.dt};
+    const bool finds_all = !(found_within_ == within);
+    if (finds_all) first_new_block_ = 0;
+    found_within_ = within;
+    poses_.look(world, terms.dt, near, finds_all, *loops.executor);
+    items_.add_poses(poses_.pose);
     surface_finder_.find(world, edges, terms, near, surfaces_);
     recall_surfaces();
+    block_is_found_.assign(padded(bodies_.count()) / kRowPadding, 0);
     loops.executor->for_each_chunk(bodies_.count(), kContactsPerTask, kNanosecondsToFind,
                                    [&](std::size_t, std::size_t first, std::size_t last) {
-                                       describe_pairs(world, terms.dt, near, first, last);
-                                       find_pairs(world, *loops.kernels->convex, first, last);
-                                       find_meetings(world, terms.dt, first, last);
+                                       find_chunk(world, terms.dt, near, *loops.kernels->convex, first, last);
                                    });
+    note_thicknesses(std::min(bodies_.count(), first_new_block_ * kRowPadding));
+    first_new_block_ = block_is_found_.size();
+    some_are_carried_ = std::find(block_is_found_.begin(), block_is_found_.end(), 0) != block_is_found_.end();
     return list_live();
+}
+
+/// @param first  a multiple of kRowPadding
+template <class Real>
+void Manifolds<Real>::find_chunk(const WorldState<Real>& world, double dt, const ContactDistance& near,
+                                 const ConvexKernels<Real>& kernels, std::size_t first, std::size_t last) {
+    for (std::size_t begin = first; begin < last;) {
+        std::size_t end = begin;  // of the blocks from `begin` on that must be found
+        while (end < last && must_find(end / kRowPadding)) {
+            block_is_found_[end / kRowPadding] = 1;
+            end = std::min(last, end + kRowPadding);
+        }
+        if (end > begin) {
+            describe_pairs(world, dt, near, begin, end);
+            find_pairs(world, kernels, begin, end);
+            find_meetings(world, dt, begin, end);
+        }
+        begin = end + kRowPadding;  // that block need not
+    }
 }
 
 /// Coefficients, and how near is near enough: what both fly in the step, wherever to, and some more.
@@ -307,7 +334,7 @@ template <class Real>
 void Manifolds<Real>::find_pairs(const WorldState<Real>& world, const ConvexKernels<Real>& kernels,
                                  std::size_t first, std::size_t last) {
     const bool all_rows = items_.empty();
-    const FindManifolds<Real> k{pose_.data(),
+    const FindManifolds<Real> k{poses_.pose.data(),
                                 all_rows ? world.bodies.shape.data() : items_.shapes(),
                                 world.shapes.data(),
                                 all_rows ? bodies_.a.data() : bodies_.item_a.data(),
@@ -369,18 +396,12 @@ bool Manifolds<Real>::list_live() {
 }
 
 template <class Real>
-void Manifolds<Real>::keep(std::int32_t contact, Real normal1, Real normal2, Real tangent) {
-    ManifoldMemory<Real>& memory = list_of(contact).memory[place_of(contact)];
-    memory.normal1 = normal1, memory.normal2 = normal2, memory.tangent = tangent;
-}
-
-template <class Real>
 std::size_t Manifolds<Real>::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
     return bodies_.bytes() + surfaces_.bytes() + old_.bytes() + old_surfaces_.bytes() +
            surface_finder_.bytes() + items_.bytes() + of(asleep_) + of(is_recalled_) + of(loaded_) +
-           of(is_box_of_) + of(blocks_are_boxes_) + of(first_of_slot_) + of(next_of_slot_) + pose_.bytes() +
-           pose_angle_.bytes() + of(live_) + of(was_live_);
+           of(is_box_of_) + of(blocks_are_boxes_) + of(first_of_slot_) + of(next_of_slot_) + poses_.bytes() +
+           of(block_is_found_) + of(live_) + of(was_live_);
 }
 
 template class Manifolds<float>;

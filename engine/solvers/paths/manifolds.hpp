@@ -10,6 +10,7 @@
 #include "solvers/paths/contact_distance.hpp"
 #include "solvers/paths/manifold_list.hpp"
 #include "solvers/paths/piece_items.hpp"
+#include "solvers/paths/pose_watch.hpp"
 #include "solvers/paths/surface_finder.hpp"
 #include "solvers/substeps/step_terms.hpp"
 #include "state/world_state.hpp"
@@ -20,7 +21,9 @@ namespace carom {
 /// impulses that they keep from step to step. A contact is known by the handles of its bodies, so that rows
 /// may change.
 ///
-/// Cost: about 30 ns a pair when candidate pairs are found anew; 10 ns a pair and step.
+/// Contacts of bodies that have hardly moved since are carried on (pose_watch.hpp), in blocks of kRowPadding.
+///
+/// Cost: about 30 ns a pair when candidate pairs are found anew; 10 ns a pair that is found, and step.
 template <class Real>
 class Manifolds {
   public:
@@ -49,8 +52,17 @@ class Manifolds {
     static std::size_t place_of(std::int32_t contact) {
         return static_cast<std::size_t>(contact >= 0 ? contact : ~contact);
     }
-    /// Keeps the impulses of a contact [N s] for the next step.
-    void keep(std::int32_t contact, Real normal1, Real normal2, Real tangent);
+    /// Whether a live contact was found in this step; else it has been carried on.
+    bool is_found(std::int32_t contact) const {
+        return contact < 0 || block_is_found_[place_of(contact) / kRowPadding] != 0;
+    }
+    /// Whether some were carried on.
+    bool some_are_carried() const { return some_are_carried_; }
+    /// What bodies have come in the step before.
+    PoseWatch<Real>& poses() { return poses_; }
+    ManifoldMemory<Real>& memory_of(std::int32_t contact) {
+        return list_of(contact).memory[place_of(contact)];
+    }
     /// The contacts that carry an impulse at the end of a step, for those who look after sleepers.
     std::span<const LoadedContact> loaded();
 
@@ -65,7 +77,8 @@ class Manifolds {
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
         archive(self.items_, self.bodies_, self.surfaces_, self.surface_finder_, self.asleep_,
-                self.asleep_then_, self.live_, self.blocks_are_boxes_);
+                self.asleep_then_, self.live_, self.blocks_are_boxes_, self.poses_, self.found_within_,
+                self.first_new_block_);
     }
 
   private:
@@ -80,7 +93,11 @@ class Manifolds {
     void file_by_slot(const ManifoldList<Real>& old);
     void recall(ManifoldList<Real>& list, const ManifoldList<Real>& old);
     void recall_surfaces();
-    void pose_bodies(const WorldState<Real>& world);
+    /// Finds the contacts of a chunk of pairs that must be found in this step.
+    void find_chunk(const WorldState<Real>& world, double dt, const ContactDistance& near,
+                    const ConvexKernels<Real>& kernels, std::size_t first, std::size_t last);
+    bool must_find(std::size_t block) const;
+    void note_thicknesses(std::size_t first);
     void describe_pairs(const WorldState<Real>& world, double dt, const ContactDistance& near,
                         std::size_t first, std::size_t last);
     void describe_pieces(const WorldState<Real>& world, const ContactDistance& near, std::size_t i);
@@ -105,8 +122,16 @@ class Manifolds {
     std::vector<LoadedContact> loaded_;
     std::vector<std::uint8_t> is_box_of_;         // by shape
     std::vector<std::uint8_t> blocks_are_boxes_;  // by block of kRowPadding contacts of bodies_
-    Column<Real> pose_;                           // [rows][4]: x, y [m], cosine, sine
-    Column<double> pose_angle_;                   // rad, that cosine and sine are of
+    PoseWatch<Real> poses_;
+    /// What contacts are found within, by block of the last step; all zero: all are to be found anew.
+    struct Within {
+        double share = 0, fall = 0, dt = 0;  // ContactDistance; s
+        friend bool operator==(const Within&, const Within&) = default;
+    };
+    Within found_within_;
+    std::size_t first_new_block_ = 0;  // blocks from here on are to be found, whatever their bodies do
+    std::vector<std::uint8_t> block_is_found_;
+    bool some_are_carried_ = false;
     // Old contacts by the slot of their body a: the first of each slot, the one that follows each.
     std::vector<std::int32_t> first_of_slot_, next_of_slot_;
     std::vector<std::uint8_t> is_recalled_;  // by old contact

@@ -207,28 +207,70 @@ void PathCut::lay_out(std::span<const ContactLink> contacts, std::size_t rows) {
         return p.colour != q.colour ? p.colour < q.colour : p.length > q.length;
     });
     places_.resize(contacts.size());
-    first_link_.assign(1, 0), first_bundle_.assign(1, 0), first_contacts_.clear(), is_slender_.clear();
+    first_link_.assign(1, 0), first_bundle_.assign(1, 0);
+    first_contacts_.clear(), jumps_.clear(), is_slender_.clear();
     longest_ = 0, paths_ = coloured_.size();
-    for (std::size_t i = 0; i < order_.size();) {
-        const std::uint32_t colour = coloured_[order_[i]].colour;
-        const std::size_t length = coloured_[order_[i]].length, bundle = bundles();
+    for (std::size_t first = 0, last = 0; first < order_.size(); first = last) {
+        const std::uint32_t colour = coloured_[order_[first]].colour;
+        while (last < order_.size() && coloured_[order_[last]].colour == colour) ++last;
+        lay_out_colour(contacts, first, last);
+        first_bundle_.push_back(bundles());
+    }
+}
+
+/// Bundles of the pieces order_[first] ... order_[last], which are in order of their length. Each begins with
+/// the kPathLanes longest that are left, and goes on in each lane with the longest that ends before it does.
+void PathCut::lay_out_colour(std::span<const ContactLink> contacts, std::size_t first, std::size_t last) {
+    const auto length_of = [&](std::size_t i) { return std::size_t{coloured_[order_[i]].length}; };
+    next_of_length_.assign(length_of(first) + 1, 0), end_of_length_.assign(length_of(first) + 1, 0);
+    for (std::size_t i = last; i-- > first;) {
+        if (next_of_length_[length_of(i)] == end_of_length_[length_of(i)])
+            end_of_length_[length_of(i)] = i + 1;
+        next_of_length_[length_of(i)] = i;
+    }
+    std::size_t left = last - first;
+    // The longest piece that is left, of at most so many links; null: there is none.
+    const auto take = [&](std::size_t most) -> const Piece* {
+        for (std::size_t length = std::min(most, end_of_length_.size() - 1); length > 0; --length)
+            if (next_of_length_[length] < end_of_length_[length])
+                return --left, &coloured_[order_[next_of_length_[length]++]];
+        return nullptr;
+    };
+    while (left > 0) {
+        const std::size_t begin = first_link_.back();
         first_contacts_.resize(first_contacts_.size() + kPathLanes, -1), is_slender_.push_back(0);
-        for (std::uint8_t lane = 0; lane < kPathLanes && i < order_.size(); ++lane, ++i) {
-            const Piece& piece = coloured_[order_[i]];
-            if (piece.colour != colour) break;
-            first_contacts_[bundle * kPathLanes + lane] = sequence_[piece.first].contact;
-            if (is_slender(contacts, piece)) is_slender_[bundle] = 1;
-            for (std::uint32_t k = 0; k < piece.length; ++k) {
-                const Step& s = sequence_[piece.first + k];
-                places_[static_cast<std::size_t>(s.contact)] = {
-                    static_cast<std::uint32_t>(first_link_[bundle] + k), static_cast<std::uint32_t>(bundle),
-                    lane, s.is_reversed};
-            }
+        std::array<std::size_t, kPathLanes> used{};
+        std::size_t length = end_of_length_.size();  // of the bundle
+        for (std::uint8_t lane = 0; lane < kPathLanes && left > 0; ++lane) {
+            const Piece& piece = *take(length);
+            if (lane == 0) length = piece.length;
+            used[lane] = piece.length;
+            first_contacts_[(is_slender_.size() - 1) * kPathLanes + lane] = sequence_[piece.first].contact;
+            put(contacts, piece, lane, begin);
         }
+        for (std::uint8_t lane = 0; lane < kPathLanes; ++lane)
+            while (left > 0 && length - used[lane] > 1) {
+                const Piece* piece = take(length - used[lane] - 1);
+                if (!piece) break;
+                jumps_.push_back(
+                    {static_cast<std::uint32_t>(begin + used[lane]), lane, sequence_[piece->first].contact});
+                put(contacts, *piece, lane, begin + used[lane] + 1);
+                used[lane] += piece->length + 1;
+            }
         longest_ = std::max(longest_, length);
-        first_link_.push_back(first_link_.back() + length);
-        const bool ends_colour = i == order_.size() || coloured_[order_[i]].colour != colour;
-        if (ends_colour) first_bundle_.push_back(bundles());
+        first_link_.push_back(begin + length);
+    }
+}
+
+/// Gives the contacts of a piece their places in the last bundle, from `link` on.
+void PathCut::put(std::span<const ContactLink> contacts, const Piece& piece, std::uint8_t lane,
+                  std::size_t link) {
+    if (is_slender(contacts, piece)) is_slender_.back() = 1;
+    for (std::uint32_t k = 0; k < piece.length; ++k) {
+        const Step& s = sequence_[piece.first + k];
+        places_[static_cast<std::size_t>(s.contact)] = {static_cast<std::uint32_t>(link + k),
+                                                        static_cast<std::uint32_t>(is_slender_.size() - 1),
+                                                        lane, s.is_reversed};
     }
 }
 
@@ -246,7 +288,8 @@ std::size_t PathCut::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
     return of(first_at_) + of(contact_at_) + of(joined_) + of(is_seen_) + of(piece_of_row_) + of(sequence_) +
            of(pieces_) + of(coloured_) + of(used_) + of(loaded_count_) + of(order_) + of(count_) +
-           of(places_) + of(first_link_) + of(first_bundle_) + of(first_contacts_) + of(is_slender_);
+           of(places_) + of(first_link_) + of(first_bundle_) + of(first_contacts_) + of(jumps_) +
+           of(is_slender_) + of(next_of_length_) + of(end_of_length_);
 }
 
 }  // namespace carom

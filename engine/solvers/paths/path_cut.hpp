@@ -21,7 +21,8 @@ struct ContactLink {
 /// At each body those contacts are joined that face each other best, loaded ones first: a load goes straight
 /// through. Every contact is in one path; a path names no body twice. Paths get colours, so that paths of one
 /// colour share no body that moves; kPathLanes paths of a colour, about as long as each other, are a bundle.
-/// What finds no colour is alone in a bundle of a colour of its own.
+/// Shorter paths stand behind those that end before their bundle does, after a link without a contact, so
+/// that few places are empty. What finds no colour is alone in a bundle of a colour of its own.
 ///
 /// Cost: about 100 ns a contact, on one thread. docs/decisions/0027-paths-of-contacts.md.
 class PathCut {
@@ -38,6 +39,13 @@ class PathCut {
         bool is_reversed;  ///< the path goes from b to a
     };
 
+    /// A link without a contact between two paths of a lane: it leads to where the second begins.
+    struct Jump {
+        std::uint32_t link;
+        std::uint8_t lane;
+        std::int32_t contact;  ///< the first of the second path
+    };
+
     /// @param rows  of bodies
     /// @param longest  contacts in a path, >= 1
     void cut(std::span<const ContactLink> contacts, std::size_t rows, std::size_t longest);
@@ -51,20 +59,22 @@ class PathCut {
     std::span<const std::size_t> first_link() const { return first_link_; }
     /// Bundles of colour c: first_bundle()[c] ... first_bundle()[c + 1].
     std::span<const std::size_t> first_bundle() const { return first_bundle_; }
-    /// The contact where the path of each lane of each bundle begins; -1: there is no path.
+    /// The contact where the first path of each lane of each bundle begins; -1: there is no path.
     std::span<const std::int32_t> first_contacts() const { return first_contacts_; }
+    std::span<const Jump> jumps() const { return jumps_; }
     /// A bundle has 1 if one of its paths is slender, as a tower is, else 0: no load leads to more than
     /// kSlender of its bodies but along it.
     std::span<const std::uint8_t> is_slender() const { return is_slender_; }
     std::size_t paths() const { return paths_; }
+    /// Links of the longest bundle.
     std::size_t longest() const { return longest_; }
 
     std::size_t bytes() const;
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.places_, self.first_link_, self.first_bundle_, self.first_contacts_, self.is_slender_,
-                self.longest_, self.paths_);
+        archive(self.places_, self.first_link_, self.first_bundle_, self.first_contacts_, self.jumps_,
+                self.is_slender_, self.longest_, self.paths_);
     }
 
   private:
@@ -83,6 +93,8 @@ class PathCut {
     void walk_from(std::span<const ContactLink> contacts, std::size_t contact, std::size_t longest);
     void colour(std::span<const ContactLink> contacts, std::size_t rows);
     void lay_out(std::span<const ContactLink> contacts, std::size_t rows);
+    void lay_out_colour(std::span<const ContactLink> contacts, std::size_t first, std::size_t last);
+    void put(std::span<const ContactLink> contacts, const Piece& piece, std::uint8_t lane, std::size_t link);
     bool is_slender(std::span<const ContactLink> contacts, const Piece& piece) const;
 
     std::vector<std::uint32_t> first_at_;  // by row: its contacts, in contact_at_
@@ -98,7 +110,10 @@ class PathCut {
     std::vector<Place> places_;
     std::vector<std::size_t> first_link_{0}, first_bundle_{0};
     std::vector<std::int32_t> first_contacts_;
+    std::vector<Jump> jumps_;
     std::vector<std::uint8_t> is_slender_;
+    std::vector<std::size_t> next_of_length_,
+        end_of_length_;  // in order_: pieces of a colour not laid out yet
     std::size_t longest_ = 0, paths_ = 0;
 };
 

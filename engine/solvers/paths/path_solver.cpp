@@ -1,5 +1,4 @@
 #include "solvers/paths/path_solver.hpp"
-#include <cstdlib>
 
 #include <algorithm>
 #include <array>
@@ -22,9 +21,11 @@ constexpr std::size_t kLongestPath = 128, kLongestOfRestless = 16;
 constexpr double kCalm = 0.001, kRestless = 0.01;
 /// Fewer contacts have long paths from the start; more begin with short ones, as heaps do that still settle.
 constexpr std::size_t kFewContacts = 1024;
-/// Iterations of the active set: those that change all of its rows that are wrong; all, while paths are long
-/// and while they are short. Gauss-Seidel sweeps over a path that settles neither so nor in pieces.
-constexpr int kBoldIterations = 4, kMostIterations = 40, kMostOfRestless = 8, kSweepsOfUnsettled = 4;
+/// Iterations of the active set: those that change all of its rows that are wrong; all, while paths are long,
+/// of those that alone hold their bodies and of others; all while paths are short. Gauss-Seidel sweeps over a
+/// path that settles neither so nor in pieces.
+constexpr int kBoldIterations = 4, kMostOfSlender = 40, kMostIterations = 10, kMostOfRestless = 8,
+              kSweepsOfUnsettled = 4;
 /// By which a contact may miss its law, in shares of what gravity adds to a speed in a substep.
 constexpr double kTolerance = 2e-3;
 /// Paths whose contacts all were slower than this may rest for a substep, in shares of the same,
@@ -55,7 +56,7 @@ void PathSolver<Real>::find(const WorldState<Real>& world, const EdgeCandidates<
     if (manifolds.live().empty()) return rolling_.clear();
     note_calm();
     if (!is_same || ++since_cut_ >= kStepsOfCut || is_cut_calm_ != is_calm_) cut_paths(world);
-    lay_out(world, edges, records, loops);
+    lay_out(world, edges, terms, records, loops);
     if (world.effects.rolling_resistance) rolling_.find(world, manifolds, row_of_far_);
 }
 
@@ -97,28 +98,68 @@ void PathSolver<Real>::cut_paths(const WorldState<Real>& world) {
     is_cut_calm_ = is_calm_;
     cut_.cut(contact_links_, bodies.moving(), is_calm_ ? kLongestPath : kLongestOfRestless);
     since_cut_ = 0, ++counters.cuts;
+    links_hold_ = false;
 }
 
-/// Rows at rest for the padding of each bundle and for what nothing moves, then the links of all contacts.
+/// The links of all contacts: of those that are carried on, moved by what their bodies have come, and of
+/// those that were found, as they were found.
 template <class Real>
 void PathSolver<Real>::lay_out(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
-                               BodyRecords<Real>& records, const StepLoops<Real>& loops) {
-    const Bodies<Real>& bodies = world.bodies;
+                               const SubstepTerms& terms, BodyRecords<Real>& records,
+                               const StepLoops<Real>& loops) {
     counters.bundles = static_cast<std::int64_t>(cut_.bundles());
     counters.links = static_cast<std::int64_t>(cut_.links());
-    row_of_far_.resize(manifolds.live().size());
+    if (first_still_row_ != records.rows()) links_hold_ = false;
+    if (!links_hold_) name_rows(world, records);
+    records.add_still_rows(still_rows_);
+    if (!links_hold_) {
+        lay_out_padding(loops);
+        if (manifolds.some_are_carried()) fill_links(false, world, records, loops);
+    }
+    if (manifolds.some_are_carried()) carry_links(terms, records, loops);
+    fill_links(true, world, records, loops);
+    links_hold_ = true;
+    move_still_rows(world, edges, records);
+}
+
+/// Rows at rest for the padding of each bundle and for what nothing moves, and the row where each path
+/// begins.
+template <class Real>
+void PathSolver<Real>::name_rows(const WorldState<Real>& world, const BodyRecords<Real>& records) {
+    const Bodies<Real>& bodies = world.bodies;
+    const std::span<const std::int32_t> live = manifolds.live();
+    row_of_far_.resize(live.size()), with_kinematic_.clear();
     first_still_row_ = records.rows();
     std::size_t row = first_still_row_ + cut_.bundles();
-    for (std::size_t n = 0; n < manifolds.live().size(); ++n) {
-        const std::int32_t partner =
-            manifolds.list_of(manifolds.live()[n]).b[Manifolds<Real>::place_of(manifolds.live()[n])];
+    for (std::size_t n = 0; n < live.size(); ++n) {
+        const std::int32_t partner = manifolds.list_of(live[n]).b[Manifolds<Real>::place_of(live[n])];
         const auto b = static_cast<std::size_t>(partner);
         const bool b_moves = partner >= 0 && b < bodies.count && !bodies.is_immovable(b);
         row_of_far_[n] = b_moves ? partner : static_cast<std::int32_t>(row++);
+        if (!b_moves && live[n] >= 0 && (bodies.flags_of(b) & kKinematic) != 0)
+            with_kinematic_.push_back(static_cast<std::int32_t>(n));
     }
-    records.add_still_rows(row - first_still_row_);
-    links_.resize_for_overwrite(cut_.links());
+    still_rows_ = row - first_still_row_;
     heads_.resize_for_overwrite(kPathLanes * cut_.bundles());
+    for (std::size_t lane = 0; lane < kPathLanes * cut_.bundles(); ++lane) {
+        const std::int32_t first = cut_.first_contacts()[lane];
+        heads_[lane] =
+            first >= 0 ? head_row(first) : static_cast<std::int32_t>(first_still_row_ + lane / kPathLanes);
+    }
+    scratch_.resize(path_scratch_bytes(cut_.longest()) * std::size_t{16});
+}
+
+template <class Real>
+std::int32_t PathSolver<Real>::head_row(std::int32_t first) const {
+    const auto n = static_cast<std::size_t>(first);
+    if (cut_.places()[n].is_reversed) return row_of_far_[n];
+    const std::int32_t contact = manifolds.live()[n];
+    return manifolds.list_of(contact).a[Manifolds<Real>::place_of(contact)];
+}
+
+template <class Real>
+void PathSolver<Real>::lay_out_padding(const StepLoops<Real>& loops) {
+    links_.resize_for_overwrite(cut_.links());
     restless_.resize_for_overwrite(kPathLanes * cut_.bundles());
     const auto none = static_cast<Real>(kNoPoint);
     loops.executor->for_each_chunk(
@@ -126,7 +167,6 @@ void PathSolver<Real>::lay_out(const WorldState<Real>& world, const EdgeCandidat
         [&](std::size_t, std::size_t first, std::size_t last) {
             for (std::size_t bundle = first; bundle < last; ++bundle) {
                 const auto still = static_cast<std::int32_t>(first_still_row_ + bundle);
-                std::fill_n(&heads_[kPathLanes * bundle], kPathLanes, still);
                 for (std::size_t i = cut_.first_link()[bundle]; i < cut_.first_link()[bundle + 1]; ++i) {
                     PathLink<Real>& link = links_[i];
                     link = {};
@@ -136,37 +176,54 @@ void PathSolver<Real>::lay_out(const WorldState<Real>& world, const EdgeCandidat
                 }
             }
         });
-    loops.executor->for_each_chunk(manifolds.live().size(), kContactsPerTask, kNanosecondsToFill,
+    for (const PathCut::Jump& jump : cut_.jumps()) links_[jump.link].body[jump.lane] = head_row(jump.contact);
+}
+
+/// Fills the links of the contacts that were found in this step, or of the others.
+template <class Real>
+void PathSolver<Real>::fill_links(bool found, const WorldState<Real>& world, const BodyRecords<Real>& records,
+                                  const StepLoops<Real>& loops) {
+    const std::span<const std::int32_t> live = manifolds.live();
+    loops.executor->for_each_chunk(live.size(), kContactsPerTask, kNanosecondsToFill,
                                    [&](std::size_t, std::size_t first, std::size_t last) {
                                        for (std::size_t n = first; n < last; ++n)
-                                           fill_link(world, records, n);
+                                           if (manifolds.is_found(live[n]) == found)
+                                               fill_link(world, records, n, found);
                                    });
-    for (std::size_t lane = 0; lane < kPathLanes * cut_.bundles(); ++lane) {
-        const std::int32_t n = cut_.first_contacts()[lane];
-        if (n < 0) continue;
-        const auto number = static_cast<std::size_t>(n);
-        const std::int32_t a = manifolds.list_of(manifolds.live()[number])
-                                   .a[Manifolds<Real>::place_of(manifolds.live()[number])];
-        heads_[lane] = cut_.places()[number].is_reversed ? row_of_far_[number] : a;
-    }
-    for (std::size_t n = 0; n < manifolds.live().size(); ++n) {
-        const Partner partner(
-            manifolds.list_of(manifolds.live()[n]).b[Manifolds<Real>::place_of(manifolds.live()[n])]);
-        if (partner.stored() == row_of_far_[n] || partner.is_wall()) continue;
+}
+
+template <class Real>
+void PathSolver<Real>::carry_links(const SubstepTerms& terms, BodyRecords<Real>& records,
+                                   const StepLoops<Real>& loops) {
+    SolvePaths<Real> k = arguments(terms, records);
+    k.come = manifolds.poses().come(records.rows()), k.turned = manifolds.poses().turned();
+    run(loops.kernels->convex->paths.carry, k, loops);
+}
+
+/// Velocities of kinematic bodies where they touch.
+template <class Real>
+void PathSolver<Real>::move_still_rows(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
+                                       BodyRecords<Real>& records) {
+    const Bodies<Real>& bodies = world.bodies;
+    const std::span<const std::int32_t> live = manifolds.live();
+    const auto move = [&](std::size_t n) {
+        const Partner partner(manifolds.list_of(live[n]).b[Manifolds<Real>::place_of(live[n])]);
+        if (partner.is_wall()) return;
         const std::size_t b = partner.is_edge() ? edges.pose_of(world.edges[partner.edge_number()]).row
                                                 : static_cast<std::size_t>(partner.row());
-        if ((bodies.flags_of(b) & kKinematic) == 0) continue;
+        if ((bodies.flags_of(b) & kKinematic) == 0) return;
         Real* velocity = &records.velocity[4 * static_cast<std::size_t>(row_of_far_[n])];
         velocity[0] = bodies.velocity_x[b], velocity[1] = bodies.velocity_y[b];
         if (bodies.has_rotation)
             velocity[2] = bodies.angular_velocity[b] * (partner.is_edge() ? Real(1) : bodies.rim(b));
-    }
-    scratch_.resize(path_scratch_bytes(cut_.longest()) * std::size_t{16});
+    };
+    for (const std::int32_t n : with_kinematic_) move(static_cast<std::size_t>(n));
+    for (std::size_t n = live.size(); n-- > 0 && live[n] < 0;) move(n);  // surfaces come last
 }
 
 template <class Real>
 void PathSolver<Real>::fill_link(const WorldState<Real>& world, const BodyRecords<Real>& records,
-                                 std::size_t number) {
+                                 std::size_t number, bool found) {
     const Bodies<Real>& bodies = world.bodies;
     ManifoldList<Real>& list = manifolds.list_of(manifolds.live()[number]);
     const std::size_t i = Manifolds<Real>::place_of(manifolds.live()[number]);
@@ -181,8 +238,9 @@ void PathSolver<Real>::fill_link(const WorldState<Real>& world, const BodyRecord
     const Real rim_b = is_body ? 1 / bodies.rim(static_cast<std::size_t>(list.b[i])) : Real(1);
     Real a1 = list.lever_a1[i] * rim_a, a2 = list.lever_a2[i] * rim_a, at = list.lever_a_t[i] * rim_a;
     Real b1 = list.lever_b1[i] * rim_b, b2 = list.lever_b2[i] * rim_b, bt = list.lever_b_t[i] * rim_b;
-    Real s1 = list.separation1[i], s2 = list.separation2[i];
     ManifoldMemory<Real>& memory = list.memory[i];
+    Real s1 = found ? list.separation1[i] : memory.separation1,
+         s2 = found ? list.separation2[i] : memory.separation2;
     if (!(memory.normal_x * list.normal_x[i] + memory.normal_y * list.normal_y[i] >
           static_cast<Real>(kSameNormal)))
         memory = {};
@@ -199,7 +257,10 @@ void PathSolver<Real>::fill_link(const WorldState<Real>& world, const BodyRecord
         const Real w = wa + wb, k11 = w + wa2 * a1 * a1 + wb2 * b1 * b1,
                    k22 = w + wa2 * a2 * a2 + wb2 * b2 * b2, k12 = w + wa2 * a1 * a2 + wb2 * b1 * b2;
         if (k11 * k22 - k12 * k12 < static_cast<Real>(kLeastDeterminant) * (k11 * k22)) {
-            if (s2 < s1) s1 = s2, a1 = a2, b1 = b2;
+            if (s2 < s1) {
+                s1 = s2, a1 = a2, b1 = b2;
+                list.lever_a1[i] = list.lever_a2[i], list.lever_b1[i] = list.lever_b2[i];
+            }
             s2 = none;
         }
     }
@@ -234,6 +295,7 @@ SolvePaths<Real> PathSolver<Real>::arguments(const SubstepTerms& terms, BodyReco
         static_cast<Real>(kRestingSpeed * terms.fall_speed() * terms.substep_dt / kRestingShare);
     k.bold_iterations = kBoldIterations;
     k.most_iterations = is_cut_calm_ ? kMostIterations : kMostOfRestless;
+    k.most_of_slender = is_cut_calm_ ? kMostOfSlender : kMostOfRestless;
     k.sweeps_of_unsettled = kSweepsOfUnsettled;
     return k;
 }
@@ -304,16 +366,19 @@ void PathSolver<Real>::end() {
     for (std::size_t n = 0; n < manifolds.live().size(); ++n) {
         const PathCut::Place place = cut_.places()[n];
         const PathLink<Real>& link = links_[place.link];
-        manifolds.keep(manifolds.live()[n], link.normal1[place.lane], link.normal2[place.lane],
-                       link.tangent[place.lane]);
+        const std::size_t lane = place.lane;
+        ManifoldMemory<Real>& memory = manifolds.memory_of(manifolds.live()[n]);
+        memory.normal1 = link.normal1[lane], memory.normal2 = link.normal2[lane];
+        memory.tangent = link.tangent[lane];
+        memory.separation1 = link.separation1[lane], memory.separation2 = link.separation2[lane];
     }
 }
 
 template <class Real>
 std::size_t PathSolver<Real>::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-    return manifolds.bytes() + rolling_.bytes() + of(row_of_far_) + of(contact_links_) + cut_.bytes() +
-           links_.bytes() + heads_.bytes() + restless_.bytes() + scratch_.bytes();
+    return manifolds.bytes() + rolling_.bytes() + of(row_of_far_) + of(with_kinematic_) + of(contact_links_) +
+           cut_.bytes() + links_.bytes() + heads_.bytes() + restless_.bytes() + scratch_.bytes();
 }
 
 template class PathSolver<float>;

@@ -61,8 +61,9 @@ class PathSolver {
     const PathRolling<Real>& rolling() const { return rolling_; }
     /// To be called when impulses are those of substeps of another length, by this factor.
     void rescale(double factor) {
-        manifolds.rescale(factor);
-        if (factor != 1) rolling_.rescale(static_cast<Real>(factor));
+        if (factor == 1) return;
+        manifolds.rescale(factor), rolling_.rescale(static_cast<Real>(factor));
+        links_hold_ = false;
     }
     /// Calls fn(contact) for each PathContact of the step.
     template <class Fn>
@@ -86,6 +87,7 @@ class PathSolver {
     static void visit_state(Self& self, Archive& archive) {
         archive(self.counters, self.manifolds, self.rolling_, self.cut_, self.since_cut_, self.solved_,
                 self.is_calm_, self.is_cut_calm_);
+        if constexpr (!std::is_const_v<Self>) self.links_hold_ = false;
     }
 
   private:
@@ -114,9 +116,19 @@ class PathSolver {
                         : links_[place.link - 1].body[place.lane];
     }
     void cut_paths(const WorldState<Real>& world);
-    void lay_out(const WorldState<Real>& world, const EdgeCandidates<Real>& edges, BodyRecords<Real>& records,
-                 const StepLoops<Real>& loops);
-    void fill_link(const WorldState<Real>& world, const BodyRecords<Real>& records, std::size_t number);
+    void lay_out(const WorldState<Real>& world, const EdgeCandidates<Real>& edges, const SubstepTerms& terms,
+                 BodyRecords<Real>& records, const StepLoops<Real>& loops);
+    void name_rows(const WorldState<Real>& world, const BodyRecords<Real>& records);
+    /// Row of the body where the path that begins with a live contact begins.
+    std::int32_t head_row(std::int32_t first) const;
+    void lay_out_padding(const StepLoops<Real>& loops);
+    void fill_links(bool found, const WorldState<Real>& world, const BodyRecords<Real>& records,
+                    const StepLoops<Real>& loops);
+    void carry_links(const SubstepTerms& terms, BodyRecords<Real>& records, const StepLoops<Real>& loops);
+    void move_still_rows(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
+                         BodyRecords<Real>& records);
+    void fill_link(const WorldState<Real>& world, const BodyRecords<Real>& records, std::size_t number,
+                   bool found);
 
     PathRolling<Real> rolling_;
     std::vector<std::int32_t> row_of_far_;  // of each contact: the row of b in the records
@@ -127,9 +139,12 @@ class PathSolver {
     bool is_calm_ = true;      // paths settle
     bool is_cut_calm_ = true;  // when they were cut
     Column<PathLink<Real>> links_;
+    bool links_hold_ = false;  // they are laid out as the cut says, with what the step before left
+    std::vector<std::int32_t> with_kinematic_;  // contacts of two bodies, one of which is kinematic
     Column<std::int32_t> heads_;
-    std::size_t first_still_row_ = 0;  // in the records: of padding and of what nothing moves
-    Column<Real> restless_;            // m/s, kernels/path_arguments.hpp
+    // Rows in the records of padding and of what nothing moves.
+    std::size_t first_still_row_ = 0, still_rows_ = 0;
+    Column<Real> restless_;  // m/s, kernels/path_arguments.hpp
     Column<std::byte> scratch_;
 };
 

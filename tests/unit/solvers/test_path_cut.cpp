@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <vector>
 
@@ -34,7 +35,8 @@ std::int32_t head_of(const ContactLink& contact, bool is_reversed) {
     return is_reversed ? contact.b : contact.a;
 }
 
-/// Bodies of each lane of each bundle, in the order of the path, and whether the contacts hang together.
+/// Bodies of each lane of each bundle, in the order of its paths, and whether the contacts hang together:
+/// each begins where the one before ends, but behind a jump, after one link that has no contact.
 struct Walked {
     std::vector<std::vector<std::int32_t>> bodies;  // by bundle * kPathLanes + lane
     bool hangs_together = true;
@@ -51,20 +53,32 @@ Walked walk(const PathCut& cut, const std::vector<ContactLink>& contacts) {
     }
     Walked walked;
     walked.bodies.resize(visits.size());
+    std::map<std::pair<std::size_t, std::size_t>, std::int32_t> jumps;  // by link and lane
+    for (const PathCut::Jump& jump : cut.jumps()) jumps[{jump.link, jump.lane}] = jump.contact;
     for (std::size_t lane = 0; lane < visits.size(); ++lane) {
         auto& path = visits[lane];
         std::sort(path.begin(), path.end(), [](const Visit& p, const Visit& q) { return p.link < q.link; });
-        for (std::size_t k = 0; k < path.size(); ++k) {
+        std::size_t next = cut.first_link()[lane / kPathLanes];
+        for (std::size_t k = 0; k < path.size(); ++k, ++next) {
             const bool reversed = cut.places()[path[k].contact].is_reversed;
             const std::int32_t head = head_of(contacts[path[k].contact], reversed),
                                end = head_of(contacts[path[k].contact], !reversed);
-            if (k == 0) walked.bodies[lane].push_back(head);
-            const bool follows = path[k].link == cut.first_link()[lane / kPathLanes] + k &&
-                                 (k == 0 || (head == walked.bodies[lane].back() && head >= 0));
-            walked.hangs_together = walked.hangs_together && follows;
+            const auto jump = jumps.find({next, lane % kPathLanes});
+            const bool jumps_here = k > 0 && jump != jumps.end();
+            if (jumps_here) {
+                ++next;
+                walked.hangs_together =
+                    walked.hangs_together && jump->second == static_cast<std::int32_t>(path[k].contact);
+                jumps.erase(jump);
+            }
+            const bool begins = k == 0 || jumps_here;
+            const bool follows = begins || (head == walked.bodies[lane].back() && head >= 0);
+            if (begins) walked.bodies[lane].push_back(head);
+            walked.hangs_together = walked.hangs_together && follows && path[k].link == next;
             walked.bodies[lane].push_back(end);
         }
     }
+    walked.hangs_together = walked.hangs_together && jumps.empty();
     return walked;
 }
 
@@ -105,6 +119,19 @@ TEST_SUITE("solvers/paths/path_cut") {
                         CHECK(cut.places()[static_cast<std::size_t>(first)].link == cut.first_link()[bundle]);
                 }
         }
+    }
+    TEST_CASE("short paths stand behind each other where a long one goes on") {
+        // A column of 21 contacts, and 60 pairs of bodies apart: all have the first colour.
+        std::vector<ContactLink> contacts;
+        std::int32_t body = 0;
+        for (; body < 21; ++body) contacts.push_back({body, body + 1, 0, 1, 0, -1, true});
+        for (++body; contacts.size() < 81; body += 2) contacts.push_back({body, body + 1, 0, 1, 0, -1, true});
+        PathCut cut;
+        cut.cut(contacts, static_cast<std::size_t>(body), 128);
+        CHECK(cut.bundles() == 1);
+        CHECK(cut.links() == 21);
+        CHECK(cut.paths() == 61);
+        CHECK(walk(cut, contacts).hangs_together);
     }
     TEST_CASE("a column of bodies is one path from the ground to the top") {
         std::vector<ContactLink> contacts{{0, ContactLink::kNothing, 0, -1, 0, 1, true}};

@@ -1,0 +1,94 @@
+#include "solvers/paths/pose_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "math/rotation.hpp"
+
+namespace carom {
+namespace {
+
+// docs/decisions/0035-contacts-at-rest.md has the measurements behind these.
+
+/// A body whose contacts are carried on has come by less than this share of the thinnest of them since they
+/// were found,
+constexpr double kCarriedShare = 1e-3;
+/// has turned so little that what its points have come off their straight way, radius times turn² / 2, is
+/// less than half of this share of it: found again, a contact makes up for that at once, as a speed,
+constexpr double kCarriedArc = 1e-6;
+/// and comes by less than this share of the distance up to which contacts are found in the step.
+constexpr double kCarriedWay = 0.25;
+
+constexpr std::size_t kRowsPerTask = 512;
+constexpr double kNanosecondsToLook = 20;  // a row, on one thread, for the executor
+
+}  // namespace
+
+template <class Real>
+void PoseWatch<Real>::look(const WorldState<Real>& world, double dt, const ContactDistance& near,
+                           bool forgets, const Executor& executor) {
+    const Bodies<Real>& bodies = world.bodies;
+    const std::size_t rows = bodies.rows();
+    pose.resize(4 * angle_.size());  // poses of pieces are none of rows
+    pose.resize(4 * rows), angle_.resize(rows), base_.resize(4 * rows), has_moved_.resize(rows);
+    come_.resize(2 * rows), turned_.resize(rows), thinnest_.resize(rows);
+    awake_ = bodies.count;
+    if (forgets) std::fill(thinnest_.begin(), thinnest_.end(), Real(0));
+    executor.for_each_chunk(rows, kRowsPerTask, kNanosecondsToLook,
+                            [&](std::size_t, std::size_t first, std::size_t last) {
+                                for (std::size_t row = first; row < last; ++row)
+                                    look_at(world, dt, near, row);
+                            });
+    if (forgets) std::fill(thinnest_.begin(), thinnest_.end(), std::numeric_limits<Real>::infinity());
+}
+
+template <class Real>
+void PoseWatch<Real>::look_at(const WorldState<Real>& world, double dt, const ContactDistance& near,
+                              std::size_t row) {
+    const Bodies<Real>& bodies = world.bodies;
+    Real *at = &pose[4 * row], *base = &base_[4 * row];
+    const Real x = bodies.position_x[row], y = bodies.position_y[row],
+               angle = bodies.has_rotation ? bodies.angle[row] : Real(0);
+    const auto wide = static_cast<double>(angle);
+    come_[2 * row] = x - at[0], come_[2 * row + 1] = y - at[1];
+    turned_[row] = static_cast<Real>(wide - angle_[row]) * bodies.rim(row);
+    at[0] = x, at[1] = y;
+    if (wide != angle_[row] || (at[2] == 0 && at[3] == 0)) {
+        const Rotation by = rotation_by(wide);
+        at[2] = static_cast<Real>(by.cos), at[3] = static_cast<Real>(by.sin);
+        angle_[row] = wide;
+    }
+    const bool is_driven = (bodies.flags_of(row) & kKinematic) != 0;
+    const bool may_move = is_driven || !(row >= bodies.count || bodies.is_immovable(row));
+    const Real thinnest = thinnest_[row], away = std::fabs(x - base[0]) + std::fabs(y - base[1]),
+               turn = angle - base[2];
+    const Real spin = bodies.has_rotation ? std::fabs(bodies.angular_velocity[row]) : Real(0);
+    const Real way = static_cast<Real>(dt) * (std::fabs(bodies.velocity_x[row]) +
+                                              std::fabs(bodies.velocity_y[row]) + spin * bodies.radius[row]);
+    const bool is_still =
+        away <= static_cast<Real>(kCarriedShare) * thinnest &&
+        turn * turn * bodies.radius[row] <= static_cast<Real>(kCarriedArc) * thinnest &&
+        way <= (is_driven ? Real(0) : static_cast<Real>(kCarriedWay * near.share) * thinnest);
+    has_moved_[row] = may_move && !is_still;
+    if (has_moved_[row] != 0 || thinnest == 0) base[0] = x, base[1] = y, base[2] = angle;
+}
+
+template <class Real>
+const Real* PoseWatch<Real>::come(std::size_t rows) {
+    come_.resize(2 * rows), turned_.resize(rows);
+    std::fill(come_.begin() + static_cast<std::ptrdiff_t>(2 * awake_), come_.end(), Real(0));
+    std::fill(turned_.begin() + static_cast<std::ptrdiff_t>(awake_), turned_.end(), Real(0));
+    return come_.data();
+}
+
+template <class Real>
+std::size_t PoseWatch<Real>::bytes() const {
+    return pose.bytes() + angle_.bytes() + base_.bytes() + thinnest_.bytes() + has_moved_.bytes() +
+           come_.bytes() + turned_.bytes();
+}
+
+template class PoseWatch<float>;
+template class PoseWatch<double>;
+
+}  // namespace carom
