@@ -6,7 +6,7 @@ from program import ProgramTest, scaled
 
 SCENES = scaled(20, 4)  # random scenes
 SEED = 1
-TIMES = {"median ms", "worst ms", "worst/median"}
+TIMES = {"median ms", "worst ms", "worst/median", "stall"}
 
 
 def numbers_of(row):
@@ -41,6 +41,20 @@ class TortureTest(ProgramTest):
         other = self.torture(*arguments, "--only", 3, "--seed", 4)["rows"]
         self.assertNotEqual(other[0]["scene"], rows[3]["scene"])
 
+    def test_a_random_world_alone_gives_the_numbers_it_gives_among_others(self):
+        def worlds(*which):  # some may fail: what it finds is not asked here
+            done = self.carom("torture", "random", "--bodies", 12, "--steps", 40, "--solver", "auto", "--seed", 3, *which,
+                              "--json", "--out", "out", expect=None)
+            return json.loads(done.stdout)["rows"]
+        rows = worlds("--scenes", 6)
+        self.assertEqual(len({json.dumps(numbers_of(row)) for row in rows}), 6)
+        self.assertEqual([measure["name"] for measure in rows[0]["measures"][:6]],
+                         ["energy rise", "quarantined", "outside", "not finite", "other bits", "stall"])
+        self.assertTrue(all("mark" in measure for row in rows for measure in row["measures"][:6]))
+        for index in range(6):
+            alone, = worlds("--only", index)
+            self.assertEqual((alone["scene"], numbers_of(alone)), (rows[index]["scene"], numbers_of(rows[index])))
+
     def test_a_solver_with_known_faults_fails_and_the_number_is_shown(self):
         # The naive loop moves discs apart without a look at what lies above them: a heap of them is pumped.
         done = self.carom("torture", "drop", "--bodies", 60, "--steps", 200, "--solver", "pairwise", "--out", "out", expect=1)
@@ -60,7 +74,7 @@ class TortureTest(ProgramTest):
 
     def test_the_list_names_the_cases_and_writes_nothing(self):
         lines = self.carom("torture", "--list").stdout.splitlines()
-        self.assertEqual([line.split()[0] for line in lines], ["passive", "drop", "rest", "impacts"])
+        self.assertEqual([line.split()[0] for line in lines], ["passive", "random", "drop", "rest", "impacts"])
         self.assertEqual(self.everything(), [])
 
     def test_wrong_cases_and_numbers_are_refused_and_nothing_is_written(self):

@@ -102,7 +102,7 @@ double time_limit(const std::string& text) {
 }
 
 std::vector<Solver> solvers_named(const std::string& text) {
-    const std::vector<std::string_view> known{"auto", "impulse", "soft", "event", "pairwise"};
+    const std::vector<std::string_view> known{"auto", "impulse", "soft", "event", "rattle", "pairwise"};
     std::vector<Solver> solvers;
     for (const std::string& name : split_at_commas(text))
         solvers.push_back(*solver_named(known_value("--solver", name, known)));
@@ -117,7 +117,7 @@ void add_numbers(CLI::App& command, const std::shared_ptr<Torture>& asked) {
             ->type_name("N");
     };
     torture::Options& options = asked->options;  // lives as long as `asked`, which the callback holds
-    add("--scenes", "Random scenes of `passive` (default 2000)", 1, kLargestNumber,
+    add("--scenes", "Random scenes of `passive` (default 2000) and `random` (10000)", 1, kLargestNumber,
         [&options](std::int64_t value) { options.scenes = value; });
     add("--seed", "Seed of random scenes (default 1)", 0, INT64_MAX,
         [&options](std::int64_t value) { options.seed = static_cast<std::uint64_t>(value); });

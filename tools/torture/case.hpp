@@ -27,6 +27,7 @@ struct Case {
 };
 
 Case passive();
+Case random_worlds();
 Case drop();
 Case rest();
 Case impacts();

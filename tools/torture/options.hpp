@@ -10,7 +10,7 @@ namespace carom::torture {
 
 /// What the command line asks of the cases; what is left out is the case's own.
 struct Options {
-    std::int64_t scenes = 2000;            ///< random scenes of `passive`
+    std::optional<std::int64_t> scenes{};  ///< random scenes of `passive`, random worlds of `random`
     std::uint64_t seed = 1;                ///< of random scenes
     std::optional<std::int64_t> only{};    ///< the one random scene of that index
     std::optional<std::int64_t> steps{};   ///< of each run

@@ -20,8 +20,7 @@ const double kHexagonal = std::numbers::pi / (2 * std::numbers::sqrt3);  // fill
 
 /// Numbers of bodies from 10 to 10,000, every octave there, most of them small: half below 30.
 double number_of_bodies(Random& random) {
-    const double where = random.uniform();
-    return kFewest * std::pow(kMost / kFewest, where * where * where);
+    return random.skewed(kFewest, kMost, 3);
 }
 
 /// Mean square over largest square, of radii spread evenly from 1 to `ratio`.

@@ -23,6 +23,11 @@ class Random {
     }
     /// In [low, high), every octave as likely.
     double log_uniform(double low, double high) { return low * std::exp(uniform() * std::log(high / low)); }
+    /// In [low, high), every octave there, the lower ones the more often the higher the `power` (1: as
+    /// often).
+    double skewed(double low, double high, double power) {
+        return low * std::pow(high / low, std::pow(uniform(), power));
+    }
     bool chance(double probability) { return uniform() < probability; }
     std::size_t below(std::size_t count) {
         return static_cast<std::size_t>(uniform() * static_cast<double>(count));

@@ -40,18 +40,22 @@ void watch_over_steps(std::int64_t* step) {
 Watch::Watch(const Scene& scene, Solver solver, Precision precision, double limit)
     : scene_(with(scene, solver, precision)),
       limit_(limit),
-      simulation_(tool::make_simulation(scene_, {.threads = 1})) {}
+      simulation_(tool::make_simulation(scene_, {.threads = 1})) {
+    for (const Body& body : scene_.bodies) masses_.push_back(body_mass_of(body));
+}
 
-bool Watch::step() {
+bool Watch::step(double dt) {
     if (gave_up()) return false;
     if (step_in_progress) {
         *step_in_progress = steps();
         allow(limit_);
     }
     const double start = measure::thread_seconds();
-    simulation_->step(scene_.step.dt);
+    simulation_->step(dt);
     seconds_.push_back(measure::thread_seconds() - start);
     spent_ += seconds_.back();
+    const bool sleeps = scene_.effects.sleep.value_or(false) && simulation_->profile().asleep > 0;
+    if (!sleeps) awake_seconds_.push_back(seconds_.back());
     return true;
 }
 
@@ -69,6 +73,13 @@ double Watch::longest_step() const {
     return seconds_.empty() ? 0 : *std::max_element(seconds_.begin(), seconds_.end());
 }
 
+double Watch::stall() const {
+    constexpr double kShortestStall = 1e-3;  // s
+    const double longest = longest_step();
+    if (longest < kShortestStall) return 0;
+    return longest / (awake_seconds_.empty() ? median_step() : measure::quantile(awake_seconds_, 0.5));
+}
+
 std::string Watch::failure() const {
     if (!gave_up()) return {};
     return measure::format("given up after %lld steps, which took %.0f s", static_cast<long long>(steps()),
@@ -78,7 +89,7 @@ std::string Watch::failure() const {
 double Watch::kinetic_energy() const {
     double sum = 0;
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i)
-        if (is_dynamic(scene_.bodies[i])) sum += tool::kinetic_energy_of(scene_.bodies[i], state(i));
+        if (is_dynamic(scene_.bodies[i])) sum += tool::kinetic_energy_of(masses_[i], state(i));
     return sum;
 }
 
@@ -99,8 +110,30 @@ double Watch::mean_height() const {
     return count > 0 ? sum / count : 0;
 }
 
-EnergyBooks::EnergyBooks(const Watch& watch, const Scene& scene, std::vector<double> lowest)
-    : lowest_(std::move(lowest)) {
+std::size_t Watch::not_finite() const {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+        const BodyState s = state(i);
+        count += !std::isfinite(s.position.x + s.position.y + s.angle + s.velocity.x + s.velocity.y +
+                                s.angular_velocity);
+    }
+    return count;
+}
+
+std::size_t Watch::outside(const Enclosure& enclosure, const BodyState& pose) const {
+    const double cos = std::cos(pose.angle), sin = std::sin(pose.angle);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+        if (!is_dynamic(scene_.bodies[i]) || scene_.bodies[i].sensor) continue;
+        const Vec2 at = state(i).position, from{at.x - pose.position.x, at.y - pose.position.y};
+        count += !(enclosure.clearance({cos * from.x + sin * from.y, cos * from.y - sin * from.x}) > 0);
+    }
+    return count;
+}
+
+EnergyBooks::EnergyBooks(const Watch& watch, const Scene& scene, std::vector<double> lowest,
+                         const EnergySources& sources, double least)
+    : lowest_(std::move(lowest)), sources_(sources), least_(least) {
     for (const Body& body : scene.bodies)
         weight_.push_back(is_dynamic(body) ? -scene.gravity.y * tool::mass_of(body) : 0);
     start_ = energy(watch);
@@ -113,11 +146,24 @@ double EnergyBooks::energy(const Watch& watch) const {
     return watch.kinetic_energy() + potential;
 }
 
+double EnergyBooks::given(const EnergyByCause& cause) {
+    double given = 0, turnover = sources_.falls ? std::fabs(cause.gravity) : 0;
+    const auto add = [&](bool is_source, double energy) {
+        if (is_source) given += energy, turnover += std::fabs(energy);
+    };
+    add(sources_.drives, cause.drive), add(sources_.joints, cause.joints);
+    add(sources_.overlaps, cause.correction);
+    turnover_ = std::fmax(turnover_, turnover);
+    return given;
+}
+
 void EnergyBooks::look(const Watch& watch) {
-    const double rise = energy(watch) / start_ - 1;
+    const bool has_causes = watch.simulation().keeps_ledger();
+    const EnergyByCause cause = has_causes ? watch.simulation().ledger().energy_by_cause : EnergyByCause{};
+    const double more = energy(watch) - start_ - given(cause);
+    const double rise = more == 0 ? 0 : more / std::fmax(least_, start_ + turnover_);
     if (!(rise <= rise_)) rise_ = rise;  // not a number stays
-    if (!watch.simulation().keeps_ledger()) return;
-    const EnergyByCause cause = watch.simulation().ledger().energy_by_cause;
+    if (!has_causes) return;
     restitution_gain_ += std::fmax(0, cause.restitution - last_restitution_) / start_;
     last_restitution_ = cause.restitution;
     correction_gain_ = std::fmax(correction_gain_, cause.correction / start_);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "simulation/simulation.hpp"
+#include "torture/enclosure.hpp"
 #include "torture/options.hpp"
 #include "torture/outcome.hpp"
 
@@ -20,15 +21,20 @@ class Watch {
     Watch(const Scene& scene, Solver solver, Precision precision, double limit);
 
     /// One step of the scene's length. @return false, without a step, once the limit is exceeded
-    bool step();
+    bool step() { return step(scene_.step.dt); }
+    bool step(double dt);
     /// Steps up to a time of the world [s]. @return false once the limit is exceeded
     bool advance_to(double time);
 
+    const Scene& scene() const { return scene_; }  ///< with the solver and precision that run
     const tool::Simulation& simulation() const { return *simulation_; }
     BodyState state(std::size_t body) const { return simulation_->state(body); }
     std::int64_t steps() const { return static_cast<std::int64_t>(seconds_.size()); }
     double median_step() const;   ///< s
     double longest_step() const;  ///< s
+    /// Longest step over the median of those in which all bodies were awake; 0 where it took less than a
+    /// millisecond: what takes so long may be the machine.
+    double stall() const;
     bool gave_up() const { return spent_ > limit_; }
     /// Empty, or why there are no more steps.
     std::string failure() const;
@@ -37,27 +43,44 @@ class Watch {
     double rms_speed() const;       ///< m/s, of dynamic bodies
     double mean_height() const;     ///< m, of dynamic bodies
     std::size_t quarantined() const { return simulation_->quarantined().size(); }
+    std::size_t not_finite() const;  ///< bodies
+    /// Dynamic bodies, sensors left out, whose centre is not inside. @param pose  of the enclosure
+    std::size_t outside(const Enclosure& enclosure, const BodyState& pose = {}) const;
 
   private:
     Scene scene_;
     double limit_;
     std::unique_ptr<tool::Simulation> simulation_;
-    std::vector<double> seconds_;  // of each step
+    std::vector<BodyMass> masses_;       // [bodies]
+    std::vector<double> seconds_;        // of each step
+    std::vector<double> awake_seconds_;  // of each step in which no body slept
     double spent_ = 0;
 };
 
-/// Follows the energy of a passive world. Potential energy is 0 where each body is as low as it can be, so
-/// that the start's total is what the world can ever have in motion.
+/// What may give a world energy, by the ledger; nothing does in a passive one.
+struct EnergySources {
+    bool drives = false;    ///< kinematic bodies
+    bool joints = false;    ///< motors, targets, springs, joints that are stretched at the start
+    bool overlaps = false;  ///< displacement of what overlaps at the start, or is pressed together
+    bool falls = false;     ///< gravity: there is no lowest place
+};
+
+/// Follows the energy of a world. Potential energy is 0 where each body is as low as it can be, so that the
+/// start's total is what a passive world can ever have in motion.
 class EnergyBooks {
   public:
     /// @param lowest  m, of each body's centre, [bodies]
-    EnergyBooks(const Watch& watch, const Scene& scene, std::vector<double> lowest);
+    /// @param least   J: rises are shares of this at least
+    EnergyBooks(const Watch& watch, const Scene& scene, std::vector<double> lowest,
+                const EnergySources& sources = {}, double least = 0);
 
     /// After every step.
     void look(const Watch& watch);
 
     double start() const { return start_; }  ///< J
-    double rise() const { return rise_; }    ///< largest (E - E0) / E0 so far
+    /// Largest (E - E0 - given) / (E0 + turnover) so far: what sources gave, and the most they ever had given
+    /// or taken.
+    double rise() const { return rise_; }
     /// Steps in which restitution gave energy, the sum of what they gave over E0; 0 without a ledger.
     double restitution_gain() const { return restitution_gain_; }
     /// The most that displacement had lifted bodies by, over E0; 0 without a ledger.
@@ -65,8 +88,11 @@ class EnergyBooks {
 
   private:
     double energy(const Watch& watch) const;
+    double given(const EnergyByCause& cause);
 
     std::vector<double> weight_, lowest_;  // N and m, [bodies]
+    EnergySources sources_;
+    double least_ = 0, turnover_ = 0;  // J
     double start_ = 0, rise_ = -1, restitution_gain_ = 0, correction_gain_ = 0;
     double last_restitution_ = 0;  // J
 };

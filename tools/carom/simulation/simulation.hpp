@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,12 @@ class Simulation {
     }
     virtual std::vector<std::size_t> quarantined() const = 0;
     virtual std::uint64_t state_hash() const = 0;
+    /// All that steps depend on. @throws carom::Error (not_built_yet) but for worlds
+    virtual std::vector<std::byte> saved_state() const;
+    /// Goes on from what another simulation of the same precision saved.
+    /// @throws carom::Error (malformed, inconsistent) if it is nothing that this one could go on from;
+    /// (not_built_yet) but for worlds
+    virtual void restore_state(std::span<const std::byte> state);
 };
 
 /// What a scene does not say: how the machine is used.

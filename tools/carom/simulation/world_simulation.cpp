@@ -70,6 +70,12 @@ class WorldSimulation final : public Simulation {
         return bodies;
     }
     std::uint64_t state_hash() const override { return world_.state_hash(); }
+    std::vector<std::byte> saved_state() const override {
+        std::vector<std::byte> bytes(world_.state_bytes());
+        world_.save_state(bytes);
+        return bytes;
+    }
+    void restore_state(std::span<const std::byte> state) override { world_.restore_state(state); }
 
   private:
     BasicWorld<Real> world_;

@@ -10,16 +10,8 @@
 namespace carom::torture {
 namespace {
 
-constexpr std::int64_t kStepsARun = 300, kMostBodies = 10'000;
+constexpr std::int64_t kStepsARun = 300, kMostBodies = 10'000, kScenes = 2000;
 constexpr std::int64_t kStepsALook = 10;  // between two measurements of overlap
-
-std::size_t outside_of(const Watch& watch, const PassiveScene& passive) {
-    std::size_t outside = 0;
-    for (std::size_t i = 0; i < passive.scene.bodies.size(); ++i)
-        if (passive.scene.bodies[i].type == BodyType::dynamic_body)
-            outside += !(passive.enclosure.clearance(watch.state(i).position) > 0);
-    return outside;
-}
 
 Outcome run(const PassiveTraits& traits, Solver solver, Precision precision, const Options& asked) {
     const PassiveScene passive = passive_scene(traits);
@@ -32,7 +24,7 @@ Outcome run(const PassiveTraits& traits, Solver solver, Precision precision, con
         books.look(watch);
         if (watch.steps() % kStepsALook != 0 && watch.steps() != steps) continue;
         overlap = std::fmax(overlap, watch.simulation().overlaps().max);
-        outside = std::max(outside, outside_of(watch, passive));
+        outside = std::max(outside, watch.outside(passive.enclosure));
     }
     Outcome outcome{.measures = {{"energy rise", books.rise(), kLargestRise},
                                  {"quarantined", static_cast<double>(watch.quarantined()), 0},
@@ -47,7 +39,8 @@ Outcome run(const PassiveTraits& traits, Solver solver, Precision precision, con
 
 std::vector<Task> tasks(const Options& asked) {
     std::vector<Task> all;
-    const std::int64_t first = asked.only.value_or(0), last = asked.only ? first + 1 : asked.scenes;
+    const std::int64_t first = asked.only.value_or(0),
+                       last = asked.only ? first + 1 : asked.scenes.value_or(kScenes);
     for (std::int64_t index = first; index < last; ++index) {
         const PassiveTraits traits =
             passive_traits(asked.seed, static_cast<std::uint64_t>(index), asked.bodies.value_or(kMostBodies));
