@@ -127,6 +127,36 @@ TEST_SUITE("hard cases/uneven piles") {
         CHECK(torture::keeps_energy_rule(highest, start));
     }
 
+    TEST_CASE_TEMPLATE("B37: a disc that is squeezed beside a pile of uneven masses is not lost", Real, float,
+                       double) {
+        // A kinematic disc comes into the corner where a light one lies: there is no room for both.
+        constexpr double kDistance = 2.5;  // m, of the two at the start
+        for (const double speed : {0.25, 2.5})
+            for (const double angle : {0.2, 0.785, 1.2}) {
+                CAPTURE(speed);
+                CAPTURE(angle);
+                Scene scene = pile_scene({.columns = 6, .ratio = 1e4});
+                for (Body& body : scene.bodies) body.position.x += 4;
+                scene.walls->max.x += 4;
+                const BodyId squeezed = scene.add(disc(kRadius, 1, {kRadius, kRadius}));
+                const Vec2 towards{-std::cos(angle), -std::sin(angle)};
+                Body pusher =
+                    disc(kRadius, 1, {kRadius - kDistance * towards.x, kRadius - kDistance * towards.y});
+                pusher.type = BodyType::kinematic_body, pusher.mass.reset();
+                pusher.velocity = {speed * towards.x, speed * towards.y};
+                scene.add(pusher);
+                BasicWorld<Real> world(scene, {.threads = 1});
+                bool is_inside = true;
+                while (world.time() < kDistance / speed) {
+                    world.step(kStep);
+                    const BodyState state = world.state(squeezed);
+                    is_inside = is_inside && state.position.x > 0 && state.position.y > 0;
+                }
+                CHECK(world.quarantined().empty());
+                CHECK(is_inside);
+            }
+    }
+
     TEST_CASE("B41: the same bits with the tasks in another order, and after a restored state") {
         const Scene scene = pile_scene({.columns = 8});
         World world(scene, {.threads = 1});

@@ -27,6 +27,9 @@ constexpr double kRimMass = 1e20;
 /// What contacts may add to the energy of all bodies in a substep, in units of m (what gravity adds to a
 /// velocity)²: a load that is let go gives back what its contacts gave way by.
 constexpr double kSlack = 10;
+/// Largest load of a contact, in what stops all bodies that touch each other within a substep: arches and
+/// wedges carry some times what they hold up.
+constexpr double kMostLoad = 1000;
 
 std::size_t index(std::int32_t body) {
     return static_cast<std::size_t>(body);
@@ -76,6 +79,32 @@ void ContactRelaxation<kSize>::begin(std::span<const LocalContact> contacts, std
     }
 }
 
+/// Cuts what contacts carry to the most that they may.
+template <int kSize>
+void ContactRelaxation<kSize>::bound_loads() {
+    touching_.reset(mass_.size());
+    for (const Law& law : laws_)
+        if (law.b >= 0) touching_.join(law.a, law.b);
+    double fastest = fall_;
+    for (const Velocity& velocity : start_)
+        fastest = std::fmax(fastest, std::fabs(velocity[0]) + std::fabs(velocity[1]));
+    for (const Law& law : laws_) fastest = std::fmax(fastest, std::fabs(law.surface[0]));
+    most_.assign(mass_.size(), 0);
+    const auto first_of = [&](std::size_t body) {
+        return index(touching_.island_of(static_cast<std::int32_t>(body)));
+    };
+    for (std::size_t body = 0; body < mass_.size(); ++body)
+        most_[first_of(body)] += kMostLoad * fastest * mass_[body][0];
+    for (std::size_t body = 0; body < mass_.size(); ++body) most_[body] = most_[first_of(body)];
+    for (Law& law : laws_) {
+        const double most = most_[index(law.a)];
+        law.stiffness = std::fmin(law.stiffness, most / (kGivesWay * fall_));
+        if (!(law.carried[0] > most)) continue;
+        const double share = most / law.carried[0];
+        for (double& impulse : law.carried) impulse *= share;
+    }
+}
+
 template <int kSize>
 void ContactRelaxation<kSize>::set_body(std::size_t body, double inverse_mass, const Velocity& start,
                                         const Velocity& free, const Velocity& swept) {
@@ -110,6 +139,7 @@ void ContactRelaxation<kSize>::describe(std::span<const LocalContact> contacts, 
         law.stiffness = std::fmax(kStiffness * heavier, c.impulses.normal / (kGivesWay * fall));
         laws_[i] = law;
     }
+    bound_loads();
 }
 
 template <int kSize>
@@ -259,7 +289,10 @@ bool ContactRelaxation<kSize>::stiffen() {
     for (Law& law : laws_) {
         const double velocity = velocity_of(law)[0], impulse = impulse_of(law, 0, velocity);
         if (!(impulse > 0) || law.floor - velocity <= kGivesWayMost * fall_) continue;
-        law.stiffness = std::fmax(kStiffening * law.stiffness, impulse / (kGivesWay * fall_));
+        const double most = most_[index(law.a)] / (kGivesWay * fall_);
+        if (!(law.stiffness < most)) continue;
+        law.stiffness =
+            std::fmin(std::fmax(kStiffening * law.stiffness, impulse / (kGivesWay * fall_)), most);
         any = true;
     }
     return any;
@@ -322,7 +355,8 @@ void ContactRelaxation<kSize>::solve(std::span<LocalContact> contacts, double fa
 template <int kSize>
 std::size_t ContactRelaxation<kSize>::bytes() const {
     return laws_.capacity() * sizeof(Law) + is_due_.capacity() +
-           (first_.capacity() + of_bodies_.capacity()) * sizeof(std::uint32_t) +
+           (first_.capacity() + of_bodies_.capacity()) * sizeof(std::uint32_t) + touching_.bytes() +
+           most_.capacity() * sizeof(double) +
            (mass_.capacity() + start_.capacity() + free_.capacity() + velocity_.capacity() +
             swept_.capacity()) *
                sizeof(Velocity) +

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "sleeping/islands.hpp"
 #include "solvers/shared/local_contact.hpp"
 
 namespace carom {
@@ -21,6 +22,9 @@ namespace carom {
 /// its contacts all at once, from the velocities that it had before. Then contacts that gave way too far are
 /// stiffened, λ₀ is what they carry by now, and all is done once more. What is left is left to the next
 /// substep, which begins with these λ₀.
+///
+/// What is squeezed between things that do not give way has no solution: loads would grow without end. They
+/// are bounded by what all bodies that touch each other could ask for.
 ///
 /// Impulses that would add energy are not taken over: docs/decisions/0032-piles-of-uneven-masses.md. Source:
 /// the unconstrained convex formulation of contact (Todorov 2014; Castro et al. 2022), augmented Lagrangians
@@ -63,6 +67,7 @@ class ContactRelaxation {
         Rows share;    // of tangential and rolling impulses that the law leaves
     };
 
+    void bound_loads();
     void describe(std::span<const LocalContact> contacts, double fall);
     Rows velocity_of(const Law& law) const;
     static double impulse_of(const Law& law, std::size_t row, double velocity);
@@ -76,11 +81,13 @@ class ContactRelaxation {
     void start_without_loads();
     void take_back();
 
-    double fall_ = 0;                                        // m/s
-    std::vector<Law> laws_;                                  // of the contacts
-    std::vector<std::uint32_t> first_, of_bodies_;           // contacts of each body
-    std::vector<std::uint8_t> is_due_;                       // bodies to be looked at
-    std::vector<Velocity> mass_;                             // kg
+    double fall_ = 0;                               // m/s
+    Islands touching_;                              // bodies that touch each other, supports left out
+    std::vector<double> most_;                      // N s, of each body's contacts
+    std::vector<Law> laws_;                         // of the contacts
+    std::vector<std::uint32_t> first_, of_bodies_;  // contacts of each body
+    std::vector<std::uint8_t> is_due_;              // bodies to be looked at
+    std::vector<Velocity> mass_;                    // kg
     std::vector<Velocity> start_, free_, velocity_, swept_;  // m/s
     std::vector<Rows> impulses_;                             // N s, of the contacts
 };
