@@ -117,6 +117,43 @@ TEST_SUITE("hard cases: joints") {
         CHECK(world.state(end).position.x == doctest::Approx(single.state(end).position.x).epsilon(1e-2));
     }
 
+    TEST_CASE_TEMPLATE("B13: two joints that hold one thing in other words hold as a weld does", Real, float,
+                       double) {
+        // Two bars on a hinge at the origin, b held to a by a weld, or by a hinge and what the hinge leaves.
+        const auto pair_with = [](const std::vector<JointKind>& kinds) {
+            Scene scene;
+            scene.gravity = {0, -10};
+            const BodyId a = scene.add(bar({0.5, 0}, 1)), b = scene.add(bar({1.6, 0}, 1));
+            scene.add(Joint{.b = a, .kind = RevoluteJoint{.anchor = Vec2{0, 0}}});
+            for (const JointKind& kind : kinds) scene.add(Joint{.a = a, .b = b, .kind = kind});
+            return scene;
+        };
+        const RevoluteJoint hinge{.anchor = Vec2{1.05, 0}};
+        const std::vector<std::vector<JointKind>> ways{{hinge, PrismaticJoint{.axis = {1, 0}}},
+                                                       {hinge, PrismaticJoint{.axis = {0, 1}}},
+                                                       {hinge, PrismaticJoint{.axis = {-0.93, 0.35}}},
+                                                       {hinge, WheelJoint{.axis = {0.5, 0.7}}},
+                                                       {hinge, WeldJoint{}}};
+        for (std::size_t way = 0; way < ways.size(); ++way) {
+            CAPTURE(way);
+            BasicWorld<Real> world(pair_with(ways[way])), welded(pair_with({WeldJoint{}}));
+            const double start = world.ledger().energy.total();
+            double rise = 0, strongest = 0;
+            for (int i = 0; i < 300; ++i) {
+                world.step(kStep), welded.step(kStep);
+                rise = std::fmax(rise, world.ledger().energy.total() - start);
+                for (std::uint32_t joint = 0; joint < 3; ++joint) {
+                    const Vec2 force = world.joint_force(JointId::of(joint));
+                    strongest = std::fmax(strongest, std::hypot(force.x, force.y));
+                }
+            }
+            CHECK(rise < 1e-3 * 20);  // J: what the bars have to fall, 2 (0.5 + 1.6) 10 / 2, is about 20
+            CHECK(strongest < 100);   // N: five times their weight, as swinging makes it
+            CHECK(world.state({1, 0}).angle == doctest::Approx(welded.state({1, 0}).angle).epsilon(2e-3));
+            CHECK(world.joint_errors().max < 1e-4);
+        }
+    }
+
     TEST_CASE("B14: rods that start at twice their length draw together without speed") {
         for (const int count : {3, 12})
             for (const bool is_possible : {true, false}) {

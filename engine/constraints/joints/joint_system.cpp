@@ -489,7 +489,8 @@ std::size_t JointSystem::bytes() const {
         bodies.capacity() * (sizeof(SystemBody) + sizeof(JointPose) + sizeof(Symmetric) + 2 * sizeof(Vector) +
                              sizeof(double));
     for (const std::vector<Vector>& column : columns_) bytes += column.capacity() * sizeof(Vector);
-    return bytes + (matrix_.capacity() + factor_.capacity()) * sizeof(double);
+    return bytes + (matrix_.capacity() + factor_.capacity() + alone_.capacity() + by_softness_.capacity()) *
+                       sizeof(double);
 }
 
 }  // namespace carom

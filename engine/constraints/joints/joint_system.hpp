@@ -186,6 +186,9 @@ class JointSystem {
     double change_of_row(const Extra& extra, const std::vector<Vector>& change) const;
     void solve_bounded();
     void solve_free();
+    void read_free();
+    bool factor_free();
+    void order_free();
     void find_right_sides(bool is_curved);
     void move_poses();
     void take_velocities();
@@ -215,7 +218,8 @@ class JointSystem {
     std::vector<Extra> extras_;
     std::vector<double> extra_rhs_, low_, high_;  // by extra row
     std::vector<std::vector<Vector>> columns_;    // by extra row: changes of velocities by an impulse of 1
-    std::vector<double> matrix_, factor_, solution_, residual_;
+    std::vector<double> alone_;                   // by extra row: its diagonal, were it the only one
+    std::vector<double> matrix_, factor_, solution_, residual_, by_softness_;
     std::vector<End> state_;         // by extra row
     std::vector<double> stiffness_;  // by body: sum of arm · impulse, m N s
     std::vector<std::size_t> free_;
