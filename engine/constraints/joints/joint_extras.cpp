@@ -8,7 +8,6 @@
 namespace carom {
 namespace {
 
-constexpr double kUnbounded = 1e301;
 /// Share of the diagonal that keeps the complement of loops regular where their rows say the same twice.
 constexpr double kLoopSoftness = 1e-9;
 /// A row whose pivot is little more than what softness leaves of it says what others say, and pushes nothing:

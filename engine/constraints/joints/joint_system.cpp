@@ -3,18 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constraints/joints/gear_value.hpp"
 #include "constraints/joints/joint_laws.hpp"
 
 namespace carom {
 namespace {
 
-constexpr double kUnbounded = 1e301;
-/// Turn of a body in a substep up to which paths are bent as they are [rad].
-constexpr double kLargestTurn = 0.3;
-/// Share of what the rows lack that a round of Newton's method must not leave.
-constexpr double kLeastProgress = 0.5;
-/// Rounds of it where not all rows hold: their own lack says nothing in the unit of a velocity.
-constexpr int kFewestRounds = 2;
 /// Springs without damping have no compliance; this takes its place.
 constexpr double kLeastGamma = 1e-12;
 
@@ -94,18 +88,6 @@ void JointSystem::add_gear(std::size_t joint, std::int32_t first, std::int32_t s
         {static_cast<std::int32_t>(joint), {coordinate(first, member.a), coordinate(second, member.b)}});
 }
 
-/// @param pose_of  JointPose of a body by its number
-template <class PoseOf>
-double JointSystem::value_of_gear(const Gear& gear, const PoseOf& pose_of) const {
-    const auto value = [&](const Coordinate& of) {
-        if (of.joint < 0) return coordinate_of_body(pose_of(of.b)).value;
-        return coordinate_of(*joints[static_cast<std::size_t>(of.joint)].joint, pose_of(of.a), pose_of(of.b))
-            .value;
-    };
-    return gear_value(*joints[static_cast<std::size_t>(gear.joint)].joint, value(gear.coordinates[0]),
-                      value(gear.coordinates[1]));
-}
-
 /// Its row takes the place of one of two bodies, that of its second coordinate.
 void JointSystem::measure_gear(Gear& gear) {
     const auto pose_of = [&](std::int32_t body) -> const JointPose& {
@@ -179,9 +161,14 @@ void JointSystem::prepare(Part part, bool keeps) {
     factor_tree();
     if (keeps) kept_extras_ = extras_;
     list_extras();
+    if (keeps) recall_extras();
+}
+
+/// Rows that were there before have the impulses that they had.
+void JointSystem::recall_extras() {
     for (Extra& extra : extras_)
         for (const Extra& old : kept_extras_)
-            if (keeps && old.joint == extra.joint && old.row == extra.row) extra.impulse = old.impulse;
+            if (old.joint == extra.joint && old.row == extra.row) extra.impulse = old.impulse;
 }
 
 void JointSystem::give_impulses() {
@@ -208,143 +195,6 @@ double JointSystem::row_velocity(std::size_t joint, int number) const {
     const SystemBody &a = bodies[static_cast<std::size_t>(joints[joint].a)],
                      &b = bodies[static_cast<std::size_t>(joints[joint].b)];
     return dot(row.n, b.velocity - a.velocity) + row.jb * b.spin - row.ja * a.spin;
-}
-
-/// Poses after h at the present velocities. A body that is stiffened, or turns too fast for the substep, goes
-/// on a path that is less bent, which takes energy.
-void JointSystem::move_poses() {
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        const SystemBody& body = bodies[i];
-        JointPose& pose = moved_[i];
-        pose.position = body.pose.position + h_ * body.velocity;
-        const double angle = h_ * body.spin;
-        Rotation turned = turn_by(angle);
-        double share = 1;
-        if (body.seen_inverse_inertia < body.inverse_inertia)
-            share = body.seen_inverse_inertia / body.inverse_inertia;
-        if (angle * angle > kLargestTurn * kLargestTurn)
-            share *= kLargestTurn * kLargestTurn / (angle * angle);
-        if (share < 1) {
-            turned = {1 + share * (turned.cos - 1), angle + share * (turned.sin - angle)};
-        }
-        pose.turn = after(body.pose.turn, turned), pose.angle = body.pose.angle + angle;
-    }
-}
-
-/// What the rows lack: of a path that ends where it should, or of a velocity along them.
-void JointSystem::find_right_sides(bool is_curved) {
-    if (is_curved) move_poses();
-    const double per_h = 1 / h_;
-    const auto pose_of = [&](std::int32_t body) -> const JointPose& {
-        return moved_[static_cast<std::size_t>(body)];
-    };
-    std::array<double, 3> values;
-    for (std::size_t j = 0; j < joints.size(); ++j) {
-        const Member& member = joints[j];
-        const JointRows& rows = rows_[j];
-        if (is_curved && member.gear < 0)
-            values_of(*member.joint, pose_of(member.a), pose_of(member.b), rows.firm, values);
-        if (is_curved && member.gear >= 0)
-            values[0] = value_of_gear(gears_[static_cast<std::size_t>(member.gear)], pose_of);
-        for (std::size_t i = 0; i < static_cast<std::size_t>(rows.firm); ++i) {
-            const double speed =
-                is_curved ? per_h * (values[i] - rows.row[i].value) : row_velocity(j, static_cast<int>(i));
-            rhs_[j][i] = -speed - softness_[j][i] * (pull_[j][i] + member.impulse[i]);
-        }
-    }
-    for (std::size_t e = 0; e < extras_.size(); ++e) {
-        const Extra& extra = extras_[e];
-        const auto j = static_cast<std::size_t>(extra.joint), i = static_cast<std::size_t>(extra.row);
-        const Member& member = joints[j];
-        const JointRow& row = rows_[j].row[i];
-        low_[e] = extra.low - extra.impulse, high_[e] = extra.high - extra.impulse;
-        if (row.law == RowLaw::motor) {
-            extra_rhs_[e] = member.joint->motor_speed - row_velocity(j, extra.row);
-        } else if (row.law != RowLaw::stop) {
-            extra_rhs_[e] = rhs_[j][i];
-        } else {
-            const double speed =
-                is_curved
-                    ? per_h * (rows_of(*member.joint, pose_of(member.a), pose_of(member.b)).row[i].value -
-                               row.value)
-                    : row_velocity(j, extra.row);
-            extra_rhs_[e] = -speed - per_h * std::fmax(row.value, 0);
-        }
-    }
-}
-
-void JointSystem::take_velocities() {
-    for (const Link& link : links_) {
-        SystemBody& body = bodies[static_cast<std::size_t>(link.body)];
-        const Vector& change = change_[static_cast<std::size_t>(link.body)];
-        body.velocity += Vec2{change[0], change[1]};
-        body.spin += change[2];
-        if (link.joint < 0) continue;
-        std::array<double, 3>& impulse = joints[static_cast<std::size_t>(link.joint)].impulse;
-        for (std::size_t i = 0; i < static_cast<std::size_t>(link.rows); ++i)
-            impulse[i] += answer_[static_cast<std::size_t>(link.joint)][i];
-    }
-    for (std::size_t e = 0; e < extras_.size(); ++e) {
-        Extra& extra = extras_[e];
-        extra.impulse += solution_[e];
-        const JointRow& row =
-            rows_[static_cast<std::size_t>(extra.joint)].row[static_cast<std::size_t>(extra.row)];
-        if (row.slot != kNoSlot)
-            joints[static_cast<std::size_t>(extra.joint)].impulse[row.slot] += solution_[e];
-    }
-}
-
-double JointSystem::largest_right_side() const {
-    double largest = 0;
-    for (std::size_t j = 0; j < joints.size(); ++j)
-        for (int k = 0; k < rows_[j].firm; ++k) {
-            const auto i = static_cast<std::size_t>(k);
-            if (rows_[j].row[i].law == RowLaw::hold) largest = std::fmax(largest, std::fabs(rhs_[j][i]));
-        }
-    return largest;
-}
-
-void JointSystem::keep_velocities() {
-    kept_velocities_.resize(bodies.size()), kept_impulses_.resize(joints.size());
-    for (std::size_t i = 0; i < bodies.size(); ++i)
-        kept_velocities_[i] = {bodies[i].velocity.x, bodies[i].velocity.y, bodies[i].spin};
-    for (std::size_t j = 0; j < joints.size(); ++j) kept_impulses_[j] = joints[j].impulse;
-    kept_extras_ = extras_;
-}
-
-void JointSystem::restore_velocities() {
-    for (std::size_t i = 0; i < bodies.size(); ++i)
-        bodies[i].velocity = {kept_velocities_[i][0], kept_velocities_[i][1]},
-        bodies[i].spin = kept_velocities_[i][2];
-    for (std::size_t j = 0; j < joints.size(); ++j) joints[j].impulse = kept_impulses_[j];
-    extras_ = kept_extras_;
-}
-
-/// Where paths bend so much that the method does not come nearer, rows along the tangents do: they take
-/// energy.
-void JointSystem::solve_curved(int rounds, double least) {
-    double before = 0;
-    if (rounds > 1) keep_velocities();
-    // What is held may lack nothing while springs, motors and limits have still to act.
-    const int fewest = has_springs_ || !extras_.empty() ? kFewestRounds : 0;
-    for (int round = 0; round < rounds; ++round) {
-        find_right_sides(true);
-        const double now = largest_right_side();
-        if (round >= fewest && now < least) return;
-        if (round > 0 && now > kLeastProgress * before) {
-            restore_velocities();
-            return solve_flat();
-        }
-        before = now;
-        solve_all();
-        take_velocities();
-    }
-}
-
-void JointSystem::solve_flat() {
-    find_right_sides(false);
-    solve_all();
-    take_velocities();
 }
 
 void JointSystem::pull() {

@@ -174,6 +174,8 @@ class JointSystem {
     /// impulses to answer_.
     void solve_tree();
     void solve_all();
+    static constexpr double kUnbounded = 1e301;  // bound of an impulse: none
+
     void list_extras();
     void add_column(std::size_t extra);
     void push_row(const Extra& extra, double impulse);
@@ -185,6 +187,12 @@ class JointSystem {
     double value_of_gear(const Gear& gear, const PoseOf& pose_of) const;
     double change_of_row(const Extra& extra, const std::vector<Vector>& change) const;
     void solve_bounded();
+    bool follow_curves(int rounds, double least);
+    void follow_tangents();
+    void take_back_gain(double before);
+    void recall_extras();
+    bool has_own_force() const;
+    double kinetic_energy() const;
     void solve_free();
     void read_free();
     bool factor_free();
