@@ -188,6 +188,59 @@ TEST_SUITE("hard cases: joints") {
                 }
     }
 
+    TEST_CASE_TEMPLATE("B13: a rigid lattice of parallel bars with a motor or a spring falls without harm",
+                       Real, float, double) {
+        // Hinges in line with parallel bars: rows that say the same twice, and levers that are nearly none.
+        for (const bool has_motor : {true, false})
+            for (const double tilt : {2.749, 0.4, 0.0}) {
+                CAPTURE(has_motor);
+                CAPTURE(tilt);
+                constexpr int kRows = 3, kColumns = 2;
+                Scene scene;
+                scene.gravity = {0, -10};
+                scene.walls = Walls{.min = {-10, -5}, .max = {10, 10}};
+                const Vec2 along{std::cos(tilt), std::sin(tilt)}, across{-along.y, along.x};
+                const auto at = [&](double x, double y) {
+                    return Vec2{1.1 * x * along.x + 1.1 * y * across.x,
+                                1.1 * x * along.y + 1.1 * y * across.y};
+                };
+                for (int row = 0; row < kRows; ++row)
+                    for (int column = 0; column < kColumns; ++column)
+                        scene.add({.shape = Capsule{1, 0.02},
+                                   .position = at(column, row),
+                                   .angle = tilt,
+                                   .mass = 1.0,
+                                   .group = -1});
+                const auto join = [&](int a, int b, const JointKind& kind) {
+                    scene.add(Joint{.a = BodyId{static_cast<std::uint32_t>(a), 0},
+                                    .b = BodyId{static_cast<std::uint32_t>(b), 0},
+                                    .kind = kind});
+                };
+                for (int row = 0; row < kRows; ++row) {
+                    const int left = kColumns * row;
+                    if (row % 2 == 0)
+                        join(left, left + 1, WeldJoint{.anchor = at(0.5, row)});
+                    else
+                        join(left, left + 1, RevoluteJoint{.anchor = at(0.5, row)});
+                    if (row == 0) continue;
+                    RevoluteJoint hinge{.anchor = at(0, row - 0.5)};
+                    if (row == 1 && has_motor) hinge.motor_speed = 1, hinge.max_motor_torque = 0.01;
+                    if (row == 1 && !has_motor) hinge.frequency = 2;
+                    join(left - kColumns, left, hinge);
+                    join(left - kColumns + 1, left + 1, RevoluteJoint{.anchor = at(1, row - 0.5)});
+                }
+                BasicWorld<Real> world(scene, {.threads = 1});
+                const double start = world.ledger().energy.total() + 6 * 10 * 5;  // J, over the floor
+                double most = 0;
+                for (int i = 0; i < 300; ++i) {
+                    world.step(kStep);
+                    most = std::fmax(most, world.ledger().energy.total() + 6 * 10 * 5);
+                }
+                CHECK(world.quarantined().empty());
+                CHECK(most < 1.01 * start);
+            }
+    }
+
     TEST_CASE("B14: rods that start at twice their length draw together without speed") {
         for (const int count : {3, 12})
             for (const bool is_possible : {true, false}) {

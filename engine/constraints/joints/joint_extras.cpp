@@ -10,13 +10,12 @@ namespace {
 
 /// Share of the diagonal that keeps the complement of loops regular where their rows say the same twice.
 constexpr double kLoopSoftness = 1e-9;
-/// A row whose pivot is little more than what softness leaves of it says what others say, and pushes nothing:
-/// else what bends make of the difference would become large impulses against each other, which move nothing
-/// but count as a pull (decision 0026, geometric stiffness).
-constexpr double kDependent = 3;
-/// Rows are eliminated in another order if one is dependent, or a pivot below this share of its own diagonal.
-constexpr double kPoor = 1e-6;
-constexpr double kNeverGivesWay = 1e30;  // pivot of such a row, in its own diagonals
+/// Rows may say what others say if softness may be more than this share of a pivot. What bends of a substep
+/// make of the difference then becomes large impulses against each other, which move nothing but count as a
+/// pull (decision 0026, geometric stiffness):
+constexpr double kSoft = 1. / 3;
+/// they are replaced by those that move the rows alike by way of this softness, which has none of them.
+constexpr double kFilter = 1e-5;
 
 }  // namespace
 
@@ -61,7 +60,7 @@ void JointSystem::list_extras() {
             alone += bodies[body].inverse_mass * (part[0] * part[0] + part[1] * part[1]) +
                      bodies[body].inverse_inertia * part[2] * part[2];
         });
-        matrix_[i * count + i] += kLoopSoftness * alone + softness_[j][static_cast<std::size_t>(extra.row)];
+        matrix_[i * count + i] += softness_[j][static_cast<std::size_t>(extra.row)];
         if (alone > 0)
             alone_[i] = alone;
         else
@@ -119,11 +118,15 @@ void JointSystem::solve_bounded() {
         }
         if (!any) return;
     }
-    for (std::size_t i = 0; i < count; ++i)  // a cycle: what is there, within its ends
-        solution_[i] = std::clamp(solution_[i], low_[i], high_[i]);
+    // A cycle: what is beyond its ends is at them, and what has none is held all the same.
+    for (std::size_t i = 0; i < count; ++i)
+        if (solution_[i] < low_[i] || solution_[i] > high_[i])
+            state_[i] = solution_[i] < low_[i] ? End::low : End::high;
+    solve_free();
+    for (std::size_t i = 0; i < count; ++i) solution_[i] = std::clamp(solution_[i], low_[i], high_[i]);
 }
 
-/// Those that are at no end, by L D L^T.
+/// Those that are at no end.
 void JointSystem::solve_free() {
     const std::size_t count = extras_.size();
     free_.clear();
@@ -133,7 +136,6 @@ void JointSystem::solve_free() {
         else
             solution_[i] = state_[i] == End::low ? low_[i] : high_[i];
     }
-    if (!factor_free()) order_free(), factor_free();
     const std::size_t m = free_.size();
     residual_.resize(m);
     for (std::size_t i = 0; i < m; ++i) {
@@ -142,64 +144,51 @@ void JointSystem::solve_free() {
             if (state_[k] != End::none) rest -= matrix_[free_[i] * count + k] * solution_[k];
         residual_[i] = rest;
     }
+    const bool are_independent = factor_free(kLoopSoftness);
+    substitute_free();
+    if (are_independent) return;
+    for (std::size_t i = 0; i < m; ++i) {
+        residual_[i] = 0;
+        for (std::size_t k = 0; k < m; ++k)
+            residual_[i] += matrix_[free_[i] * count + free_[k]] * solution_[free_[k]];
+    }
+    factor_free(kFilter);
+    substitute_free();
+}
+
+/// L below the diagonal, D on it, of the rows of free_.
+/// @param softness  of loops, in shares of each row's own diagonal
+/// @return whether it has little part in all pivots
+bool JointSystem::factor_free(double softness) {
+    const std::size_t count = extras_.size(), m = free_.size();
+    factor_.resize(m * m), by_softness_.resize(m);
+    for (std::size_t i = 0; i < m; ++i) {
+        for (std::size_t k = 0; k < m; ++k) factor_[i * m + k] = matrix_[free_[i] * count + free_[k]];
+        factor_[i * m + i] += softness * alone_[free_[i]];
+    }
+    bool is_little = true;
+    for (std::size_t c = 0; c < m; ++c) {
+        by_softness_[c] = softness * alone_[free_[c]];
+        for (std::size_t k = 0; k < c; ++k) {
+            const double f = factor_[c * m + k] * factor_[k * m + k];
+            by_softness_[c] += factor_[c * m + k] * factor_[c * m + k] * by_softness_[k];
+            for (std::size_t r = c; r < m; ++r) factor_[r * m + c] -= factor_[r * m + k] * f;
+        }
+        is_little = is_little && by_softness_[c] < kSoft * factor_[c * m + c];
+        for (std::size_t r = c + 1; r < m; ++r) factor_[r * m + c] /= factor_[c * m + c];
+    }
+    return is_little;
+}
+
+/// The solution of the factored rows from residual_.
+void JointSystem::substitute_free() {
+    const std::size_t m = free_.size();
     for (std::size_t i = 0; i < m; ++i)
         for (std::size_t k = 0; k < i; ++k) residual_[i] -= factor_[i * m + k] * residual_[k];
     for (std::size_t i = 0; i < m; ++i) residual_[i] /= factor_[i * m + i];
     for (std::size_t i = m; i-- > 0;) {
         for (std::size_t k = i + 1; k < m; ++k) residual_[i] -= factor_[k * m + i] * residual_[k];
         solution_[free_[i]] = residual_[i];
-    }
-}
-
-void JointSystem::read_free() {
-    const std::size_t count = extras_.size(), m = free_.size();
-    factor_.resize(m * m);
-    for (std::size_t i = 0; i < m; ++i)
-        for (std::size_t k = 0; k < m; ++k) factor_[i * m + k] = matrix_[free_[i] * count + free_[k]];
-}
-
-/// L below the diagonal, D on it, of the rows in the order of free_. Those that depend on the ones before get
-/// no part in it. @return whether all pivots were good
-bool JointSystem::factor_free() {
-    read_free();
-    const std::size_t m = free_.size();
-    by_softness_.resize(m);
-    bool is_good = true;
-    for (std::size_t c = 0; c < m; ++c) {
-        for (std::size_t k = 0; k < c; ++k) {
-            const double f = factor_[c * m + k] * factor_[k * m + k];
-            for (std::size_t r = c; r < m; ++r) factor_[r * m + c] -= factor_[r * m + k] * f;
-        }
-        double& pivot = factor_[c * m + c];
-        const double alone = alone_[free_[c]];
-        by_softness_[c] = kLoopSoftness * alone;
-        for (std::size_t k = 0; k < c; ++k)
-            by_softness_[c] += factor_[c * m + k] * factor_[c * m + k] * by_softness_[k];
-        is_good = is_good && pivot > std::fmax(kPoor * alone, kDependent * by_softness_[c]);
-        if (!(pivot > kDependent * by_softness_[c])) pivot = kNeverGivesWay * alone;
-        for (std::size_t r = c + 1; r < m; ++r) factor_[r * m + c] /= pivot;
-    }
-    return is_good;
-}
-
-/// Sorts free_ so that the row with the largest share of its own diagonal left comes next: a row of which
-/// little is left, for lack of a lever, would make what depends on it soft.
-void JointSystem::order_free() {
-    read_free();
-    const std::size_t m = free_.size();
-    for (std::size_t c = 0; c < m; ++c) {
-        std::size_t best = c;
-        const auto left = [&](std::size_t i) { return factor_[i * m + i] / alone_[free_[i]]; };
-        for (std::size_t i = c + 1; i < m; ++i)
-            if (left(i) > left(best)) best = i;
-        if (!(left(best) > 0)) return;
-        std::swap(free_[c], free_[best]);
-        for (std::size_t k = 0; k < m; ++k) std::swap(factor_[c * m + k], factor_[best * m + k]);
-        for (std::size_t r = 0; r < m; ++r) std::swap(factor_[r * m + c], factor_[r * m + best]);
-        for (std::size_t r = c + 1; r < m; ++r) {
-            const double f = factor_[r * m + c] / factor_[c * m + c];
-            for (std::size_t k = c + 1; k < m; ++k) factor_[r * m + k] -= f * factor_[c * m + k];
-        }
     }
 }
 

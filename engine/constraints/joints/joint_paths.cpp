@@ -18,6 +18,8 @@ constexpr double kLeastProgress = 0.5;
 constexpr int kFewestRounds = 2;
 /// Energy after a substep's solve over that before which bent paths may have: what is held gives none.
 constexpr double kMostGain = 1.01;
+/// Share by which the work of springs and motors may be off.
+constexpr double kOffWork = 0.01;
 
 }  // namespace
 
@@ -136,6 +138,7 @@ void JointSystem::restore_velocities() {
 void JointSystem::solve_curved(int rounds, double least) {
     keep_velocities();
     const double energy = kinetic_energy();
+    list_driven(driven_before_);
     if (!follow_curves(rounds, least)) {
         restore_velocities();
         follow_tangents();
@@ -146,6 +149,7 @@ void JointSystem::solve_curved(int rounds, double least) {
 void JointSystem::solve_flat() {
     keep_velocities();
     const double energy = kinetic_energy();
+    list_driven(driven_before_);
     follow_tangents();
     take_back_gain(energy);
 }
@@ -154,7 +158,8 @@ void JointSystem::solve_flat() {
 /// their spins have an energy that they have not. Where there is more than `before` [J], velocities become
 /// those along the tangents, of bodies that are not stiffened: a projection, which only takes.
 void JointSystem::take_back_gain(double before) {
-    if (has_own_force() || !(kinetic_energy() > kMostGain * before)) return;
+    const double work = driven_work();
+    if (!(kinetic_energy() - work > kMostGain * before + kOffWork * std::fabs(work))) return;
     restore_velocities();
     for (SystemBody& body : bodies) body.seen_inverse_inertia = body.inverse_inertia;
     factor_tree();
@@ -180,11 +185,26 @@ bool JointSystem::follow_curves(int rounds, double least) {
     return true;
 }
 
-/// Whether springs or motors give energy.
-bool JointSystem::has_own_force() const {
-    return has_springs_ || std::any_of(extras_.begin(), extras_.end(), [](const Extra& extra) {
-               return extra.low < 0 && extra.low > -kUnbounded;
-           });
+/// Impulse and velocity of each row that may give energy: of springs and motors.
+void JointSystem::list_driven(std::vector<std::array<double, 2>>& driven) const {
+    driven.clear();
+    for (std::size_t j = 0; has_springs_ && j < joints.size(); ++j)
+        for (int k = 0; k < rows_[j].firm; ++k)
+            if (rows_[j].row[static_cast<std::size_t>(k)].law == RowLaw::spring)
+                driven.push_back({joints[j].impulse[static_cast<std::size_t>(k)], row_velocity(j, k)});
+    for (const Extra& extra : extras_)
+        if (extra.low < 0 && extra.low > -kUnbounded)
+            driven.push_back({extra.impulse, row_velocity(static_cast<std::size_t>(extra.joint), extra.row)});
+}
+
+/// What springs and motors have given since driven_before_ [J]: an impulse does its work at the mean of the
+/// velocities before and after it.
+double JointSystem::driven_work() {
+    list_driven(driven_);
+    double work = 0;
+    for (std::size_t i = 0; i < driven_.size(); ++i)
+        work += 0.5 * (driven_[i][0] - driven_before_[i][0]) * (driven_[i][1] + driven_before_[i][1]);
+    return work;
 }
 
 double JointSystem::kinetic_energy() const {

@@ -191,12 +191,12 @@ class JointSystem {
     void follow_tangents();
     void take_back_gain(double before);
     void recall_extras();
-    bool has_own_force() const;
+    void list_driven(std::vector<std::array<double, 2>>& driven) const;
+    double driven_work();
     double kinetic_energy() const;
     void solve_free();
-    void read_free();
-    bool factor_free();
-    void order_free();
+    bool factor_free(double softness);
+    void substitute_free();
     void find_right_sides(bool is_curved);
     void move_poses();
     void take_velocities();
@@ -223,6 +223,7 @@ class JointSystem {
     std::vector<Vector> rhs_, answer_;                     // by joint: of its firm rows
     std::vector<Vector> kept_velocities_, kept_impulses_;  // before a solve
     std::vector<Extra> kept_extras_;
+    std::vector<std::array<double, 2>> driven_, driven_before_;
     std::vector<Extra> extras_;
     std::vector<double> extra_rhs_, low_, high_;  // by extra row
     std::vector<std::vector<Vector>> columns_;    // by extra row: changes of velocities by an impulse of 1
