@@ -74,10 +74,9 @@ double Watch::longest_step() const {
 }
 
 double Watch::stall() const {
-    constexpr double kShortestStall = 1e-3;  // s
-    const double longest = longest_step();
-    if (longest < kShortestStall) return 0;
-    return longest / (awake_seconds_.empty() ? median_step() : measure::quantile(awake_seconds_, 0.5));
+    constexpr double kLeastMedian = 2e-4;  // s
+    const double median = awake_seconds_.empty() ? median_step() : measure::quantile(awake_seconds_, 0.5);
+    return longest_step() / std::fmax(median, kLeastMedian);
 }
 
 std::string Watch::failure() const {

@@ -32,8 +32,8 @@ class Watch {
     std::int64_t steps() const { return static_cast<std::int64_t>(seconds_.size()); }
     double median_step() const;   ///< s
     double longest_step() const;  ///< s
-    /// Longest step over the median of those in which all bodies were awake; 0 where it took less than a
-    /// millisecond: what takes so long may be the machine.
+    /// Longest step over the median of those in which all bodies were awake. That counts as 0.2 ms at least:
+    /// a step of a few milliseconds may be the machine.
     double stall() const;
     bool gave_up() const { return spent_ > limit_; }
     /// Empty, or why there are no more steps.
