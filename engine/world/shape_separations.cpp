@@ -48,6 +48,7 @@ void ShapeSeparations<Real>::add_pose(Vec2 place, Rotation turn) {
 
 template <class Real>
 void ShapeSeparations<Real>::add(std::int32_t a, std::int32_t b) {
+    begin_.push_back(a_.size());
     for_each_piece(a, [&](std::int32_t item_a) {
         for_each_piece(b, [&](std::int32_t item_b) { a_.push_back(item_a), b_.push_back(item_b); });
     });
@@ -62,6 +63,7 @@ void ShapeSeparations<Real>::add(std::int32_t row, const Edge& edge, const EdgeP
     ConvexShape<Real> shape = convex_shape_of<Real>(Capsule{length, 0});
     shape.inradius = static_cast<Real>(kNoPoint);  // the body's is the smaller one
     const auto number = static_cast<std::int32_t>(shape_.size());
+    begin_.push_back(a_.size());
     for_each_piece(row, [&](std::int32_t item) { a_.push_back(item), b_.push_back(number); });
     shape_.push_back(static_cast<std::int32_t>(shapes_.size())), shapes_.push_back(shape);
     add_pose(pose.position + rotate(pose.turn, 0.5 * (edge.a + edge.b)), {direction.x, direction.y});

@@ -150,4 +150,21 @@ TEST_SUITE("world/overlap report") {
             CHECK(measured.profile().candidate_pairs == alone.profile().candidate_pairs);
         }
     }
+
+    TEST_CASE(
+        "two compounds that overlap with several pieces are one pair, as deep as their deepest pieces") {
+        // Crosses of two bars, 0.2 m thick, on each other: each bar overlaps both of the other's.
+        Compound cross;
+        cross.pieces = {{.shape = Box{2, 0.2}}, {.shape = Box{0.2, 2}}};
+        Scene scene;
+        scene.add({.shape = cross});
+        scene.add({.shape = cross, .position = {0.05, 0}});
+        const OverlapReport report = World(scene).overlaps();
+        CHECK(report.candidates == 1);
+        CHECK(report.touching == 1);
+        // Deepest is where an upright bar crosses a lying one: 1 + 0.1 - 0.05 m to its end. A bar's inradius
+        // is 0.1 m.
+        CHECK(report.max == doctest::Approx(10.5).epsilon(1e-5));
+        CHECK(report.mean == report.max);
+    }
 }
