@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "kernels/consecutive_rows.hpp"
 #include "kernels/contact_arguments.hpp"
 #include "simd/lanes.hpp"
@@ -105,17 +107,29 @@ std::size_t end_substeps(const EndSubsteps<Real>& k, std::size_t first, std::siz
     using Lanes = simd::Lanes<Real, Isa>;
     using F = typename Lanes::Batch;
     const F largest_position(k.largest_position), largest_speed(k.largest_speed);
+    const F largest_number(std::numeric_limits<Real>::max());
     std::size_t lost = 0;
     for (std::size_t row = first; row < last; row += Lanes::size) {
         auto v = Lanes::load_rows4(k.velocity + 4 * row, kConsecutive);
         const auto moved = Lanes::load_rows2(k.displacement + 2 * row, kConsecutive);
         const F old_x = Lanes::load(k.position_x + row), old_y = Lanes::load(k.position_y + row);
         F x = old_x + moved[0], y = old_y + moved[1];
-        const auto is_sound = (simd::abs(x) <= largest_position) & (simd::abs(y) <= largest_position) &
-                              (simd::abs(v[0]) <= largest_speed) & (simd::abs(v[1]) <= largest_speed);
+        auto is_sound = (simd::abs(x) <= largest_position) & (simd::abs(y) <= largest_position) &
+                        (simd::abs(v[0]) <= largest_speed) & (simd::abs(v[1]) <= largest_speed);
+        F old_angle(0), angle(0), spin(0);
+        if constexpr (kTurns) {
+            F radius = k.radius ? Lanes::load(k.radius + row) : F(k.uniform_radius);
+            radius = simd::select(radius > F(0), radius, F(1));  // padding rows have none
+            old_angle = Lanes::load(k.angle + row), spin = Lanes::load(k.angular_velocity + row);
+            angle = old_angle + Lanes::load(k.turn + row) / radius;
+            // The change of the rim speed, so that a spin which nothing changes keeps its bits.
+            spin = spin + (v[2] - spin * radius) / radius;
+            is_sound = is_sound & (simd::abs(angle) <= largest_number) & (simd::abs(spin) <= largest_number);
+        }
         if (!simd::all(is_sound)) {  // not a number compares false
             x = simd::select(is_sound, x, old_x), y = simd::select(is_sound, y, old_y);
             v[0] = simd::select(is_sound, v[0], F(0)), v[1] = simd::select(is_sound, v[1], F(0));
+            angle = simd::select(is_sound, angle, old_angle), spin = simd::select(is_sound, spin, F(0));
             const unsigned bits = simd::bitmask(is_sound);
             for (std::size_t lane = 0; lane < Lanes::size; ++lane)
                 if (((bits >> lane) & 1u) == 0) k.lost[lost++] = static_cast<std::int32_t>(row + lane);
@@ -124,16 +138,8 @@ std::size_t end_substeps(const EndSubsteps<Real>& k, std::size_t first, std::siz
         Lanes::store(k.position_y + row, y);
         Lanes::store(k.velocity_x + row, v[0]);
         Lanes::store(k.velocity_y + row, v[1]);
-        if constexpr (kTurns) {
-            F radius = k.radius ? Lanes::load(k.radius + row) : F(k.uniform_radius);
-            radius = simd::select(radius > F(0), radius, F(1));  // padding rows have none
-            const F angle = Lanes::load(k.angle + row), spin = Lanes::load(k.angular_velocity + row);
-            Lanes::store(k.angle + row,
-                         simd::select(is_sound, angle + Lanes::load(k.turn + row) / radius, angle));
-            // The change of the rim speed, so that a spin which nothing changes keeps its bits.
-            Lanes::store(k.angular_velocity + row,
-                         simd::select(is_sound, spin + (v[2] - spin * radius) / radius, F(0)));
-        }
+        if constexpr (kTurns)
+            Lanes::store(k.angle + row, angle), Lanes::store(k.angular_velocity + row, spin);
     }
     return lost;
 }
