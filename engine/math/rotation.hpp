@@ -18,8 +18,11 @@ struct Rotation {
 ///
 /// The angle is reduced to |x| <= π/4 by subtracting a whole number of π/2, which is kept in four parts of 26
 /// bits, so that whole number times part is exact (Cody & Waite 1980). The rest are Taylor's series: x^17/17!
-/// and x^18/18! of π/4 are below 2^-53.
+/// and x^18/18! of π/4 are below 2^-53. Beyond 1e15 rad, where numbers are a turn's eighth and more apart,
+/// the angle says no direction: then, and where it is no number, there is no turn.
 inline Rotation rotation_by(double angle) {
+    constexpr double kLargest = 1e15;  // rad
+    if (!(std::fabs(angle) <= kLargest)) return {};
     constexpr double kPart[] = {0x1.921fb5p+0, 0x1.110b46p-26, 0x1.1a6263p-54, 0x1.8a2e03707344ap-81};
     constexpr double kTwoOverPi = 0.63661977236758134308;
     const double quarters = std::floor(angle * kTwoOverPi + 0.5);

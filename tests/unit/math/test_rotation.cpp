@@ -3,9 +3,17 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 using namespace carom;
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
 
 TEST_SUITE("math/rotation") {
     TEST_CASE("cosine and sine are within 2e-16 of the library's for angles up to 1e8") {
@@ -36,5 +44,14 @@ TEST_SUITE("math/rotation") {
         const Vec2 back = rotate_back(turn, rotate(turn, {3, -2}));
         CHECK(back.x == doctest::Approx(3).epsilon(1e-15));
         CHECK(back.y == doctest::Approx(-2).epsilon(1e-15));
+    }
+
+    TEST_CASE("a turn keeps lengths whatever the angle, and is none where the angle says no direction") {
+        for (const double angle : {1e9, -1e10, 1e12, -1e15, 1.3e19, -1e300, kInfinity, -kInfinity, kNaN}) {
+            const Rotation turn = rotation_by(angle);
+            CAPTURE(angle);
+            CHECK(turn.cos * turn.cos + turn.sin * turn.sin == doctest::Approx(1).epsilon(0.1));
+            if (!(std::fabs(angle) <= 1e15)) CHECK(turn.cos == 1);
+        }
     }
 }
