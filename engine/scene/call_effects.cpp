@@ -50,20 +50,26 @@ bool turns_bodies(const Joint& joint) {
     return (joint.a && rod->anchor_a != Vec2{}) || (joint.b && rod->anchor_b != Vec2{});
 }
 
+EffectOverrides merged(const EffectOverrides& first, const EffectOverrides& second) {
+    EffectOverrides effects;
+    for (const auto effect :
+         {&EffectOverrides::sleep, &EffectOverrides::continuous, &EffectOverrides::ledger,
+          &EffectOverrides::gravity, &EffectOverrides::drag, &EffectOverrides::rotation,
+          &EffectOverrides::restitution, &EffectOverrides::friction, &EffectOverrides::rolling_resistance})
+        effects.*effect = first.*effect ? first.*effect : second.*effect;
+    return effects;
+}
+
 CalledEffects call_effects(const Scene& scene, const EffectOverrides& overrides) {
     CalledEffects called;
     Effects& on = called.effects;
     auto& reports = called.reports;
-    const auto either = [](const std::optional<bool>& first, const std::optional<bool>& second) {
-        return first ? first : second;
-    };
-    const EffectOverrides& own = scene.effects;
+    const EffectOverrides forced = merged(overrides, scene.effects);
     const Vec2 g = scene.gravity;
-    on.gravity = decide(reports, "gravity", either(overrides.gravity, own.gravity),
+    on.gravity = decide(reports, "gravity", forced.gravity,
                         g == Vec2{} ? "" : "gravity is (" + number(g.x) + ", " + number(g.y) + ") m/s²",
                         "gravity is zero");
-    const auto drag = either(overrides.drag, own.drag);
-    on.drag = decide(reports, "drag", drag,
+    on.drag = decide(reports, "drag", forced.drag,
                      scene.drag.linear > 0 ? "linear drag is " + number(scene.drag.linear) + " 1/s" : "",
                      "linear drag is zero");
     on.walls =
@@ -71,19 +77,16 @@ CalledEffects call_effects(const Scene& scene, const EffectOverrides& overrides)
     std::string bounces = first_body(scene, has_restitution, " has a restitution above zero");
     if (bounces.empty() && scene.walls && scene.walls->material.restitution > 0)
         bounces = "the walls have a restitution above zero";
-    on.restitution = decide(reports, "restitution", either(overrides.restitution, own.restitution), bounces,
-                            "every restitution is zero");
+    on.restitution = decide(reports, "restitution", forced.restitution, bounces, "every restitution is zero");
     std::string rubs = first_body(scene, has_friction, " has friction");
     std::string resists = first_body(scene, has_rolling_resistance, " has rolling resistance");
     if (resists.empty() && scene.walls && scene.walls->material.rolling_resistance > 0)
         resists = "the walls have rolling resistance";
-    const auto rolling = either(overrides.rolling_resistance, own.rolling_resistance);
-    if (rubs.empty() && (!resists.empty() || rolling == true))
+    if (rubs.empty() && (!resists.empty() || forced.rolling_resistance == true))
         rubs = "rolling resistance needs contacts that turn bodies";
-    on.friction = decide(reports, "friction", either(overrides.friction, own.friction), rubs,
-                         "every friction coefficient is zero");
-    on.rolling_resistance =
-        decide(reports, "rolling resistance", rolling, resists, "every rolling resistance is zero");
+    on.friction = decide(reports, "friction", forced.friction, rubs, "every friction coefficient is zero");
+    on.rolling_resistance = decide(reports, "rolling resistance", forced.rolling_resistance, resists,
+                                   "every rolling resistance is zero");
     std::string turns = first_body(
         scene, [](const Body& b) { return b.angular_velocity != 0 || b.angle != 0; },
         " has an angle or a spin");
@@ -91,7 +94,7 @@ CalledEffects call_effects(const Scene& scene, const EffectOverrides& overrides)
     if (turns.empty()) turns = first_body(scene, is_turned_by_contacts, " is no disc: contacts turn it");
     for (const Joint& joint : scene.joints)
         if (turns.empty() && turns_bodies(joint)) turns = "a joint turns bodies";
-    on.rotation = decide(reports, "rotation", either(overrides.rotation, own.rotation), turns,
+    on.rotation = decide(reports, "rotation", forced.rotation, turns,
                          "no body has an angle or a spin, and nothing can give one");
     on.angular_drag = decide(reports, "angular drag", {},
                              on.rotation && scene.drag.angular > 0
@@ -99,12 +102,12 @@ CalledEffects call_effects(const Scene& scene, const EffectOverrides& overrides)
                                  : "",
                              scene.drag.angular > 0 ? "nothing turns" : "angular drag is zero");
     decide(reports, "continuous collision", {}, "every solver looks ahead over the whole step", "");
-    on.ledger = decide(reports, "ledger", either(overrides.ledger, own.ledger), "", "not asked for");
+    on.ledger = decide(reports, "ledger", forced.ledger, "", "not asked for");
     on.joints =
         decide(reports, "joints", {},
                scene.joints.empty() ? "" : "the scene has " + std::to_string(scene.joints.size()) + " joints",
                "the scene has no joints");
-    on.sleeping = decide(reports, "sleeping", either(overrides.sleep, own.sleep), "", "not asked for");
+    on.sleeping = decide(reports, "sleeping", forced.sleep, "", "not asked for");
     return called;
 }
 

@@ -20,6 +20,9 @@ struct CalledEffects {
 /// Whether a joint can turn its bodies: all but those at centres.
 bool turns_bodies(const Joint& joint);
 
+/// What is forced by `first`, else by `second`.
+EffectOverrides merged(const EffectOverrides& first, const EffectOverrides& second);
+
 /// The only place that asks a scene which effects are on.
 /// @param overrides  over the scene's own
 CalledEffects call_effects(const Scene& scene, const EffectOverrides& overrides);

@@ -154,6 +154,27 @@ struct BasicWorld<Real>::Implementation : WorldSettings {
             if (id != BodyId{}) wake_around(world().handles.row_of_slot(id.index));
     }
 
+    /// What a body that is added turns on.
+    struct Called {
+        CalledEffects called;
+        SolverFacts facts;
+        Effects effects;
+        Drag drag;
+        bool has_rotation = false;
+    };
+    Called what_is_called() const {
+        const WorldState<Real>& state = simulation->world;
+        return {called, facts, state.effects, state.drag, state.bodies.has_rotation};
+    }
+    void call_again(Called before) {
+        called = std::move(before.called), facts = std::move(before.facts);
+        world().effects = before.effects, world().drag = before.drag;
+        Bodies<Real>& b = bodies();
+        if (before.has_rotation || !b.has_rotation) return;
+        b.has_rotation = false;
+        b.angle.resize(0), b.angular_velocity.resize(0);
+    }
+
     /// A solver may refuse what the bodies are now: then undo() takes the change back.
     template <class Undo>
     void undo_if_refused(std::string_view where, const Undo& undo) {

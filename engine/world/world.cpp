@@ -34,7 +34,7 @@ void check_options(const Scene& scene, const WorldOptions& options) {
     raise_if("World", find_solver_problem(scene, accuracy.solver));
     raise_if("World: option effects", find_solver_problem(options.effects, accuracy.solver));
     validate_effects(scene, scene.effects, "World");
-    validate_effects(scene, options.effects, "World: option effects");
+    validate_effects(scene, merged(options.effects, scene.effects), "World: option effects");
     constexpr int kMostThreads = 1024;
     if (options.threads < 0 || options.threads > kMostThreads)
         throw Error(ErrorCode::out_of_range, "World: option threads is " + std::to_string(options.threads) +
@@ -81,15 +81,7 @@ BasicWorld<Real>::BasicWorld(const Scene& scene, const WorldOptions& options) {
     implementation_->simulation = make_simulation<Real>(accuracy.solver);
     Simulation<Real>& sim = *implementation_->simulation;
     implementation_->called = call_effects(scene, options.effects);
-    const auto either = [](const std::optional<bool>& first, const std::optional<bool>& second) {
-        return first ? first : second;
-    };
-    EffectOverrides& overrides = implementation_->overrides;
-    overrides.restitution = either(options.effects.restitution, scene.effects.restitution);
-    overrides.rotation = either(options.effects.rotation, scene.effects.rotation);
-    overrides.friction = either(options.effects.friction, scene.effects.friction);
-    overrides.rolling_resistance =
-        either(options.effects.rolling_resistance, scene.effects.rolling_resistance);
+    implementation_->overrides = merged(options.effects, scene.effects);
     implementation_->angular_drag = scene.drag.angular;
     implementation_->asked_for = options.solver.value_or(scene.accuracy.solver);
     implementation_->substeps = accuracy.substeps, implementation_->iterations = accuracy.iterations;
@@ -202,6 +194,8 @@ BodyId BasicWorld<Real>::add(const Body& body) {
     if (body_count() >= kLargestBodyCount)
         throw Error(ErrorCode::too_large, "World::add: the world has " + std::to_string(body_count()) +
                                               " bodies, which is the limit. Remove some first.");
+    std::optional<typename Implementation::Called> before;  // where the solver may yet refuse the body
+    if (choice.solver == Solver::event) before = implementation_->what_is_called();
     implementation_->call_effects_of(body, choice.solver);
     implementation_->facts = std::move(facts);
     implementation_->change_solver(choice.solver, choice.reason);
@@ -217,8 +211,10 @@ BodyId BasicWorld<Real>::add(const Body& body) {
     const BodyId id = world.append(body);
     world.outside = world.outside + world.sums_of(world.handles.row_of_slot(id.index));
     implementation_->sim().note_added(world.handles.row_of_slot(id.index));
-    implementation_->undo_if_refused("World::add",
-                                     [&] { world.remove(world.handles.row_of_slot(id.index)); });
+    implementation_->undo_if_refused("World::add", [&] {
+        world.remove(world.handles.row_of_slot(id.index));
+        if (before) implementation_->call_again(std::move(*before));
+    });
     return id;
 }
 

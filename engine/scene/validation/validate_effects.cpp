@@ -17,8 +17,15 @@ Problem forced_off(std::string_view effect, const Words&... because) {
                    "\" out, or take away what needs it.");
 }
 
+/// The largest of a coefficient that a body has anywhere: pieces of a compound can have their own materials.
+double largest_of(const Body& body, double Material::*coefficient) {
+    double largest = 0;
+    for_each_material(body, [&](const Material& m) { largest = std::max(largest, m.*coefficient); });
+    return largest;
+}
+
 bool bounces(const Body& body) {
-    return body.type == BodyType::dynamic_body && body.material.restitution > 0;
+    return body.type == BodyType::dynamic_body && has_restitution(body);
 }
 
 /// A turned body counts: without the effect there is no column for its angle.
@@ -43,23 +50,21 @@ std::optional<Problem> find_restitution_problem(const Scene& scene) {
     const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(), bounces);
     if (body == scene.bodies.end()) return std::nullopt;
     return forced_off("restitution", "body ", body - scene.bodies.begin(), " with restitution ",
-                      body->material.restitution);
+                      largest_of(*body, &Material::restitution));
 }
 
-bool rubs(const Body& body) {
-    return body.material.friction > 0;
-}
-
-/// Forced on, it needs contacts with friction that turn bodies; forced off, no body may have any.
+/// Forced on, it needs contacts with friction that turn bodies; forced off, nothing may have any.
 std::optional<Problem> find_rolling_problem(const Scene& scene, const EffectOverrides& effects) {
-    const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(),
-                                   [](const Body& b) { return b.material.rolling_resistance > 0; });
-    const bool is_called = body != scene.bodies.end();
-    const std::string has = is_called ? join("body ", body - scene.bodies.begin(),
-                                             " with rolling resistance ", body->material.rolling_resistance)
-                                      : "rolling_resistance forced on";
-    if (effects.rolling_resistance == false && is_called) return forced_off("rolling_resistance", has);
-    if (!is_called && effects.rolling_resistance != true) return std::nullopt;
+    const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(), has_rolling_resistance);
+    std::string has;
+    if (scene.walls && scene.walls->material.rolling_resistance > 0)
+        has = join("walls with rolling resistance ", scene.walls->material.rolling_resistance);
+    else if (body != scene.bodies.end())
+        has = join("body ", body - scene.bodies.begin(), " with rolling resistance ",
+                   largest_of(*body, &Material::rolling_resistance));
+    if (effects.rolling_resistance == false && !has.empty()) return forced_off("rolling_resistance", has);
+    if (has.empty() && effects.rolling_resistance != true) return std::nullopt;
+    if (has.empty()) has = "rolling_resistance forced on";
     if (effects.friction == false) return forced_off("friction", has);
     if (effects.rotation == false) return forced_off("rotation", has);
     return std::nullopt;
@@ -72,10 +77,10 @@ std::optional<Problem> find_friction_problem(const Scene& scene, const EffectOve
             "the effect friction forced on and rotation forced off; expected both, because friction "
             "turns bodies. Leave \"rotation\" out.");
     if (effects.friction != false && effects.rotation != false) return std::nullopt;
-    const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(), rubs);
+    const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(), has_friction);
     if (body == scene.bodies.end()) return std::nullopt;
     return forced_off(effects.friction == false ? "friction" : "rotation", "body ",
-                      body - scene.bodies.begin(), " with friction ", body->material.friction);
+                      body - scene.bodies.begin(), " with friction ", largest_of(*body, &Material::friction));
 }
 
 }  // namespace

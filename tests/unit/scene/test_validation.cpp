@@ -255,6 +255,22 @@ const std::vector<Fault> kSettingFaults{
     {"rolling resistance without friction",
      [](Scene& s) { s.effects.friction = false, s.effects.rolling_resistance = true; },
      ErrorCode::inconsistent, "/effects/friction", "rolling_resistance forced on"},
+    {"a piece with rolling resistance and rotation forced off",
+     [](Scene& s) {
+         s.bodies.erase(s.bodies.begin() + 1, s.bodies.end());
+         s.bodies[0].shape = Compound{{{.shape = Disc{1}, .material = Material{.rolling_resistance = 0.2}}}};
+         s.bodies[0].fixed_rotation = true;
+         s.effects.rotation = false;
+     },
+     ErrorCode::inconsistent, "/effects/rotation", "body 0 with rolling resistance 0.2"},
+    {"walls with rolling resistance and rotation forced off",
+     [](Scene& s) {
+         s.bodies.erase(s.bodies.begin() + 1, s.bodies.end());
+         s.bodies[0].angle = s.bodies[0].angular_velocity = 0;
+         s.walls->material.rolling_resistance = 0.1;
+         s.effects.rotation = false;
+     },
+     ErrorCode::inconsistent, "/effects/rotation", "walls with rolling resistance 0.1"},
     {"walls with solver rattle", [](Scene& s) { s.accuracy.solver = Solver::rattle; },
      ErrorCode::inconsistent, "/walls", "walls, but the solver \"rattle\" has joints alone"},
     {"drag with solver event", [](Scene& s) { s.accuracy.solver = Solver::event; }, ErrorCode::inconsistent,
