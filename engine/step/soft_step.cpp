@@ -187,6 +187,7 @@ class SoftStep final : public SoftSimulation<Real> {
                 {this->substeps_for_drag(dt), substeps_against_gravity(dt), this->substeps_for_joints()});
             this->substep_dt = dt / this->substep_count;
             Sim& sim = *this;
+            if (!sim.can_touch()) sim.drop_contacts();
             StageTimes& watch = this->times;
             watch.start();
             this->keep_start_of_step();

@@ -1,6 +1,7 @@
 #include <carom/world.hpp>
 
 #include <cmath>
+#include <limits>
 
 #include "constraints/joints/joint_laws.hpp"
 #include "scene/call_effects.hpp"
@@ -14,13 +15,15 @@
 namespace carom {
 namespace {
 
+constexpr double kNoLimit = std::numeric_limits<double>::max();
 constexpr Item kJoint{"the joint has", "", -1, ""};
 
-void check_number(std::string_view where, std::string_view what, double value, double low) {
-    if (value >= low && value - value == 0) return;
-    throw Error(value - value == 0 ? ErrorCode::out_of_range : ErrorCode::not_finite,
-                join(where, ": ", what, " is ", value, "; expected a finite number",
-                     low > -1e300 ? join(" >= ", low) : std::string(), "."));
+void check_number(std::string_view where, std::string_view what, double value, double low, double high) {
+    if (value >= low && value <= high) return;
+    const bool is_finite = value - value == 0;
+    throw Error(is_finite ? ErrorCode::out_of_range : ErrorCode::not_finite,
+                join(where, ": ", what, " is ", value, "; expected ",
+                     high < kNoLimit ? join(low, " to ", high) : join("a finite number >= ", low), "."));
 }
 
 [[noreturn]] void refuse(std::string_view where, std::string_view what, std::string_view of) {
@@ -112,7 +115,8 @@ void BasicWorld<Real>::set_motor(JointId joint, double speed, double most) {
     constexpr std::string_view kWhere = "World::set_motor";
     Implementation& own = *implementation_;
     const std::size_t slot = own.world().joints.slot_of(joint, kWhere);
-    check_number(kWhere, "speed", speed, -kLargestSpeed), check_number(kWhere, "most", most, 0);
+    check_number(kWhere, "speed", speed, -kLargestSpeed, kLargestSpeed);
+    check_number(kWhere, "most", most, 0, kNoLimit);
     StoredJoint& stored = own.world().joints[slot];
     if (stored.type == JointType::distance || stored.type == JointType::weld ||
         stored.type == JointType::target || stored.type == JointType::gear)
@@ -127,11 +131,13 @@ void BasicWorld<Real>::set_limits(JointId joint, double lower, double upper) {
     constexpr std::string_view kWhere = "World::set_limits";
     Implementation& own = *implementation_;
     const std::size_t slot = own.world().joints.slot_of(joint, kWhere);
-    check_number(kWhere, "lower", lower, -kLargestPosition), check_number(kWhere, "upper", upper, lower);
     StoredJoint& stored = own.world().joints[slot];
     if (stored.type != JointType::distance && stored.type != JointType::revolute &&
         stored.type != JointType::prismatic)
         refuse(kWhere, "limits", "distance, revolute or prismatic");
+    const double most = stored.type == JointType::revolute ? kLargestAngle : kLargestPosition;
+    check_number(kWhere, "lower", lower, stored.type == JointType::distance ? 0 : -most, most);
+    check_number(kWhere, "upper", upper, lower, most);
     own.wake_joint(slot);
     stored.has_lower = stored.has_upper = true, stored.lower = lower, stored.upper = upper;
     if (stored.type == JointType::distance) stored.is_held = stored.is_spring();
@@ -143,8 +149,8 @@ void BasicWorld<Real>::set_target(JointId joint, Vec2 target) {
     constexpr std::string_view kWhere = "World::set_target";
     Implementation& own = *implementation_;
     const std::size_t slot = own.world().joints.slot_of(joint, kWhere);
-    check_number(kWhere, "target x", target.x, -kLargestPosition);
-    check_number(kWhere, "target y", target.y, -kLargestPosition);
+    check_number(kWhere, "target x", target.x, -kLargestPosition, kLargestPosition);
+    check_number(kWhere, "target y", target.y, -kLargestPosition, kLargestPosition);
     if (own.world().joints[slot].type != JointType::target) refuse(kWhere, "target", "target");
     own.wake_joint(slot);
     own.world().joints[slot].target = target;

@@ -18,7 +18,7 @@ struct Header {
     std::array<char, 8> magic{'c', 'a', 'r', 'o', 'm', 's', 't', 'a'};
     std::array<char, 16> version{};  // of the library
     std::uint64_t bytes = 0;         // with the header
-    std::uint64_t checksum = 0;      // of what follows the header
+    std::uint64_t checksum = 0;      // of this header, with a zero here, and of what follows it
     std::uint32_t real_bytes = 0;    // of a number in a column
     std::uint32_t solver = 0;
 };
@@ -30,9 +30,9 @@ std::array<char, 16> version_text() {
 }
 
 /// Tells damaged bytes from whole ones: words multiplied and folded, so that each bit bears on all of them.
-std::uint64_t checksum_of(std::span<const std::byte> bytes) {
+/// Each word maps sums one to one: damage within one word always shows, other damage but once in 2^64.
+std::uint64_t checksum_of(std::span<const std::byte> bytes, std::uint64_t sum) {
     constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15u;  // 2^64 over the golden ratio (Knuth)
-    std::uint64_t sum = bytes.size();
     while (!bytes.empty()) {
         std::uint64_t word = 0;
         const std::size_t length = std::min(bytes.size(), sizeof(word));
@@ -42,6 +42,13 @@ std::uint64_t checksum_of(std::span<const std::byte> bytes) {
         bytes = bytes.subspan(length);
     }
     return sum;
+}
+
+/// @param state  all of it; what stands where the header will be does not matter
+std::uint64_t checksum_of(Header header, std::span<const std::byte> state) {
+    header.checksum = 0;
+    return checksum_of(state.subspan(sizeof(header)),
+                       checksum_of(std::as_bytes(std::span(&header, 1)), state.size()));
 }
 
 /// `Settings` is const where they are counted or written.
@@ -83,8 +90,8 @@ void save_snapshot(const Simulation<Real>& sim, const WorldSettings& settings, s
     visit_all(sim, settings, writer);
     Header header;
     header.version = version_text(), header.bytes = bytes;
-    header.checksum = checksum_of(out.first(bytes).subspan(sizeof(Header)));
     header.real_bytes = sizeof(Real), header.solver = static_cast<std::uint32_t>(sim.solver());
+    header.checksum = checksum_of(header, out.first(bytes));
     std::memcpy(out.data(), &header, sizeof(header));
 }
 
@@ -113,8 +120,8 @@ Solver solver_of_snapshot(std::span<const std::byte> state) {
     if (header.bytes > state.size())
         throw Error(ErrorCode::malformed, join(kWhere, "the state has ", header.bytes, " bytes, of which ",
                                                state.size(), " are there. Pass all that save_state wrote."));
-    if (checksum_of(state.first(static_cast<std::size_t>(header.bytes)).subspan(sizeof(header))) !=
-        header.checksum)
+    if (header.bytes < sizeof(header) ||
+        checksum_of(header, state.first(static_cast<std::size_t>(header.bytes))) != header.checksum)
         throw Error(ErrorCode::malformed,
                     join(kWhere, "the state is damaged: its bytes are not those that save_state wrote."));
     return static_cast<Solver>(header.solver);

@@ -206,6 +206,14 @@ TEST_SUITE("determinism/snapshots") {
         CHECK(refusal(world, whole.first(state.size() - 1)).find("are there") != std::string::npos);
         CHECK(refusal(world, damaged).find("damaged") != std::string::npos);
         CHECK(refusal(world, other_start).find("do not begin like a state") != std::string::npos);
+        // Of the header, too: its solver, say, would be made a world of.
+        for (std::size_t at = 0; at < 64; ++at)
+            for (const unsigned bit : {0, 1, 2, 7}) {
+                std::vector<std::byte> flipped = state;
+                flipped[at] ^= std::byte{1} << bit;
+                CAPTURE(at);
+                CHECK(refusal(world, flipped) != "");
+            }
         World64 wide(rough_sizes());
         CHECK(refusal(wide, whole).find("numbers of 4 bytes") != std::string::npos);
         std::vector<std::byte> small(state.size() - 1, std::byte{7});

@@ -158,12 +158,14 @@ class BasicWorld {
     /// Whether a handle names a joint of this world: it goes stale when the joint breaks, too.
     bool is_alive(JointId joint) const noexcept;
     /// Changes a motor of a revolute, prismatic or wheel joint.
-    /// @param speed  rad/s or m/s  @param most  N m or N, >= 0; 0 turns it off
+    /// @param speed  rad/s or m/s, within ±kLargestSpeed  @param most  N m or N, >= 0; 0 turns it off
     /// @throws Error (stale_handle, not_finite, out_of_range, inconsistent)
     void set_motor(JointId joint, double speed, double most);
-    /// Changes the limits of a distance, revolute or prismatic joint [m or rad]. @throws Error as set_motor
+    /// Changes the limits of a distance, revolute or prismatic joint.
+    /// @param lower  m, of a distance joint >= 0, or rad  @param upper  >= lower, both as in a scene
+    /// @throws Error as set_motor
     void set_limits(JointId joint, double lower, double upper);
-    /// Moves the target of a target joint [m]. @throws Error as set_motor
+    /// Moves the target of a target joint [m], within ±kLargestPosition. @throws Error as set_motor
     void set_target(JointId joint, Vec2 target);
     /// Mean force on b in the last step [N]; of solver `soft` where joints are iterated, that of its last
     /// substep. @throws Error (stale_handle)
@@ -208,8 +210,9 @@ class BasicWorld {
     void save_state(std::span<std::byte> out) const;
     /// Goes on from a state as the world that saved it would have, bit for bit, whatever scene this world was
     /// made of, on any number of threads and any instruction set. Handles are those of the saved world;
-    /// `profile()` goes on counting. States are of one precision and one version of the library; they are no
-    /// file format.
+    /// `profile()` goes on counting. States are of one precision and one build of the library; they are no
+    /// file format. A checksum tells bytes that were damaged on their way, not those that somebody made up:
+    /// take states from where programs may come from.
     /// @throws Error (malformed, inconsistent) if the bytes are no such state or are damaged; the world is
     /// then unchanged Cost: O(state); no allocation once the world has been as large.
     void restore_state(std::span<const std::byte> state);

@@ -32,6 +32,13 @@ class SoftSimulation : public Simulation<Real> {
     bool has_changes() const { return changes_ > 0; }
     /// Follows them without making the candidate pairs void, where that is possible.
     void follow_changes();
+    /// Where nothing can touch, contacts are not kept up to date: those of bodies that are gone must not be
+    /// looked at.
+    void drop_contacts() {
+        if (graph_of_rebuild < 0) return;
+        soft.drop_contacts();
+        graph_of_rebuild = -1;
+    }
     void wake_at(Vec2 place, double reach) override;
     void wake_all() override;
     std::size_t wake_body(std::size_t row) override;

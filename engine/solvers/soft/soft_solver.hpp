@@ -163,6 +163,9 @@ class SoftSolver {
     /// Rows have changed, and the graph has followed them.
     void follow_rows() { follows_rows_ = masses_.are_known(), masses_.forget(); }
 
+    /// Nothing can touch any more.
+    void drop_contacts() { graph.pairs = {}, graph.supports = {}, graph.lost.clear(), supports_ = {}; }
+
     const BodyRecords<Real>& records() const { return records_; }
     /// How well the last step's contacts were solved. Cost: O(contacts).
     SolveQuality quality() const { return quality_of(graph.pairs, supports_, records_); }

@@ -33,7 +33,8 @@ bool moves_few_contacts(const SoftSimulation<Real>& sim) {
 template <class Real>
 void update_candidates(SoftSimulation<Real>& sim) {
     sim.edge_candidates.place(sim.world, sim.flight_dt);
-    if (sim.edge_candidates.has_left_margin() &&
+    // Void pairs may be of edges that are gone.
+    if (sim.candidates.is_valid() && sim.edge_candidates.has_left_margin() &&
         (sim.world.bodies.has_shapes || sim.world.bodies.asleep > 0 || !sim.edge_candidates.may_add() ||
          !moves_few_contacts(sim)))
         sim.candidates.invalidate_pairs();
@@ -74,6 +75,15 @@ void quarantine_bodies(SoftSimulation<Real>& sim) {
         if (!sim.world.bodies.is_immovable(row))
             sim.world.quarantine(row, sim.soft.records().sums_of_lost(sim.world, row));
     }
+    // What a joint did to a body that was lost may be no number.
+    JointStore& joints = sim.world.joints;
+    const auto is_lost = [&](BodyId id) {
+        return id != BodyId{} &&
+               (sim.world.bodies.flags_of(sim.world.handles.row_of_slot(id.index)) & kDisabled) != 0;
+    };
+    joints.for_each([&](std::size_t slot, const StoredJoint& joint) {
+        if (is_lost(joint.a) || is_lost(joint.b)) joints[slot].force = {}, joints[slot].torque = 0;
+    });
     sim.forget_derived_state();
 }
 

@@ -238,10 +238,10 @@ bool SoftJoints<Real>::end_step(const JointStep<Real>& step, Books& books, doubl
     const std::size_t before = joints.broken.size();
     for (const std::size_t slot : breakable_) {
         const StoredJoint& joint = joints[slot];
-        if (length_squared(joint.force) <= joint.break_force * joint.break_force &&
-            std::fabs(joint.torque) <= joint.break_torque)
-            continue;
-        joints.broken.push_back(break_of(step, slot, dt));
+        // What is not a number breaks no joint: its bodies are lost.
+        const bool breaks = length_squared(joint.force) > joint.break_force * joint.break_force ||
+                            std::fabs(joint.torque) > joint.break_torque;
+        if (breaks) joints.broken.push_back(break_of(step, slot, dt));
     }
     // A gear goes with its joints, also where both broke.
     for (std::size_t i = before; i < joints.broken.size(); ++i)

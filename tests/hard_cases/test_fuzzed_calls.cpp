@@ -1,0 +1,141 @@
+// What fuzzed scripts of calls have brought to light (tests/fuzz/fuzz_world_calls.cpp), each as the smallest
+// script that shows it.
+#include "support/scenes.hpp"
+
+#include <doctest/doctest.h>
+#include <carom/world.hpp>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+using namespace carom;
+using namespace carom::test;
+
+namespace {
+
+constexpr double kStep = 1.0 / 60;  // s
+
+std::vector<std::string> effects_on(const World& world) {
+    std::vector<std::string> names;
+    for (const EffectReport& effect : world.plan().effects)
+        if (effect.on) names.push_back(effect.name);
+    return names;
+}
+
+/// Two discs that touch, one of them hinged to the world.
+Scene hinged_pair() {
+    Scene scene;
+    scene.accuracy.solver = Solver::soft;
+    const BodyId hinged = scene.add(disc(0.5, 1, {0, 0}));
+    scene.add(disc(0.5, 1, {0.99, 0}));
+    scene.add(Joint{.b = hinged, .kind = RevoluteJoint{.anchor = Vec2{0, 0.2}}});
+    return scene;
+}
+
+}  // namespace
+
+TEST_SUITE("hard cases/fuzzed calls") {
+    TEST_CASE(
+        "rotation forced off by the scene and rolling resistance forced on by the options are refused") {
+        Scene scene;
+        scene.accuracy.solver = Solver::soft;
+        scene.effects.rotation = false;
+        scene.add(disc(0.5, 1, {0, 0}));
+        WorldOptions options;
+        options.effects.rolling_resistance = true;
+        CHECK_THROWS_WITH_AS(World(scene, options), doctest::Contains("the effect rotation forced off"),
+                             Error);
+    }
+
+    TEST_CASE_TEMPLATE("a force beyond all numbers breaks no joint; its body is quarantined, its force zero",
+                       Real, float, double) {
+        Scene scene;
+        const BodyId box = scene.add({.shape = Box{1, 0.5}});
+        const JointId drawn = scene.add(
+            Joint{.b = box,
+                  .kind = TargetJoint{
+                      .anchor = {0.4, 0.2}, .target = {1e8, 1e8}, .max_force = 1e308, .frequency = 1e6}});
+        BasicWorld<Real> world(scene);
+        world.step(kStep);
+        CHECK(world.quarantined() == std::vector<BodyId>{box});
+        CHECK(world.joint_force(drawn) == Vec2{});
+        CHECK(world.joint_torque(drawn) == 0);
+        world.step(kStep);
+        CHECK(world.joint_force(drawn) == Vec2{});
+    }
+
+    TEST_CASE("a body that solver event refuses turns on nothing") {
+        Scene scene;
+        scene.accuracy.solver = Solver::event;
+        scene.walls = Walls{.min = {-4, -4}, .max = {4, 4}};
+        scene.add(disc(0.5, 1, {0, 0}, {1, 0}, 1));
+        World world(scene);
+        const std::vector<std::string> before = effects_on(world);
+        const std::uint64_t hash = world.state_hash();
+        Body rough = disc(0.5, 1, {0.2, 0}, {}, 0.5);  // it overlaps the first one
+        rough.material.friction = 0.5, rough.angle = 1;
+        CHECK_THROWS_AS(world.add(rough), Error);
+        CHECK(effects_on(world) == before);
+        CHECK(world.bodies().angle.empty());
+        CHECK(world.state_hash() == hash);
+        world.step(kStep);
+        CHECK(world.state({0, 0}).position.x == doctest::Approx(kStep));
+    }
+
+    TEST_CASE("a motor, limits and a target beyond what a scene may have are refused") {
+        Scene scene;
+        const BodyId box = scene.add({.shape = Box{1, 0.5}});
+        const JointId hinge = scene.add(Joint{.b = box, .kind = RevoluteJoint{}});
+        const JointId rope = scene.add(Joint{.b = box, .kind = DistanceJoint{.length = 1}});
+        const JointId drawn = scene.add(Joint{.b = box, .kind = TargetJoint{.max_force = 1}});
+        World world(scene);
+        CHECK_THROWS_WITH_AS(world.set_motor(hinge, 1.1e7, 1), doctest::Contains("expected -1e+07 to 1e+07"),
+                             Error);
+        CHECK_THROWS_AS(world.set_motor(hinge, 1, INFINITY), Error);
+        CHECK_THROWS_AS(world.set_limits(hinge, 0, 1.1e8), Error);
+        CHECK_THROWS_AS(world.set_limits(rope, -0.1, 1), Error);
+        CHECK_THROWS_AS(world.set_target(drawn, {0, 1.1e8}), Error);
+        CHECK_NOTHROW(world.set_motor(hinge, kLargestSpeed, 0));
+        CHECK_NOTHROW(world.set_limits(rope, 0, kLargestPosition));
+    }
+
+    TEST_CASE_TEMPLATE("joints do not look at contacts of a body that is gone, nor does a restored world",
+                       Real, float, double) {
+        BasicWorld<Real> world(hinged_pair());
+        world.step(kStep);
+        world.remove({1, 0});  // nothing is left that could touch
+        BasicWorld<Real> copy(world);
+        for (int step = 0; step < 3; ++step) world.step(kStep), copy.step(kStep);
+        CHECK(copy.state_hash() == world.state_hash());
+        // What comes back touches again.
+        for (BasicWorld<Real>* each : {&world, &copy}) {
+            each->add(disc(0.5, 1, {0.99, 0}));
+            each->step(kStep);
+        }
+        CHECK(copy.state_hash() == world.state_hash());
+        CHECK(world.profile().contacts == 1);
+    }
+
+    TEST_CASE_TEMPLATE("a moving edge that left its margin does not stand for one that was removed", Real,
+                       float, double) {
+        Scene scene;
+        scene.accuracy.solver = Solver::soft;
+        scene.add(disc(0.5, 1, {0, 1}));
+        std::vector<BodyId> edges;
+        for (int i = 0; i < 3; ++i)
+            edges.push_back(scene.add({.type = BodyType::kinematic_body,
+                                       .shape = Segment{{-2, 0}, {2, 0}},
+                                       .position = {0, -0.1 * i},
+                                       .velocity = {1, 0}}));
+        BasicWorld<Real> world(scene);
+        world.step(kStep);
+        for (const std::size_t gone : {2, 1}) {
+            world.remove(edges[gone]);
+            world.set_velocity(edges[0], {50, 0});
+            world.step(kStep);
+            CHECK(world.state(edges[0]).velocity == Vec2{50, 0});
+        }
+        CHECK(world.state({0, 0}).position.y == doctest::Approx(1));
+    }
+}
