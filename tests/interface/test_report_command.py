@@ -58,6 +58,63 @@ class ReportCommandTest(ProgramTest):
             self.assertIn("out/" + name, done.stderr)
             self.assertEqual([path for path in self.everything() if "report.html" in path], [])
 
+    def test_a_trajectory_that_was_changed_is_refused_whatever_the_byte(self):
+        self.run_scene(SEED, "--steps", 3)
+        path = self.folder / "out/trajectory.h5"
+        whole = path.read_bytes()
+        for place in range(0, len(whole), max(1, len(whole) // 40)):
+            changed = bytearray(whole)
+            changed[place] ^= 0x10
+            path.write_bytes(changed)
+            self.assertIn("out/trajectory.h5: is not the file that the run wrote", self.carom("report", "out", expect=2).stderr)
+        path.write_bytes(whole)
+        self.carom("report", "out")
+
+    def test_a_trajectory_of_another_making_is_refused_where_it_is_no_trajectory(self):
+        def without_sizes(file):
+            del file["radius"]
+            file["radius"] = [0.5]
+
+        def of_one_number_a_body(file):
+            del file["position"]
+            file["position"] = [[[1.0]] * 5] * 4
+
+        def of_four_dimensions(file):
+            del file["velocity"]
+            file["velocity"] = [[[[1.0] * 2] * 5] * 4]
+
+        def beyond_all_memory(file):
+            del file["position"]
+            file.create_dataset("position", (2**40, 2**20, 2), "f4", chunks=(1, 1024, 2))
+
+        def shapes_without_vertices(file):
+            file["shape"] = [0.0] * 5
+            file.attrs["settings"] = json.dumps({"shapes": [{"radius": 1}]})
+
+        def edges_of_words(file):
+            file.attrs["settings"] = json.dumps({"edges": [{"body": "x", "points": [], "loop": True}]})
+
+        def joints_of_nothing(file):
+            file.attrs["settings"] = json.dumps({"joints": [[]]})
+
+        for change in (without_sizes, of_one_number_a_body, of_four_dimensions, beyond_all_memory, shapes_without_vertices,
+                       edges_of_words, joints_of_nothing):
+            with self.subTest(change.__name__):
+                self.run_scene(SEED, "--steps", 3)
+                summary = json.loads((self.folder / "out/summary.json").read_text())
+                self.assertEqual(summary.pop("checksums")["trajectory.h5"]["bytes"], (self.folder / "out/trajectory.h5").stat().st_size)
+                (self.folder / "out/summary.json").write_text(json.dumps(summary))
+                with h5py.File(self.folder / "out/trajectory.h5", "r+") as file:
+                    change(file)
+                self.assertIn("out/trajectory.h5: ", self.carom("report", "out", expect=2).stderr)
+
+    def test_a_ledger_without_times_and_json_that_is_too_deep_are_refused(self):
+        self.run_scene(SEED, "--steps", 3)
+        (self.folder / "out/ledger.csv").write_text("kinetic,gravity\n1,2\n")
+        self.assertIn('out/ledger.csv: has no column "time"', self.carom("report", "out", expect=2).stderr)
+        (self.folder / "deep.json").write_text('{"kind": "run", "bodies": ' + "[" * 100000 + "]" * 100000 + "}")
+        self.assertIn("nested more than 64 deep", self.carom("report", "deep.json", "--out", "page.html", expect=2).stderr)
+
     def test_a_page_that_cannot_be_written_is_an_error_with_its_reason(self):
         self.run_scene(SEED, "--steps", 2)
         done = self.carom("report", "out", "--out", "missing/page.html", expect=3)

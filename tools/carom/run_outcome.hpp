@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "contact_course.hpp"
+#include "report/file_checksum.hpp"
 
 namespace carom::tool {
 
@@ -43,7 +44,8 @@ struct RunOutcome {
     double total_seconds = 0;      ///< from the start of the run to the end of the last step
 
     std::vector<std::string> files;
-    std::vector<std::string> messages;  ///< what a reader of the numbers should know
+    std::optional<report::FileChecksum> trajectory;  ///< of trajectory.h5, if there is one
+    std::vector<std::string> messages;               ///< what a reader of the numbers should know
 };
 
 }  // namespace carom::tool

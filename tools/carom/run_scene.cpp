@@ -301,6 +301,7 @@ RunOutcome run_scene(const Scene& scene, Simulation& simulation, ResultFolder& f
     describe_end(scene, simulation, run);
     if (!choices.no_report) folder.temporary("report.html");
     run.files = folder.names();
+    if (!choices.no_trajectory) run.trajectory = report::checksum_of(folder.temporary("trajectory.h5"));
     write_final_csv(final, scene, simulation);
     write_summary_json(summary, run);
     write_report(run, folder, choices);

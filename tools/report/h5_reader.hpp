@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "report/markup.hpp"
+
 namespace carom::report {
 
 /// Reads trajectory.h5 frame by frame; memory is what HDF5 caches, a megabyte a dataset. Every failure is a
@@ -27,6 +29,8 @@ class H5Reader {
 
     /// A text attribute of the root; empty if there is none.
     std::string text(const char* attribute) const;
+    /// Likewise, as JSON; null if it is none.
+    Json json(const char* attribute) const;
     /// A dataset of one dimension, whole: `size` values, or it is an error.
     std::vector<double> column(const char* dataset, std::size_t size) const;
     std::vector<double> body_column(const char* dataset) const { return column(dataset, bodies_); }
@@ -39,8 +43,12 @@ class H5Reader {
         std::string name;
         hid_t id;
         hid_t space;
+        int rank;
     };
+    [[noreturn]] void refuse() const;
     hid_t check(hid_t result) const;
+    void find_size(const std::filesystem::path& path);
+    void close();
     const Dataset& open(const char* name);
 
     std::string name_;

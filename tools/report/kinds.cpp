@@ -7,6 +7,8 @@
 #include <string_view>
 #include <utility>
 
+#include "report/json_text.hpp"
+
 namespace carom::report {
 namespace {
 
@@ -52,9 +54,11 @@ Result read_result(const fs::path& path, std::size_t page_bytes) {
         refuse(result.file,
                is_folder ? "cannot be read; expected the folder of a finished run" : "cannot be read");
     try {
-        result.json = Json::parse(file);
+        result.json = parse_json(file);
     } catch (const Json::parse_error&) {
         refuse(result.file, "is no JSON; expected a result file that the program wrote");
+    } catch (const Json::out_of_range& error) {
+        refuse(result.file, std::string("is not as its kind should be: ") + error.what());
     }
     return result;
 }

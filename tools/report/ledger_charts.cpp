@@ -9,6 +9,7 @@ namespace carom::report {
 namespace {
 
 constexpr const char* kTime = "time (s)";
+constexpr double kMostImpacts = 1e15;  // beyond, and where it is no number, the file is damaged
 
 struct Cause {
     const char* column;
@@ -58,7 +59,7 @@ void add_energy(const NumberTable& ledger, Page& page) {
         chart.series.push_back(over_time(time, ledger.at(column), column, colour++));
     chart.marks = impacts_of(ledger);
     const std::vector<double>& impacts = ledger.at("impacts");
-    if (!impacts.empty())
+    if (!impacts.empty() && std::fabs(impacts.back()) < kMostImpacts)
         chart.note = "Marks on the time axis: steps in which bodies or walls collided, " +
                      std::to_string(static_cast<long long>(impacts.back())) + " impacts in all.";
     page.chart(std::move(chart));

@@ -50,11 +50,11 @@ Picture::Picture(const std::filesystem::path& trajectory_h5, int width)
     : trajectory_(trajectory_h5),
       time_(trajectory_.times()),
       radius_(trajectory_.body_column("radius")),
-      settings_(Json::parse(trajectory_.text("settings"), nullptr, false)),
+      settings_(trajectory_.json("settings")),
       edges_(edge_bodies(settings_)),
       shapes_(drawn_shapes(settings_)),
       shape_(shape_of_bodies(trajectory_)),
-      joints_(joint_lines(settings_, Json::parse(trajectory_.text("breaks"), nullptr, false))),
+      joints_(joint_lines(settings_, trajectory_.json("breaks"))),
       trail_(settings_.is_object() ? settings_.value("trail", std::size_t{0}) : 0),
       width_(width) {
     if (time_.empty()) throw ResultError(trajectory_h5.string() + ": has no frames to draw");

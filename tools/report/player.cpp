@@ -13,6 +13,7 @@
 #include "report/edges.hpp"
 #include "report/frame_choice.hpp"
 #include "report/h5_reader.hpp"
+#include "report/kinds.hpp"
 #include "report/quantised_frame.hpp"
 #include "report/shapes.hpp"
 
@@ -118,7 +119,7 @@ Json colours(const H5Reader& trajectory, const FrameChoice& choice) {
     std::unordered_map<std::uint32_t, std::uint16_t> number{{kNoColour, 0}};
     std::vector<std::uint16_t> index;
     for (const double value : chosen(trajectory.body_column("color"), choice.bodies)) {
-        const auto colour = static_cast<std::uint32_t>(value);
+        const auto colour = value >= 0 && value <= UINT32_MAX ? static_cast<std::uint32_t>(value) : kNoColour;
         if (palette.size() < kMostColours && number.try_emplace(colour, palette.size() + 1).second)
             palette.push_back(colour);
         const auto found = number.find(colour);
@@ -164,7 +165,9 @@ Json shapes(const H5Reader& trajectory, const Json& settings, const FrameChoice&
         outlines.push_back({{"x", shape.x}, {"y", shape.y}, {"starts", shape.starts}, {"mark", shape.mark}});
     std::vector<std::uint32_t> index;
     for (const double number : chosen(of_bodies, choice.bodies))
-        index.push_back(static_cast<std::uint32_t>(number + 1));
+        index.push_back(number >= 0 && number < static_cast<double>(outlines.size())
+                            ? static_cast<std::uint32_t>(number + 1)
+                            : 0);
     return {{"outlines", outlines}, {"index", base64_of<std::uint32_t>(index)}};
 }
 
@@ -197,13 +200,21 @@ Json description(const H5Reader& trajectory, const RunFiles& files, const FrameC
               {"colour", colours(trajectory, choice)},
               {"names", names(files, choice)}};
     if (choice.bodies.size() < trajectory.body_count()) json["body"] = choice.bodies;
-    const Json settings = Json::parse(trajectory.text("settings"), nullptr, false);
+    const Json settings = trajectory.json("settings");
     for (const char* key : {"walls", "gravity", "drag", "trail"})
         json[key] = settings.is_object() && settings.contains(key) ? settings[key] : Json();
     json["edges"] = edges(settings, choice);
     json["shapes"] = shapes(trajectory, settings, choice);
-    json["joints"] = joints(settings, Json::parse(trajectory.text("breaks"), nullptr, false), choice);
+    json["joints"] = joints(settings, trajectory.json("breaks"), choice);
     return json;
+}
+
+Json described(const H5Reader& trajectory, const RunFiles& files, const FrameChoice& choice) {
+    try {
+        return description(trajectory, files, choice);
+    } catch (const Json::exception& error) {
+        throw ResultError(files.trajectory_h5.string() + ": is not as a run writes it: " + error.what());
+    }
 }
 
 void write_html(std::ostream& out) {
@@ -227,7 +238,7 @@ void add_player(const RunFiles& files, Page& page) {
         write_html(out);
         FrameWriter frames(*trajectory, choice);
         frames.write(out);
-        Json json = description(*trajectory, files, choice);
+        Json json = described(*trajectory, files, choice);
         json.update(frames.notes());
         out << "<script type=\"application/json\" id=\"player-data\">" << as_script_data(json)
             << "</script>\n";

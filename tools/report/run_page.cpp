@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "report/file_checksum.hpp"
 #include "report/kinds.hpp"
 #include "report/ledger_charts.hpp"
 #include "report/player.hpp"
@@ -73,6 +74,9 @@ void add_charts(const RunFiles& files, Page& page) {
     page.heading("What happened over time");
     if (!files.ledger_csv.empty()) {
         const NumberTable ledger = read_numbers(files.ledger_csv, kMostLedgerRows);
+        if (ledger.at("time").size() != ledger.row_count())
+            throw ResultError(files.ledger_csv.string() +
+                              ": has no column \"time\"; expected a ledger that a run wrote");
         if (ledger.row_count() < ledger.rows_in_file)
             page.paragraph("The charts show " + std::to_string(ledger.row_count()) + " of " +
                            std::to_string(ledger.rows_in_file) +
@@ -117,6 +121,7 @@ void draw_run(const Result& result, Page& page) {
     files.final_csv = path_of("final.csv");
     files.ledger_csv = path_of("ledger.csv");
     files.trajectory_h5 = path_of("trajectory.h5");
+    if (!files.trajectory_h5.empty()) check_file(folder, "trajectory.h5", result.json);
     draw_run(files, page);
 }
 

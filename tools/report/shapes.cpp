@@ -1,6 +1,7 @@
 #include "report/shapes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -43,17 +44,18 @@ double inradius_of(const DrawnShape& shape) {
 }
 
 void add_polygon(const Json& outline, DrawnShape& shape) {
-    const std::vector<std::vector<double>> vertices = outline["vertices"];
+    std::vector<std::array<double, 2>> vertices;
+    for (const Json& vertex : outline.at("vertices")) vertices.push_back({vertex.at(0), vertex.at(1)});
+    const double radius = outline.at("radius");
     const std::size_t count = vertices.size();
     shape.starts.push_back(shape.x.size());
-    if (count == 1) return add_corner(shape, vertices[0][0], vertices[0][1], outline["radius"], 0, 0);
+    if (count == 1) return add_corner(shape, vertices[0][0], vertices[0][1], radius, 0, 0);
     const auto normal = [&](std::size_t from) {  // outward, of the side that begins at a vertex
         const auto &a = vertices[from % count], &b = vertices[(from + 1) % count];
         return direction_of(b[1] - a[1], a[0] - b[0]);
     };
     for (std::size_t i = 0; i < count; ++i)
-        add_corner(shape, vertices[i][0], vertices[i][1], outline["radius"], normal(i + count - 1),
-                   normal(i));
+        add_corner(shape, vertices[i][0], vertices[i][1], radius, normal(i + count - 1), normal(i));
 }
 
 DrawnShape drawn(const Json& outline) {
@@ -65,7 +67,7 @@ DrawnShape drawn(const Json& outline) {
     if (!outline.contains("pieces")) {
         add(outline);
     } else {
-        for (const Json& piece : outline["pieces"]) add(piece);
+        for (const Json& piece : outline.at("pieces")) add(piece);
     }
     return shape;
 }
@@ -75,7 +77,7 @@ DrawnShape drawn(const Json& outline) {
 std::vector<DrawnShape> drawn_shapes(const Json& settings) {
     std::vector<DrawnShape> shapes;
     if (!settings.is_object() || !settings.contains("shapes")) return shapes;
-    for (const Json& outline : settings["shapes"]) shapes.push_back(drawn(outline));
+    for (const Json& outline : settings.at("shapes")) shapes.push_back(drawn(outline));
     return shapes;
 }
 

@@ -177,6 +177,7 @@ Json summary_of(const RunOutcome& run) {
     json["state_hash"] = hash_text(run.state_hash);
     json["plan"] = plan_json(run.plan);
     json["files"] = run.files;
+    if (run.trajectory) json["checksums"] = {{"trajectory.h5", report::json_of(*run.trajectory)}};
     json["messages"] = run.messages;
     return json;
 }
