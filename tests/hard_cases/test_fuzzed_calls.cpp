@@ -130,7 +130,7 @@ TEST_SUITE("hard cases/fuzzed calls") {
                                        .velocity = {1, 0}}));
         BasicWorld<Real> world(scene);
         world.step(kStep);
-        for (const std::size_t gone : {2, 1}) {
+        for (const std::size_t gone : {2u, 1u}) {
             world.remove(edges[gone]);
             world.set_velocity(edges[0], {50, 0});
             world.step(kStep);
