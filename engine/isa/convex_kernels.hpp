@@ -1,7 +1,7 @@
 #pragma once
 
 #include "kernels/manifold_arguments.hpp"
-#include "kernels/path_arguments.hpp"
+#include "kernels/paths/path_arguments.hpp"
 
 namespace carom {
 

@@ -2,7 +2,7 @@
 
 #include "isa/convex_kernels.hpp"
 #include "kernels/find_manifolds.hpp"
-#include "kernels/solve_paths.hpp"
+#include "kernels/paths/solve_paths.hpp"
 #include "simd/lanes.hpp"
 
 namespace carom {

@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-#include "kernels/path_arguments.hpp"
+#include "kernels/paths/path_arguments.hpp"
 
 namespace carom {
 namespace {

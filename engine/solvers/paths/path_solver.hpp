@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "constraints/partner.hpp"
-#include "kernels/path_arguments.hpp"
+#include "kernels/paths/path_arguments.hpp"
 #include "solvers/paths/manifolds.hpp"
 #include "solvers/paths/path_cut.hpp"
 #include "solvers/paths/path_rolling.hpp"
@@ -144,7 +144,7 @@ class PathSolver {
     Column<std::int32_t> heads_;
     // Rows in the records of padding and of what nothing moves.
     std::size_t first_still_row_ = 0, still_rows_ = 0;
-    Column<Real> restless_;  // m/s, kernels/path_arguments.hpp
+    Column<Real> restless_;  // m/s, kernels/paths/path_arguments.hpp
     Column<std::byte> scratch_;
 };
 

@@ -1,7 +1,7 @@
 // Contacts along paths against the laws that they must obey, and one instruction set against the other.
 #include "isa/select_isa.hpp"
 #include "kernels/manifold_arguments.hpp"
-#include "kernels/path_arguments.hpp"
+#include "kernels/paths/path_arguments.hpp"
 #include "math/random.hpp"
 #include "state/column.hpp"
 
@@ -134,7 +134,7 @@ bool have_equal_bits(const Column<Real>& p, const Column<Real>& q) {
 
 }  // namespace
 
-TEST_SUITE("kernels/solve_paths") {
+TEST_SUITE("kernels/paths/solve_paths") {
     TEST_CASE_TEMPLATE("contacts along a path obey their laws all at once", Real, float, double) {
         const auto& kernels = runnable_kernel_tables().front()->of<Real>();
         std::size_t solved = 0, unsettled = 0;

@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "kernels/path_arguments.hpp"
+#include "kernels/paths/path_arguments.hpp"
 #include "math/random.hpp"
 
 using namespace carom;

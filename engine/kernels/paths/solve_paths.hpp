@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "kernels/part_paths.hpp"
-#include "kernels/path_lanes.hpp"
+#include "kernels/paths/part_paths.hpp"
+#include "kernels/paths/path_lanes.hpp"
 
 // Contacts of convex shapes along paths, 16 paths side by side. A contact has two normal rows and one row of
 // friction; along a path it couples with the contact before it and the one behind it through the body between

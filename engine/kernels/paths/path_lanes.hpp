@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/path_arguments.hpp"
+#include "kernels/paths/path_arguments.hpp"
 #include "simd/lanes.hpp"
 
 // What one contact along a path is, a lane a path: its bodies, its levers, its masses, the law of two

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/path_lanes.hpp"
+#include "kernels/paths/path_lanes.hpp"
 
 // What a substep begins with along paths of contacts: how fast points may approach, and a share of the
 // overlaps taken away by displacements, which give no body a velocity.
