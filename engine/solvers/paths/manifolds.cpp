@@ -18,19 +18,22 @@ constexpr std::size_t kContactsPerTask = 256;
 }  // namespace
 
 template <class Real>
-void Manifolds<Real>::add_pair(const WorldState<Real>& world, std::int32_t a, std::int32_t b, bool boxes) {
+void Manifolds<Real>::list_pair(const WorldState<Real>& world, std::int32_t a, std::int32_t b) {
     const Bodies<Real>& bodies = world.bodies;
     if (a > b) std::swap(a, b);
     const auto i = static_cast<std::size_t>(a), k = static_cast<std::size_t>(b);
     if (bodies.is_disc(i) && bodies.is_disc(k)) return;
     if (bodies.shape[i] < 0 || bodies.shape[k] < 0) return;  // edges
-    if (boxes != (is_box_of_[static_cast<std::size_t>(bodies.shape[i])] &&
-                  is_box_of_[static_cast<std::size_t>(bodies.shape[k])]))
-        return;
     const bool a_moves = !bodies.is_immovable(i), b_moves = k < bodies.count && !bodies.is_immovable(k);
     if (!a_moves && !b_moves) return;
     if (world.has_filters() && !world.may_collide(i, k)) return;
     if (!a_moves) std::swap(a, b);
+    distant_.add(world, a, b);
+}
+
+template <class Real>
+void Manifolds<Real>::add_pair(const WorldState<Real>& world, std::int32_t a, std::int32_t b) {
+    const Bodies<Real>& bodies = world.bodies;
     const BodyId id_a = bodies.id[static_cast<std::size_t>(a)], id_b = bodies.id[static_cast<std::size_t>(b)];
     if (items_.empty()) return bodies_.add(a, b, {id_a, id_b, 0});
     items_.for_each(a, [&](std::int32_t item_a, std::int32_t piece_a) {
@@ -42,9 +45,18 @@ void Manifolds<Real>::add_pair(const WorldState<Real>& world, std::int32_t a, st
 }
 
 template <class Real>
+bool Manifolds<Real>::are_boxes(const Bodies<Real>& bodies, std::int32_t a, std::int32_t b) const {
+    const auto is_box = [&](std::int32_t row) {
+        return is_box_of_[static_cast<std::size_t>(bodies.shape[static_cast<std::size_t>(row)])] != 0;
+    };
+    return is_box(a) && is_box(b);
+}
+
+template <class Real>
 void Manifolds<Real>::renew(const WorldState<Real>& world, const Candidates<Real>& candidates,
                             const EdgeCandidates<Real>& edges, std::span<const SleeperPair> sleepers) {
     live_.clear(), found_within_ = {};
+    distant_.clear(), distant_.forget_shapes(), is_box_of_.clear();
     surface_finder_.renew(world, edges);
     if (!world.bodies.has_shapes) return bodies_.clear(), surfaces_.clear();
     std::swap(bodies_, old_), bodies_.clear();
@@ -54,16 +66,31 @@ void Manifolds<Real>::renew(const WorldState<Real>& world, const Candidates<Real
             ManifoldList<Real>& list = kept.is_surface ? surfaces_ : old_;
             list.add(0, 0, kept.name), list.memory.back() = kept.memory;
         }
-    list_boxes(world.shapes);
     items_.list(world);
+    for (std::size_t p = 0; p < candidates.pair_count(); ++p)
+        list_pair(world, candidates.pair_a()[p], candidates.pair_b()[p]);
+    for (const SleeperPair& pair : sleepers) list_pair(world, pair.row, pair.sleeper);
+    poses_.begin_paths(), is_renewed_ = true;
+}
+
+template <class Real>
+void Manifolds<Real>::take_near(const WorldState<Real>& world, const ContactDistance& near,
+                                const Executor& executor) {
+    const std::size_t before = bodies_.count();
+    const auto taken = distant_.take_near(world, poses_, near, executor);
+    if (is_box_of_.size() != world.shapes.size()) list_boxes(world.shapes);
     // Boxes first: blocks of them alone have a quicker kernel.
-    for (const bool boxes : {true, false}) {
-        for (std::size_t p = 0; p < candidates.pair_count(); ++p)
-            add_pair(world, candidates.pair_a()[p], candidates.pair_b()[p], boxes);
-        for (const SleeperPair& pair : sleepers) add_pair(world, pair.row, pair.sleeper, boxes);
+    for (const bool boxes : {true, false})
+        for (const auto& pair : taken)
+            if (are_boxes(world.bodies, pair.a, pair.b) == boxes) add_pair(world, pair.a, pair.b);
+    if (!taken.empty()) {
+        bodies_.fit();
+        find_box_blocks(world.bodies, before / kRowPadding);
+        first_new_block_ = std::min(first_new_block_, before / kRowPadding);
     }
+    if (!is_renewed_) return;
+    is_renewed_ = false;
     recall(bodies_, old_);
-    find_box_blocks(world.bodies, 0);
     if (world.bodies.asleep != asleep_then_) keep_of_sleepers(world);
     asleep_then_ = world.bodies.asleep;
 }
@@ -112,9 +139,7 @@ void Manifolds<Real>::find_box_blocks(const Bodies<Real>& bodies, std::size_t fi
         bool all = true;
         const std::size_t last = std::min(bodies_.count(), (block + 1) * kRowPadding);
         for (std::size_t i = block * kRowPadding; i < last; ++i)
-            for (const std::int32_t row : {bodies_.a[i], bodies_.b[i]})
-                all =
-                    all && is_box_of_[static_cast<std::size_t>(bodies.shape[static_cast<std::size_t>(row)])];
+            all = all && are_boxes(bodies, bodies_.a[i], bodies_.b[i]);
         blocks_are_boxes_[block] = all;
     }
 }
@@ -124,15 +149,7 @@ void Manifolds<Real>::add(const WorldState<Real>& world, const Candidates<Real>&
                           const EdgeCandidates<Real>& edges) {
     if (!world.bodies.has_shapes) return;
     surface_finder_.add(world, edges);
-    if (candidates.new_pairs().empty()) return;
-    const std::size_t before = bodies_.count();
-    list_boxes(world.shapes);
-    for (const bool boxes : {true, false})
-        for (const auto& pair : candidates.new_pairs()) add_pair(world, pair.a, pair.b, boxes);
-    if (bodies_.count() == before) return;
-    bodies_.fit();
-    find_box_blocks(world.bodies, before / kRowPadding);
-    first_new_block_ = std::min(first_new_block_, before / kRowPadding);
+    for (const auto& pair : candidates.new_pairs()) list_pair(world, pair.a, pair.b);
 }
 
 /// Files the contacts that carry something by their body a.
@@ -238,6 +255,7 @@ bool Manifolds<Real>::find(const WorldState<Real>& world, const EdgeCandidates<R
     if (finds_all) first_new_block_ = 0;
     found_within_ = within;
     poses_.look(world, terms.dt, near, finds_all, *loops.executor);
+    take_near(world, near, *loops.executor);
     items_.add_poses(poses_.pose);
     surface_finder_.find(world, edges, terms, near, surfaces_);
     recall_surfaces();
@@ -263,7 +281,7 @@ void Manifolds<Real>::find_chunk(const WorldState<Real>& world, double dt, const
             end = std::min(last, end + kRowPadding);
         }
         if (end > begin) {
-            describe_pairs(world, dt, near, begin, end);
+            describe_pairs(world, near, begin, end);
             find_pairs(world, kernels, begin, end);
             find_meetings(world, dt, begin, end);
         }
@@ -273,24 +291,15 @@ void Manifolds<Real>::find_chunk(const WorldState<Real>& world, double dt, const
 
 /// Coefficients, and how near is near enough: what both fly in the step, wherever to, and some more.
 template <class Real>
-void Manifolds<Real>::describe_pairs(const WorldState<Real>& world, double dt, const ContactDistance& near,
+void Manifolds<Real>::describe_pairs(const WorldState<Real>& world, const ContactDistance& near,
                                      std::size_t first, std::size_t last) {
     const Bodies<Real>& bodies = world.bodies;
-    const auto way_in_step = [&](std::size_t row) {
-        if (bodies.is_immovable(row) && (bodies.flags_of(row) & kKinematic) == 0) return Real(0);
-        const Real turns = bodies.has_rotation ? std::fabs(bodies.angular_velocity[row]) : Real(0);
-        return static_cast<Real>(dt) * (std::fabs(bodies.velocity_x[row]) +
-                                        std::fabs(bodies.velocity_y[row]) + turns * bodies.radius[row]);
-    };
     const bool friction_varies = !bodies.friction.is_uniform();
-    const Property<Real>& inradius = bodies.inradius();
     for (std::size_t i = first; i < last; ++i) {
         const auto a = static_cast<std::size_t>(bodies_.a[i]), b = static_cast<std::size_t>(bodies_.b[i]);
-        const bool b_moves = b < bodies.count && !bodies.is_immovable(b);
-        // What nothing moves may be huge: how thick it is says nothing of the contact.
-        bodies_.thickness[i] = b_moves ? std::min(inradius[a], inradius[b]) : inradius[a];
+        bodies_.thickness[i] = pair_thickness(bodies, a, b);
         bodies_.margin[i] = static_cast<Real>(near(static_cast<double>(bodies_.thickness[i]))) +
-                            way_in_step(a) + way_in_step(b);
+                            poses_.way(a) + poses_.way(b);
         bodies_.restitution[i] =
             static_cast<Real>(pair_restitution(bodies.restitution[a], bodies.restitution[b]));
         bodies_.friction[i] = friction_varies
@@ -399,9 +408,9 @@ template <class Real>
 std::size_t Manifolds<Real>::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
     return bodies_.bytes() + surfaces_.bytes() + old_.bytes() + old_surfaces_.bytes() +
-           surface_finder_.bytes() + items_.bytes() + of(asleep_) + of(is_recalled_) + of(loaded_) +
-           of(is_box_of_) + of(blocks_are_boxes_) + of(first_of_slot_) + of(next_of_slot_) + poses_.bytes() +
-           of(block_is_found_) + of(live_) + of(was_live_);
+           surface_finder_.bytes() + items_.bytes() + distant_.bytes() + of(asleep_) + of(is_recalled_) +
+           of(loaded_) + of(is_box_of_) + of(blocks_are_boxes_) + of(first_of_slot_) + of(next_of_slot_) +
+           poses_.bytes() + of(block_is_found_) + of(live_) + of(was_live_);
 }
 
 template class Manifolds<float>;

@@ -8,6 +8,7 @@
 #include "broadphase/edge_candidates.hpp"
 #include "sleeping/sleepers.hpp"
 #include "solvers/paths/contact_distance.hpp"
+#include "solvers/paths/distant_pairs.hpp"
 #include "solvers/paths/manifold_list.hpp"
 #include "solvers/paths/piece_items.hpp"
 #include "solvers/paths/pose_watch.hpp"
@@ -21,9 +22,10 @@ namespace carom {
 /// impulses that they keep from step to step. A contact is known by the handles of its bodies, so that rows
 /// may change.
 ///
-/// Contacts of bodies that have hardly moved since are carried on (pose_watch.hpp), in blocks of kRowPadding.
+/// Pairs that are too far apart to touch wait aside (distant_pairs.hpp). Contacts of bodies that have hardly
+/// moved since are carried on (pose_watch.hpp), in blocks of kRowPadding.
 ///
-/// Cost: about 30 ns a pair when candidate pairs are found anew; 10 ns a pair that is found, and step.
+/// Cost: about 30 ns a near pair when candidate pairs are found anew; 10 ns a pair that is found, and step.
 template <class Real>
 class Manifolds {
   public:
@@ -31,7 +33,10 @@ class Manifolds {
     void renew(const WorldState<Real>& world, const Candidates<Real>& candidates,
                const EdgeCandidates<Real>& edges, std::span<const SleeperPair> sleepers);
     /// Forgets all contacts.
-    void clear() { bodies_.clear(), surfaces_.clear(), live_.clear(), surface_finder_.clear(); }
+    void clear() {
+        distant_.clear(), bodies_.clear(), surfaces_.clear(), live_.clear(), surface_finder_.clear();
+        is_renewed_ = false;
+    }
     /// Adds the pairs that have come with new margins.
     void add(const WorldState<Real>& world, const Candidates<Real>& candidates,
              const EdgeCandidates<Real>& edges);
@@ -76,18 +81,23 @@ class Manifolds {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.items_, self.bodies_, self.surfaces_, self.surface_finder_, self.asleep_,
+        archive(self.items_, self.distant_, self.bodies_, self.surfaces_, self.surface_finder_, self.asleep_,
                 self.asleep_then_, self.live_, self.blocks_are_boxes_, self.poses_, self.found_within_,
                 self.first_new_block_);
+        if constexpr (!std::is_const_v<Self>) self.is_box_of_.clear(), self.is_renewed_ = false;
     }
 
   private:
     bool is_idle(const WorldState<Real>& world) const {
-        return bodies_.count() == 0 && surface_finder_.is_idle(world);
+        return bodies_.count() == 0 && distant_.empty() && !is_renewed_ && surface_finder_.is_idle(world);
     }
     void keep_of_sleepers(const WorldState<Real>& world);
-    /// Adds a pair of which not both are discs, if both are boxes or not both, as `boxes` says.
-    void add_pair(const WorldState<Real>& world, std::int32_t a, std::int32_t b, bool boxes);
+    /// Notes a candidate pair if it can touch and not both are discs.
+    void list_pair(const WorldState<Real>& world, std::int32_t a, std::int32_t b);
+    /// Adds the pairs that have come near; those of before have what they had.
+    void take_near(const WorldState<Real>& world, const ContactDistance& near, const Executor& executor);
+    void add_pair(const WorldState<Real>& world, std::int32_t a, std::int32_t b);
+    bool are_boxes(const Bodies<Real>& bodies, std::int32_t a, std::int32_t b) const;
     void list_boxes(const ShapeStore<Real>& shapes);
     void find_box_blocks(const Bodies<Real>& bodies, std::size_t first);
     void file_by_slot(const ManifoldList<Real>& old);
@@ -98,8 +108,8 @@ class Manifolds {
                     const ConvexKernels<Real>& kernels, std::size_t first, std::size_t last);
     bool must_find(std::size_t block) const;
     void note_thicknesses(std::size_t first);
-    void describe_pairs(const WorldState<Real>& world, double dt, const ContactDistance& near,
-                        std::size_t first, std::size_t last);
+    void describe_pairs(const WorldState<Real>& world, const ContactDistance& near, std::size_t first,
+                        std::size_t last);
     void describe_pieces(const WorldState<Real>& world, const ContactDistance& near, std::size_t i);
     std::int32_t shape_of(const WorldState<Real>& world, std::int32_t row, std::int32_t item) const {
         const StoredPiece* piece = items_.piece_of(world, row, item);
@@ -111,6 +121,8 @@ class Manifolds {
     bool list_live();
 
     PieceItems<Real> items_;
+    DistantPairs<Real> distant_;
+    bool is_renewed_ = false;      // in this step
     ManifoldList<Real> bodies_;    // contacts of two bodies
     ManifoldList<Real> surfaces_;  // of a body and a wall or an edge, of the last step
     ManifoldList<Real> old_, old_surfaces_;

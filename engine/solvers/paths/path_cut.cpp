@@ -62,7 +62,7 @@ void PathCut::join_at(std::span<const ContactLink> contacts, std::int32_t row) {
         float x, y;  // no unit: where the contact pushes the body, seen from its centre of mass
         bool is_loaded;
     };
-    std::array<Arm, kMostCompared> arms{};
+    std::array<Arm, kMostCompared> arms;
     std::size_t count = 0;
     for (const bool loaded : {true, false})
         for (std::uint32_t at = first_at_[r]; at < first_at_[r + 1] && count < kMostCompared; ++at) {
@@ -78,21 +78,25 @@ void PathCut::join_at(std::span<const ContactLink> contacts, std::int32_t row) {
         float score;
         std::uint8_t i, j;
     };
-    std::array<Two, kMostCompared*(kMostCompared - 1) / 2> twos{};
+    std::array<Two, kMostCompared*(kMostCompared - 1) / 2> twos;
     std::size_t two_count = 0;
     for (std::uint8_t i = 0; i < count; ++i)
         for (auto j = static_cast<std::uint8_t>(i + 1); j < count; ++j)
             twos[two_count++] = {(arms[i].is_loaded && arms[j].is_loaded ? kLoadedFirst : 0) -
                                      (arms[i].x * arms[j].x + arms[i].y * arms[j].y),
                                  i, j};
-    std::array<bool, kMostCompared> is_taken{};
-    for (std::size_t left = count; left > 1; left -= 2) {
-        const Two* best = nullptr;
-        for (std::size_t t = 0; t < two_count; ++t)
-            if (!is_taken[twos[t].i] && !is_taken[twos[t].j] && (!best || twos[t].score > best->score))
-                best = &twos[t];
-        is_taken[best->i] = is_taken[best->j] = true;
-        join(arms[best->i].contact, arms[best->j].contact);
+    while (two_count > 0) {
+        Two best = twos[0];
+        for (std::size_t t = 1; t < two_count; ++t) best = twos[t].score > best.score ? twos[t] : best;
+        join(arms[best.i].contact, arms[best.j].contact);
+        const std::size_t before = two_count;
+        two_count = 0;
+        for (std::size_t t = 0; t < before; ++t) {
+            const Two two = twos[t];
+            twos[two_count] = two;
+            const bool is_left = two.i != best.i && two.i != best.j && two.j != best.i && two.j != best.j;
+            two_count += is_left ? 1 : 0;
+        }
     }
 }
 

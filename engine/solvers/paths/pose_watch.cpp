@@ -32,7 +32,8 @@ void PoseWatch<Real>::look(const WorldState<Real>& world, double dt, const Conta
     const std::size_t rows = bodies.rows();
     pose.resize(4 * angle_.size());  // poses of pieces are none of rows
     pose.resize(4 * rows), angle_.resize(rows), base_.resize(4 * rows), has_moved_.resize(rows);
-    come_.resize(2 * rows), turned_.resize(rows), thinnest_.resize(rows);
+    come_.resize(2 * rows), turned_.resize(rows), thinnest_.resize(rows), way_.resize(rows);
+    path_.resize(rows);
     awake_ = bodies.count;
     if (forgets) std::fill(thinnest_.begin(), thinnest_.end(), Real(0));
     executor.for_each_chunk(rows, kRowsPerTask, kNanosecondsToLook,
@@ -41,6 +42,7 @@ void PoseWatch<Real>::look(const WorldState<Real>& world, double dt, const Conta
                                     look_at(world, dt, near, row);
                             });
     if (forgets) std::fill(thinnest_.begin(), thinnest_.end(), std::numeric_limits<Real>::infinity());
+    begins_paths_ = false;
 }
 
 template <class Real>
@@ -52,7 +54,11 @@ void PoseWatch<Real>::look_at(const WorldState<Real>& world, double dt, const Co
                angle = bodies.has_rotation ? bodies.angle[row] : Real(0);
     const auto wide = static_cast<double>(angle);
     come_[2 * row] = x - at[0], come_[2 * row + 1] = y - at[1];
-    turned_[row] = static_cast<Real>(wide - angle_[row]) * bodies.rim(row);
+    const auto turned = static_cast<Real>(wide - angle_[row]);
+    turned_[row] = turned * bodies.rim(row);
+    const Real moved =
+        std::fabs(come_[2 * row]) + std::fabs(come_[2 * row + 1]) + std::fabs(turned) * bodies.radius[row];
+    path_[row] = begins_paths_ ? 0 : path_[row] + static_cast<double>(moved);
     at[0] = x, at[1] = y;
     if (wide != angle_[row] || (at[2] == 0 && at[3] == 0)) {
         const Rotation by = rotation_by(wide);
@@ -64,8 +70,9 @@ void PoseWatch<Real>::look_at(const WorldState<Real>& world, double dt, const Co
     const Real thinnest = thinnest_[row], away = std::fabs(x - base[0]) + std::fabs(y - base[1]),
                turn = angle - base[2];
     const Real spin = bodies.has_rotation ? std::fabs(bodies.angular_velocity[row]) : Real(0);
-    const Real way = static_cast<Real>(dt) * (std::fabs(bodies.velocity_x[row]) +
-                                              std::fabs(bodies.velocity_y[row]) + spin * bodies.radius[row]);
+    const Real speed =
+        std::fabs(bodies.velocity_x[row]) + std::fabs(bodies.velocity_y[row]) + spin * bodies.radius[row];
+    const Real way = way_[row] = may_move ? static_cast<Real>(dt) * speed : Real(0);
     const bool is_still =
         away <= static_cast<Real>(kCarriedShare) * thinnest &&
         turn * turn * bodies.radius[row] <= static_cast<Real>(kCarriedArc) * thinnest &&
@@ -85,7 +92,7 @@ const Real* PoseWatch<Real>::come(std::size_t rows) {
 template <class Real>
 std::size_t PoseWatch<Real>::bytes() const {
     return pose.bytes() + angle_.bytes() + base_.bytes() + thinnest_.bytes() + has_moved_.bytes() +
-           come_.bytes() + turned_.bytes();
+           come_.bytes() + turned_.bytes() + way_.bytes() + path_.bytes();
 }
 
 template class PoseWatch<float>;

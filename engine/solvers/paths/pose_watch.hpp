@@ -25,6 +25,12 @@ class PoseWatch {
     /// @param forgets  whether contacts of all bodies are to be found
     void look(const WorldState<Real>& world, double dt, const ContactDistance& near, bool forgets,
               const Executor& executor);
+    /// How far the surface of each body can have come [m] is to be counted from here on.
+    void begin_paths() { begins_paths_ = true; }
+    /// m, how far the surface of a row can have come up to now, in both directions and by turning;
+    double path(std::size_t row) const { return path_[row]; }
+    /// m, and what it can come in this step alone.
+    Real way(std::size_t row) const { return way_[row]; }
     /// Whether the contacts of a row must be found again.
     bool has_moved(std::int32_t row) const { return has_moved_[static_cast<std::size_t>(row)] != 0; }
     /// Tells that a row has a contact of this thickness [m]: what it moves is measured in the thinnest.
@@ -42,7 +48,7 @@ class PoseWatch {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.pose, self.angle_, self.base_, self.thinnest_);
+        archive(self.pose, self.angle_, self.base_, self.thinnest_, self.path_);
     }
 
   private:
@@ -53,7 +59,9 @@ class PoseWatch {
     Column<Real> base_;      // [rows][4]: x, y [m], angle [rad] at which contacts were found; unused
     Column<Real> thinnest_;  // m, by row
     Column<std::uint8_t> has_moved_;
-    Column<Real> come_, turned_;
+    Column<Real> come_, turned_, way_;
+    Column<double> path_;  // m, by row: small steps must not get lost in a long way
+    bool begins_paths_ = false;
 };
 
 extern template class PoseWatch<float>;

@@ -1,0 +1,121 @@
+#include "solvers/paths/distant_pairs.hpp"
+
+#include "support/convex_oracle.hpp"
+#include "support/convex_pairs.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <utility>
+
+using namespace carom;
+using namespace carom::test;
+
+namespace {
+
+constexpr double kStep = 1.0 / 60;  // s
+constexpr ContactDistance kNear{.share = 0.1, .fall = 3e-3};
+
+/// Planks, boxes, capsules, discs, triangles and one compound, some of them static, crowded in a square.
+template <class Real>
+WorldState<Real> crowd(Draw& draw, std::size_t count) {
+    WorldState<Real> world;
+    world.bodies.has_rotation = world.bodies.has_shapes = true;
+    const auto shape = [&](std::size_t i) -> Shape {
+        switch (i % 6) {
+            case 0:
+                return Box{2, 0.02};
+            case 1:
+                return Box{draw(0.1, 1), draw(0.1, 1)};
+            case 2:
+                return Capsule{draw(0.2, 3), draw(0.02, 0.2)};
+            case 3:
+                return Disc{draw(0.05, 0.5)};
+            case 4:
+                return Polygon{.vertices = {{0, 0}, {draw(0.5, 2), 0}, {0, draw(0.2, 1)}}, .radius = 0.01};
+            default:
+                return Box{0.02, 2};
+        }
+    };
+    for (std::size_t i = 0; i < count; ++i)
+        world.append({.type = i % 7 == 6 ? BodyType::static_body : BodyType::dynamic_body,
+                      .shape = shape(i),
+                      .position = {draw(-4, 4), draw(-4, 4)},
+                      .angle = draw(-3, 3)});
+    world.append({.shape = Compound{{{Box{0.2, 1}, {1, 0}, 0}, {Disc{0.3}, {-1, 0}, 0}}}});
+    return world;
+}
+
+/// What a step does to bodies: most fly as their velocity says, some are pushed farther by others.
+template <class Real>
+void move(WorldState<Real>& world, Draw& draw) {
+    Bodies<Real>& bodies = world.bodies;
+    for (std::size_t row = 0; row < bodies.count; ++row) {
+        if (bodies.is_immovable(row)) continue;
+        const double farther = draw.below(10) == 0 ? 3 : 1;
+        const auto dt = static_cast<Real>(kStep * farther);
+        bodies.position_x[row] += dt * bodies.velocity_x[row];
+        bodies.position_y[row] += dt * bodies.velocity_y[row];
+        bodies.angle[row] += dt * bodies.angular_velocity[row];
+        const auto speed = [&] { return static_cast<Real>(draw(-1, 1)); };
+        bodies.velocity_x[row] = speed(), bodies.velocity_y[row] = speed();
+        bodies.angular_velocity[row] = speed();
+    }
+}
+
+}  // namespace
+
+TEST_SUITE("paths/distant_pairs") {
+    TEST_CASE_TEMPLATE("no pair waits that can touch, and most pairs of a loose crowd wait", Real, float,
+                       double) {
+        Draw draw(5);
+        WorldState<Real> world = crowd<Real>(draw, 60);
+        const Bodies<Real>& bodies = world.bodies;
+        DistantPairs<Real> distant;
+        PoseWatch<Real> poses;
+        std::set<std::pair<std::int32_t, std::int32_t>> waiting;
+        const std::size_t compound = bodies.count - 1;
+        const auto list = [&] {
+            waiting.clear(), distant.clear(), poses.begin_paths();
+            for (std::size_t a = 0; a < bodies.count; ++a)
+                for (std::size_t b = a + 1; b < bodies.count; ++b) {
+                    const std::size_t first = bodies.is_immovable(a) ? b : a, second = a + b - first;
+                    if (bodies.is_immovable(first)) continue;
+                    const std::pair pair{static_cast<std::int32_t>(first), static_cast<std::int32_t>(second)};
+                    distant.add(world, pair.first, pair.second), waiting.insert(pair);
+                }
+        };
+        const Executor executor(1);
+        const auto speed = [&](std::size_t row) {  // of the surface, in both directions [m/s]
+            return static_cast<double>(std::fabs(bodies.velocity_x[row]) + std::fabs(bodies.velocity_y[row]) +
+                                       std::fabs(bodies.angular_velocity[row]) * bodies.radius[row]);
+        };
+        std::size_t listed = 0, left_after_ten = 0;
+        for (int step = 0; step < 120; ++step) {
+            if (step % 40 == 0) list(), listed += waiting.size();
+            poses.look(world, kStep, kNear, false, executor);
+            for (const auto& pair : distant.take_near(world, poses, kNear, executor))
+                REQUIRE(waiting.erase({pair.a, pair.b}) == 1);
+            for (const auto& [first, second] : waiting) {
+                const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
+                REQUIRE(a != compound);  // its pieces are anywhere in its circle
+                REQUIRE(b != compound);
+                const auto placed = [&](std::size_t row) {
+                    const Real pose[] = {bodies.position_x[row], bodies.position_y[row],
+                                         std::cos(bodies.angle[row]), std::sin(bodies.angle[row])};
+                    return place(world.shapes[bodies.shape[row]], pose);
+                };
+                const double reach = kNear(pair_thickness(bodies, a, b)) + kStep * (speed(a) + speed(b));
+                CAPTURE(step);
+                CAPTURE(first);
+                CAPTURE(second);
+                REQUIRE(signed_distance(placed(a), placed(b)) > reach - 1e-5);
+            }
+            if (step % 40 == 9) left_after_ten += waiting.size();
+            move(world, draw);
+        }
+        CHECK(left_after_ten > listed / 2);
+    }
+}
