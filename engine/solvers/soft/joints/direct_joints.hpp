@@ -18,6 +18,8 @@ class DirectJoints {
     std::size_t joints() const { return slots_.size(); }
     std::size_t loops() const { return system_.loop_count(); }
     bool is_small_enough() const { return system_.is_small_enough(); }
+    /// About what a solve takes: joints, as often as there are motors and limits, and once more.
+    std::size_t work() const { return joints() * (1 + system_.drive_rows()); }
     const std::vector<std::int32_t>& rows() const { return rows_; }
     const std::vector<std::size_t>& slots() const { return slots_; }
 

@@ -12,8 +12,9 @@ namespace {
 
 /// Work of a substep on a joint that is solved exactly, on one thread: for the executor.
 constexpr double kNanosecondsToSolve = 400;
-/// A crowd: so many groups or more that could be swept as well as solved exactly.
-constexpr std::size_t kFewestOfCrowd = 64;
+/// A crowd: groups that could be swept as well as solved exactly, whose exact solve is at least so much work,
+/// in DirectJoints::work: two ragdolls.
+constexpr std::size_t kWorkOfCrowd = 200;
 /// Joints of such a group at least, so that a crowd of pendulums is none; and the largest ratio of masses in
 /// it.
 constexpr std::size_t kFewestJoints = 4;
@@ -66,6 +67,7 @@ void SoftJoints<Real>::find_groups(const WorldState<Real>& world) {
     std::vector<std::size_t> to_sweep, slots, of_crowd;
     std::vector<DirectJoints<Real>> beside;
     std::vector<std::size_t> crowd;  // of direct_
+    std::size_t work = 0;
     for (std::size_t i = 0; i < members.size();) {
         slots.clear();
         const std::int32_t island = members[i].island;
@@ -73,7 +75,7 @@ void SoftJoints<Real>::find_groups(const WorldState<Real>& world) {
         DirectJoints<Real> group(world, slots);
         if (is_rattle || group.is_small_enough()) {
             if (!is_rattle && is_fit_for_crowd(world, slots)) {
-                crowd.push_back(direct_.size());
+                crowd.push_back(direct_.size()), work += group.work();
                 of_crowd.insert(of_crowd.end(), slots.begin(), slots.end());
             }
             direct_.push_back(std::move(group));
@@ -100,7 +102,7 @@ void SoftJoints<Real>::find_groups(const WorldState<Real>& world) {
                 beside.emplace_back(world, std::vector<std::size_t>{slot});
         }
     }
-    crowd_groups_ = crowd.size() >= kFewestOfCrowd ? crowd.size() : 0;
+    crowd_groups_ = work >= kWorkOfCrowd ? crowd.size() : 0;
     if (crowd_groups_ > 0) {
         for (std::size_t i = crowd.size(); i-- > 0;)
             direct_.erase(direct_.begin() + static_cast<std::ptrdiff_t>(crowd[i]));
