@@ -41,7 +41,44 @@ void carry_batch(const PathBatch<Real>& p) {
     }
 }
 
-/// Floors of a substep, and a share of the overlaps taken away by displacing and turning bodies.
+/// Takes away a share of how deep a contact overlaps beyond its slop, by displacing and turning both bodies.
+/// What is slow has a slop: docs/decisions/0037-heaps-that-lie-still.md.
+/// @param s1, s2  m, separations of the points
+/// @return whether a lane has moved
+template <class Lanes, class Real>
+bool part_bodies(const SolvePaths<Real>& k, const PathLink<Real>& link, std::size_t lane,
+                 const LinkLanes<Lanes, Real>& l, const PathBody<Lanes>& a, const PathBody<Lanes>& b,
+                 typename Lanes::Batch s1, typename Lanes::Batch s2, PathPlace<Lanes>& near,
+                 PathPlace<Lanes>& far) {
+    using F = typename Lanes::Batch;
+    const F zero(0), thickness = Lanes::load(link.thickness + lane);
+    F v1, v2, vt;
+    l.relative(b.record[0] - a.record[0], b.record[1] - a.record[1], a.record[2], b.record[2], v1, v2, vt);
+    const F speed = simd::max(simd::max(simd::abs(v1), simd::abs(v2)), simd::abs(vt)),
+            slop = simd::select(speed < F(k.slow), F(k.slop) * thickness, zero);
+    const auto deep = (s1 < -slop) | (s2 < -slop);
+    if (!simd::any(deep)) return false;
+    const LinkMass<F> mass(l, a.inverse_mass(), a.inverse_rim_mass(), b.inverse_mass(), b.inverse_rim_mass());
+    const auto wanted = [&](F s) {
+        return simd::select(s < zero, F(k.recovery) * simd::min(s + slop, zero), s);
+    };
+    F push1, push2;
+    solve_two_normals(mass.k11, mass.k12, mass.k22, wanted(s1), wanted(s2), push1, push2);
+    const F cap = F(k.push * k.h) * thickness;
+    const auto capped = [&](F push, F inverse_mass, const Real* impulse) {
+        return simd::select(deep, simd::min(push, cap / inverse_mass + F(k.h) * Lanes::load(impulse + lane)),
+                            zero);
+    };
+    push1 = capped(push1, mass.k11, link.normal1), push2 = capped(push2, mass.k22, link.normal2);
+    const F push = push1 + push2;
+    near.at[0] -= a.inverse_mass() * push * l.nx, near.at[1] -= a.inverse_mass() * push * l.ny;
+    far.at[0] += b.inverse_mass() * push * l.nx, far.at[1] += b.inverse_mass() * push * l.ny;
+    near.turn -= a.inverse_rim_mass() * (l.near1 * push1 + l.near2 * push2);
+    far.turn += b.inverse_rim_mass() * (l.far1 * push1 + l.far2 * push2);
+    return true;
+}
+
+/// Floors of a substep, and a share of the overlaps taken away.
 template <class Lanes, class Real>
 void part_paths(const PathBatch<Real>& p) {
     using F = typename Lanes::Batch;
@@ -58,26 +95,11 @@ void part_paths(const PathBatch<Real>& p) {
         s1 += Lanes::load(link.separation1 + p.lane), s2 += Lanes::load(link.separation2 + p.lane);
         Lanes::store(link.floor1 + p.lane, simd::min(-s1 * F(k.inverse_h), zero));
         Lanes::store(link.floor2 + p.lane, simd::min(-s2 * F(k.inverse_h), zero));
-        const auto deep = (s1 < zero) | (s2 < zero);
-        const bool moves = simd::any(deep);
+        bool moves = simd::any((s1 < zero) | (s2 < zero));
         if (moves) {
             const PathBody<Lanes> a{Lanes::load_rows4(k.velocity, p.near_rows(i))},
                 b{Lanes::load_rows4(k.velocity, p.far_rows(i))};
-            const LinkMass<F> mass(l, a.inverse_mass(), a.inverse_rim_mass(), b.inverse_mass(),
-                                   b.inverse_rim_mass());
-            const auto wanted = [&](F s) { return simd::select(s < zero, F(k.recovery) * s, s); };
-            F push1, push2;
-            solve_two_normals(mass.k11, mass.k12, mass.k22, wanted(s1), wanted(s2), push1, push2);
-            const F cap = F(k.push * k.h) * Lanes::load(link.thickness + p.lane);
-            push1 = simd::select(
-                deep, simd::min(push1, cap / mass.k11 + F(k.h) * Lanes::load(link.normal1 + p.lane)), zero);
-            push2 = simd::select(
-                deep, simd::min(push2, cap / mass.k22 + F(k.h) * Lanes::load(link.normal2 + p.lane)), zero);
-            const F push = push1 + push2;
-            near.at[0] -= a.inverse_mass() * push * l.nx, near.at[1] -= a.inverse_mass() * push * l.ny;
-            far.at[0] += b.inverse_mass() * push * l.nx, far.at[1] += b.inverse_mass() * push * l.ny;
-            near.turn -= a.inverse_rim_mass() * (l.near1 * push1 + l.near2 * push2);
-            far.turn += b.inverse_rim_mass() * (l.far1 * push1 + l.far2 * push2);
+            moves = part_bodies<Lanes>(k, link, p.lane, l, a, b, s1, s2, near, far);
         }
         if (moves || has_moved) near.store(k, p.near_rows(i));
         near = far, has_moved = moves;

@@ -53,6 +53,8 @@ struct SolvePaths {
     Real inverse_h;                 // 1/s
     Real recovery;                  // share of an overlap that a substep takes away, by displacement
     Real push;                      // 1/s: largest displacement of that kind in thicknesses a second
+    Real slop;                      // share of the thickness by which a contact that is slow may overlap
+    Real slow;                      // m/s: contacts whose points are slower than this are slow
     Real velocity_tolerance;        // m/s, by which a contact may miss its law
     Real* restless;                 // [bundles][kPathLanes], m/s: the largest relative speed that each path
                                     // had when it was solved last, where bodies thinner than

@@ -11,7 +11,11 @@ namespace {
 
 /// Share of an overlap that a substep takes away. Pushes do work on the loads that they lift: at 0.4 heaps of
 /// boxes shake for ever.
-constexpr double kRecovery = 0.05;
+constexpr double kRecovery = 0.1;
+/// Overlaps of contacts that hardly move are left, up to this share of the thickness: what one push parts
+/// another one closes, so a heap that lies still would creep for ever. Slow is less than this share of what
+/// gravity adds to a speed in a substep. docs/decisions/0037-heaps-that-lie-still.md.
+constexpr double kSlop = 0.015, kSlowShare = 0.1;
 /// Largest displacement of that kind, in thicknesses a second.
 constexpr double kPushThicknesses = 6;
 /// Contacts in a path: what is longer is cut. While many paths do not settle they are kept short: a long one
@@ -289,6 +293,7 @@ SolvePaths<Real> PathSolver<Real>::arguments(const SubstepTerms& terms, BodyReco
     k.turn = records.turn();
     k.h = static_cast<Real>(terms.substep_dt), k.inverse_h = static_cast<Real>(1 / terms.substep_dt);
     k.recovery = static_cast<Real>(kRecovery), k.push = static_cast<Real>(kPushThicknesses);
+    k.slop = static_cast<Real>(kSlop), k.slow = static_cast<Real>(kSlowShare * terms.fall_speed());
     k.velocity_tolerance = static_cast<Real>(kTolerance * terms.fall_speed());
     k.restless = restless_.data(), k.is_slender = cut_.is_slender().data(), k.resting_speed = 0;
     k.resting_thickness =
