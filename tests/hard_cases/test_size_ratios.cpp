@@ -264,7 +264,9 @@ TEST_SUITE("hard cases/size ratios") {
     TEST_CASE_TEMPLATE("B6: a few discs of a hundredth of the size come to rest in a pile of large ones",
                        Real, float, double) {
         constexpr int kLarge = 200, kSmall = 12;
+        const int steps = scaled(900, 500), rest = scaled(600, 400);
         for (const int substeps : {4, 8}) {
+            if (substeps == 8 && is_effort_reduced()) continue;
             double deepest = 0, at_rest = 0;
             for (int seed = 1; seed <= scaled(2, 1); ++seed) {
                 Scene scene;
@@ -283,11 +285,11 @@ TEST_SUITE("hard cases/size ratios") {
                                .position = {1.2 + 1.22 * i + 0.5 * jitter(), 20 + jitter()},
                                .material = rough});
                 BasicWorld<Real> world(scene, {.threads = 1});
-                for (int i = 0; i < 900; ++i) {
+                for (int i = 0; i < steps; ++i) {
                     CHECK(substeps_of_step(world) == substeps);
                     const double overlap = world.overlaps().max;
                     deepest = std::fmax(deepest, overlap);
-                    if (i >= 600) at_rest = std::fmax(at_rest, overlap);
+                    if (i >= rest) at_rest = std::fmax(at_rest, overlap);
                 }
                 for (std::uint32_t b = kLarge; b < kLarge + kSmall; ++b)
                     CHECK(world.state({b, 0}).position.y > 0);

@@ -90,7 +90,8 @@ TEST_SUITE("hard cases/uneven piles") {
     TEST_CASE_TEMPLATE("B41: heavy and light discs mixed at random make a pile", Real, float, double) {
         const int columns = scaled(20, 10);
         for (const double ratio : {1e3, 1e4})
-            CHECK(overlap_of_settled<Real>({.columns = columns, .ratio = ratio}, kSteps) < 0.1);
+            if (ratio > 1e3 || !is_effort_reduced())
+                CHECK(overlap_of_settled<Real>({.columns = columns, .ratio = ratio}, kSteps) < 0.1);
         for (std::uint64_t seed = 1; seed <= scaled<std::uint64_t>(3, 1); ++seed)
             CHECK(overlap_of_settled<Real>({.columns = columns, .seed = seed}, kSteps) < 0.1);
         CHECK(overlap_of_settled<Real>({.columns = columns, .masses = Masses::log_uniform}, kSteps) < 0.1);
@@ -133,6 +134,7 @@ TEST_SUITE("hard cases/uneven piles") {
         constexpr double kDistance = 2.5;  // m, of the two at the start
         for (const double speed : {0.25, 2.5})
             for (const double angle : {0.2, 0.785, 1.2}) {
+                if (is_effort_reduced() && speed < 1 && angle != 0.785) continue;  // 600 steps each
                 CAPTURE(speed);
                 CAPTURE(angle);
                 Scene scene = pile_scene({.columns = 6, .ratio = 1e4});
