@@ -109,8 +109,8 @@ TEST_SUITE("paths/distant_pairs") {
                 };
                 const double reach = kNear(pair_thickness(bodies, a, b)) + kStep * (speed(a) + speed(b));
                 CAPTURE(step);
-                CAPTURE(first);
-                CAPTURE(second);
+                CAPTURE(a);
+                CAPTURE(b);
                 REQUIRE(signed_distance(placed(a), placed(b)) > reach - 1e-5);
             }
             if (step % 40 == 9) left_after_ten += waiting.size();
