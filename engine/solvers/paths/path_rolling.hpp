@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "constraints/partner.hpp"
-#include "solvers/paths/manifolds.hpp"
+#include "solvers/manifolds/manifolds.hpp"
 #include "solvers/substeps/body_records.hpp"
 #include "state/books.hpp"
 #include "state/world_state.hpp"

@@ -6,7 +6,7 @@
 
 #include "constraints/partner.hpp"
 #include "kernels/paths/path_arguments.hpp"
-#include "solvers/paths/manifolds.hpp"
+#include "solvers/manifolds/manifolds.hpp"
 #include "solvers/paths/path_cut.hpp"
 #include "solvers/paths/path_rolling.hpp"
 #include "solvers/substeps/body_records.hpp"

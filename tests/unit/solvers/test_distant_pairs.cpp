@@ -1,4 +1,4 @@
-#include "solvers/paths/distant_pairs.hpp"
+#include "solvers/manifolds/distant_pairs.hpp"
 
 #include "support/convex_oracle.hpp"
 #include "support/convex_pairs.hpp"
@@ -67,7 +67,7 @@ void move(WorldState<Real>& world, Draw& draw) {
 
 }  // namespace
 
-TEST_SUITE("paths/distant_pairs") {
+TEST_SUITE("solvers/manifolds/distant_pairs") {
     TEST_CASE_TEMPLATE("no pair waits that can touch, and most pairs of a loose crowd wait", Real, float,
                        double) {
         Draw draw(5);

@@ -1,4 +1,4 @@
-#include "solvers/paths/meeting.hpp"
+#include "solvers/manifolds/meeting.hpp"
 
 #include "kernels/manifold_arguments.hpp"
 #include "math/vec2_math.hpp"

@@ -1,4 +1,4 @@
-#include "solvers/paths/manifold_list.hpp"
+#include "solvers/manifolds/manifold_list.hpp"
 
 #include <algorithm>
 

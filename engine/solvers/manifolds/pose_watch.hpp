@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "parallel/executor.hpp"
-#include "solvers/paths/contact_distance.hpp"
+#include "solvers/manifolds/contact_distance.hpp"
 #include "state/column.hpp"
 #include "state/world_state.hpp"
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "parallel/executor.hpp"
-#include "solvers/paths/contact_distance.hpp"
-#include "solvers/paths/pose_watch.hpp"
+#include "solvers/manifolds/contact_distance.hpp"
+#include "solvers/manifolds/pose_watch.hpp"
 #include "state/chunked_list.hpp"
 #include "state/world_state.hpp"
 

@@ -7,8 +7,8 @@
 #include "broadphase/edge_candidates.hpp"
 #include "narrowphase/convex_edge.hpp"
 #include "narrowphase/convex_impact_time.hpp"
-#include "solvers/paths/contact_distance.hpp"
-#include "solvers/paths/manifold_list.hpp"
+#include "solvers/manifolds/contact_distance.hpp"
+#include "solvers/manifolds/manifold_list.hpp"
 #include "solvers/substeps/step_terms.hpp"
 #include "state/world_state.hpp"
 

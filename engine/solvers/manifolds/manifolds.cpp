@@ -1,4 +1,4 @@
-#include "solvers/paths/manifolds.hpp"
+#include "solvers/manifolds/manifolds.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include "effects/friction.hpp"
 #include "effects/restitution.hpp"
 #include "narrowphase/box_box.hpp"
-#include "solvers/paths/meeting.hpp"
+#include "solvers/manifolds/meeting.hpp"
 
 namespace carom {
 namespace {

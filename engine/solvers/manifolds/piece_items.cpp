@@ -1,4 +1,4 @@
-#include "solvers/paths/piece_items.hpp"
+#include "solvers/manifolds/piece_items.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "solvers/paths/pose_watch.hpp"
+#include "solvers/manifolds/pose_watch.hpp"
 
 #include <algorithm>
 #include <cmath>

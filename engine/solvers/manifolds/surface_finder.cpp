@@ -1,4 +1,4 @@
-#include "solvers/paths/surface_finder.hpp"
+#include "solvers/manifolds/surface_finder.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "kernels/manifold_arguments.hpp"
 #include "math/rotation.hpp"
 #include "shapes/walls.hpp"
-#include "solvers/paths/meeting.hpp"
+#include "solvers/manifolds/meeting.hpp"
 
 namespace carom {
 namespace {
