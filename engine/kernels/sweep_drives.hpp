@@ -61,17 +61,12 @@ void sweep_springs(const SweepJoints<Real>& arguments, std::size_t first, std::s
     const SweepJoints<Real> k = arguments;  // a copy: no store can change it
     const F one(1), zero(0), h(k.h), half_h(k.half_h);
     for (std::size_t c = first; c < last; c += Lanes::size) {
-        JointSide<Lanes, true> a{Lanes::load_rows4(k.velocity, k.joints.a + c)},
-            b{Lanes::load_rows4(k.velocity, k.joints.b + c)};
+        JointSide<Lanes, true> a, b;
+        load_velocities<Lanes>(k, c, a, b);
         load_arms<Lanes, true>(k, c, a, b);
         DriveRows<Lanes, Real> rows(k.joints, c);
         const F l = rows.sum();
         F nx = Lanes::load(k.joints.normal_x + c), ny = Lanes::load(k.joints.normal_y + c);
-        const auto inverse_along = [&](F x, F y) {
-            const F ca = a.arm.x * y - a.arm.y * x, cb = b.arm.x * y - b.arm.y * x;
-            return (a.inverse_mass() + b.inverse_mass()) +
-                   (a.inverse_inertia() * ca * ca + b.inverse_inertia() * cb * cb);
-        };
         F per_length, length, inverse;
         if constexpr (kFirst) {
             simd::forget_loads();
@@ -79,12 +74,9 @@ void sweep_springs(const SweepJoints<Real>& arguments, std::size_t first, std::s
             turn_arms<Lanes>(k, c, a, b);
             auto moved_a = Lanes::load_rows2(k.displacement, k.joints.a + c);
             auto moved_b = Lanes::load_rows2(k.displacement, k.joints.b + c);
-            const Pair2<F> d = between<Lanes, true>(k, c, moved_a, moved_b, a, b);
-            length = simd::sqrt(d.x * d.x + d.y * d.y);
-            const auto has_length = length > zero;
-            per_length = simd::select(has_length, one / length, zero);
-            nx = simd::select(has_length, d.x * per_length, one), ny = d.y * per_length;
-            inverse = inverse_along(nx, ny);
+            const auto now = direction_of<Lanes>(between<Lanes, true>(k, c, moved_a, moved_b, a, b));
+            nx = now.x, ny = now.y, length = now.length, per_length = now.per_length;
+            inverse = inverse_mass_along<Lanes, true>(a, b, nx, ny);
             const F off = clamp_to(DriveRows<Lanes, Real>::beyond(k, c, length), F(k.most) * length);
             const F by = -F(k.recovery) * off, p = simd::select(inverse > zero, by / inverse, zero);
             displace<Lanes, true>(k, c, moved_a, moved_b, a, b, {p * nx, p * ny});
@@ -96,7 +88,7 @@ void sweep_springs(const SweepJoints<Real>& arguments, std::size_t first, std::s
             a.push(l * nx, l * ny, F(-1)), b.push(l * nx, l * ny, one);
         } else {
             per_length = Lanes::load(k.joints.per_length + c), length = Lanes::load(k.joints.value + c);
-            inverse = inverse_along(nx, ny);
+            inverse = inverse_mass_along<Lanes, true>(a, b, nx, ny);
         }
         const F strain = F(4) * h * simd::abs(l) * inverse * per_length;
         const F share = one / (one + strain * strain);
@@ -106,8 +98,7 @@ void sweep_springs(const SweepJoints<Real>& arguments, std::size_t first, std::s
         const F added = rows.solve(k, c, length - Lanes::load(k.joints.length + c), length, along, inverse);
         rows.store(k.joints, c);
         a.push(added * nx, added * ny, F(-1)), b.push(added * nx, added * ny, one);
-        Lanes::store_rows4(k.velocity, k.joints.a + c, a.record);
-        Lanes::store_rows4(k.velocity, k.joints.b + c, b.record);
+        store_velocities<Lanes>(k, c, a, b);
     }
 }
 
@@ -119,21 +110,16 @@ void give_springs(const SweepJoints<Real>& arguments, std::size_t first, std::si
     const SweepJoints<Real> k = arguments;  // a copy: no store can change it
     const F one(1), zero(0);
     for (std::size_t c = first; c < last; c += Lanes::size) {
-        JointSide<Lanes, true> a{Lanes::load_rows4(k.velocity, k.joints.a + c)},
-            b{Lanes::load_rows4(k.velocity, k.joints.b + c)};
+        JointSide<Lanes, true> a, b;
+        load_velocities<Lanes>(k, c, a, b);
         load_arms<Lanes, true>(k, c, a, b);
         turn_arms<Lanes>(k, c, a, b);
         const typename Lanes::Batch2 still{{zero, zero}};
-        const Pair2<F> d = between<Lanes, true>(k, c, still, still, a, b);
-        const F length = simd::sqrt(d.x * d.x + d.y * d.y);
-        const auto has_length = length > zero;
-        const F per_length = simd::select(has_length, one / length, zero);
-        const F nx = simd::select(has_length, d.x * per_length, one), ny = d.y * per_length;
-        Lanes::store(k.joints.normal_x + c, nx), Lanes::store(k.joints.normal_y + c, ny);
+        const auto n = direction_of<Lanes>(between<Lanes, true>(k, c, still, still, a, b));
+        Lanes::store(k.joints.normal_x + c, n.x), Lanes::store(k.joints.normal_y + c, n.y);
         const F l = DriveRows<Lanes, Real>(k.joints, c).sum();
-        a.push(l * nx, l * ny, F(-1)), b.push(l * nx, l * ny, one);
-        Lanes::store_rows4(k.velocity, k.joints.a + c, a.record);
-        Lanes::store_rows4(k.velocity, k.joints.b + c, b.record);
+        a.push(l * n.x, l * n.y, F(-1)), b.push(l * n.x, l * n.y, one);
+        store_velocities<Lanes>(k, c, a, b);
     }
 }
 
@@ -145,8 +131,8 @@ void sweep_angles(const SweepJoints<Real>& arguments, std::size_t first, std::si
     const SweepJoints<Real> k = arguments;  // a copy: no store can change it
     const F zero(0);
     for (std::size_t c = first; c < last; c += Lanes::size) {
-        JointSide<Lanes, true> a{Lanes::load_rows4(k.velocity, k.joints.a + c)},
-            b{Lanes::load_rows4(k.velocity, k.joints.b + c)};
+        JointSide<Lanes, true> a, b;
+        load_velocities<Lanes>(k, c, a, b);
         load_rims<Lanes>(k, c, a, b);
         const F inverse = a.inverse_inertia() + b.inverse_inertia();
         F angle;
@@ -167,8 +153,7 @@ void sweep_angles(const SweepJoints<Real>& arguments, std::size_t first, std::si
         const F added = rows.solve(k, c, angle, angle, b.spin() - a.spin(), inverse);
         rows.store(k.joints, c);
         a.turn(-added), b.turn(added);
-        Lanes::store_rows4(k.velocity, k.joints.a + c, a.record);
-        Lanes::store_rows4(k.velocity, k.joints.b + c, b.record);
+        store_velocities<Lanes>(k, c, a, b);
     }
 }
 
@@ -178,13 +163,12 @@ void give_angles(const SweepJoints<Real>& arguments, std::size_t first, std::siz
     using F = typename Lanes::Batch;
     const SweepJoints<Real> k = arguments;  // a copy: no store can change it
     for (std::size_t c = first; c < last; c += Lanes::size) {
-        JointSide<Lanes, true> a{Lanes::load_rows4(k.velocity, k.joints.a + c)},
-            b{Lanes::load_rows4(k.velocity, k.joints.b + c)};
+        JointSide<Lanes, true> a, b;
+        load_velocities<Lanes>(k, c, a, b);
         load_rims<Lanes>(k, c, a, b);
         const F l = DriveRows<Lanes, Real>(k.joints, c).sum();
         a.turn(-l), b.turn(l);
-        Lanes::store_rows4(k.velocity, k.joints.a + c, a.record);
-        Lanes::store_rows4(k.velocity, k.joints.b + c, b.record);
+        store_velocities<Lanes>(k, c, a, b);
     }
 }
 

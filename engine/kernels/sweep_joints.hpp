@@ -103,6 +103,21 @@ Pair2<typename Lanes::Batch> parting(const JointSide<Lanes, kArms>& a, const Joi
     return v;
 }
 
+template <class Lanes, bool kArms, class Real>
+[[gnu::always_inline]] inline void load_velocities(const SweepJoints<Real>& k, std::size_t c,
+                                                   JointSide<Lanes, kArms>& a, JointSide<Lanes, kArms>& b) {
+    a.record = Lanes::load_rows4(k.velocity, k.joints.a + c);
+    b.record = Lanes::load_rows4(k.velocity, k.joints.b + c);
+}
+
+template <class Lanes, bool kArms, class Real>
+[[gnu::always_inline]] inline void store_velocities(const SweepJoints<Real>& k, std::size_t c,
+                                                    const JointSide<Lanes, kArms>& a,
+                                                    const JointSide<Lanes, kArms>& b) {
+    Lanes::store_rows4(k.velocity, k.joints.a + c, a.record);
+    Lanes::store_rows4(k.velocity, k.joints.b + c, b.record);
+}
+
 template <class Lanes, class Real>
 [[gnu::always_inline]] inline void load_rims(const SweepJoints<Real>& k, std::size_t c,
                                              JointSide<Lanes, true>& a, JointSide<Lanes, true>& b) {
@@ -148,6 +163,33 @@ template <class Lanes, bool kArms, class Real>
                Lanes::load(k.joints.start_y + c) + (moved_b[1] - moved_a[1])};
     if constexpr (kArms) d.x += b.arm.x - a.arm.x, d.y += b.arm.y - a.arm.y;
     return d;
+}
+
+/// Of what joins two anchors.
+template <class F>
+struct Direction {
+    F x, y, length, per_length;  ///< no unit; m; 1/m. (1, 0) and zero per length where there is no length
+};
+
+template <class Lanes, class F = typename Lanes::Batch>
+[[gnu::always_inline]] inline Direction<F> direction_of(Pair2<F> d) {
+    const F one(1), zero(0);
+    const F length = simd::sqrt(d.x * d.x + d.y * d.y);
+    const auto has_length = length > zero;
+    const F per_length = simd::select(has_length, one / length, zero);
+    return {simd::select(has_length, d.x * per_length, one), d.y * per_length, length, per_length};
+}
+
+/// Of both bodies, for an impulse along (nx, ny) [1/kg].
+template <class Lanes, bool kArms, class F = typename Lanes::Batch>
+[[gnu::always_inline]] inline F inverse_mass_along(const JointSide<Lanes, kArms>& a,
+                                                   const JointSide<Lanes, kArms>& b, F nx, F ny) {
+    F inverse = a.inverse_mass() + b.inverse_mass();
+    if constexpr (kArms) {
+        const F ca = a.arm.x * ny - a.arm.y * nx, cb = b.arm.x * ny - b.arm.y * nx;
+        inverse += a.inverse_inertia() * ca * ca + b.inverse_inertia() * cb * cb;
+    }
+    return inverse;
 }
 
 /// Turns the bodies of a batch by an angular impulse of displacement [kg m²].
@@ -198,15 +240,16 @@ void sweep_rods(const SweepJoints<Real>& arguments, std::size_t first, std::size
     const SweepJoints<Real> k = arguments;  // a copy: no store can change it
     const F one(1), zero(0), h(k.h), half_h(k.half_h);
     for (std::size_t c = first; c < last; c += Lanes::size) {
-        JointSide<Lanes, kArms> a{Lanes::load_rows4(k.velocity, k.joints.a + c)},
-            b{Lanes::load_rows4(k.velocity, k.joints.b + c)};
+        JointSide<Lanes, kArms> a, b;
+        load_velocities<Lanes>(k, c, a, b);
         load_arms<Lanes, kArms>(k, c, a, b);
         const F wa = a.inverse_mass(), wb = b.inverse_mass();
-        F l = Lanes::load(k.joints.impulse_x + c), inverse = wa + wb;
-        F nx, ny, per_length;
+        const F l = Lanes::load(k.joints.impulse_x + c);
+        F nx, ny, per_length, inverse;
         if constexpr (!kFirst) {
             nx = Lanes::load(k.joints.normal_x + c), ny = Lanes::load(k.joints.normal_y + c);
             per_length = Lanes::load(k.joints.per_length + c);
+            inverse = inverse_mass_along<Lanes, kArms>(a, b, nx, ny);
         } else {
             simd::forget_loads();
             const F old_x = l * Lanes::load(k.joints.normal_x + c),
@@ -218,19 +261,13 @@ void sweep_rods(const SweepJoints<Real>& arguments, std::size_t first, std::size
             }
             auto moved_a = Lanes::load_rows2(k.displacement, k.joints.a + c);
             auto moved_b = Lanes::load_rows2(k.displacement, k.joints.b + c);
-            const Pair2<F> d = between<Lanes, kArms>(k, c, moved_a, moved_b, a, b);
-            const F distance = simd::sqrt(d.x * d.x + d.y * d.y);
-            const auto has_length = distance > zero;
-            per_length = simd::select(has_length, one / distance, zero);
-            nx = simd::select(has_length, d.x * per_length, one), ny = d.y * per_length;
+            const auto now = direction_of<Lanes>(between<Lanes, kArms>(k, c, moved_a, moved_b, a, b));
+            nx = now.x, ny = now.y, per_length = now.per_length;
             Lanes::store(k.joints.normal_x + c, nx), Lanes::store(k.joints.normal_y + c, ny);
             Lanes::store(k.joints.per_length + c, per_length);
-            if constexpr (kArms) {
-                const F ca = a.arm.x * ny - a.arm.y * nx, cb = b.arm.x * ny - b.arm.y * nx;
-                inverse += a.inverse_inertia() * ca * ca + b.inverse_inertia() * cb * cb;
-            }
+            inverse = inverse_mass_along<Lanes, kArms>(a, b, nx, ny);
             const F length = Lanes::load(k.joints.length + c);
-            const F off = clamp_to(distance - length, F(k.most) * length);
+            const F off = clamp_to(now.length - length, F(k.most) * length);
             const F p = simd::select(inverse > zero, -F(k.recovery) * off / inverse, zero);
             displace<Lanes, kArms>(k, c, moved_a, moved_b, a, b, {p * nx, p * ny});
             // Velocities have the impulses of the substep before in them (advance_bodies.hpp): turned to what
@@ -242,10 +279,6 @@ void sweep_rods(const SweepJoints<Real>& arguments, std::size_t first, std::size
                 b.turn((b.arm.x * (l * ny) - b.arm.y * (l * nx)) - torque_b);
             }
         }
-        if constexpr (kArms && !kFirst) {
-            const F ca = a.arm.x * ny - a.arm.y * nx, cb = b.arm.x * ny - b.arm.y * nx;
-            inverse += a.inverse_inertia() * ca * ca + b.inverse_inertia() * cb * cb;
-        }
         const F strain = F(4) * h * simd::abs(l) * inverse * per_length;
         const F share = one / (one + strain * strain);
         const Pair2<F> v = parting<Lanes, kArms>(a, b, h, share, share);
@@ -254,8 +287,7 @@ void sweep_rods(const SweepJoints<Real>& arguments, std::size_t first, std::size
         const F added = simd::select(inverse > zero, F(k.over_relaxation) * (wanted - along) / inverse, zero);
         Lanes::store(k.joints.impulse_x + c, l + added);
         a.push(added * nx, added * ny, F(-1)), b.push(added * nx, added * ny, one);
-        Lanes::store_rows4(k.velocity, k.joints.a + c, a.record);
-        Lanes::store_rows4(k.velocity, k.joints.b + c, b.record);
+        store_velocities<Lanes>(k, c, a, b);
     }
 }
 
@@ -267,8 +299,8 @@ void sweep_hinges(const SweepJoints<Real>& arguments, std::size_t first, std::si
     const SweepJoints<Real> k = arguments;  // a copy: no store can change it
     const F one(1), zero(0), h(k.h);
     for (std::size_t c = first; c < last; c += Lanes::size) {
-        JointSide<Lanes, true> a{Lanes::load_rows4(k.velocity, k.joints.a + c)},
-            b{Lanes::load_rows4(k.velocity, k.joints.b + c)};
+        JointSide<Lanes, true> a, b;
+        load_velocities<Lanes>(k, c, a, b);
         load_arms<Lanes, true>(k, c, a, b);
         F lx = Lanes::load(k.joints.impulse_x + c), ly = Lanes::load(k.joints.impulse_y + c);
         F torque_a = zero, torque_b = zero;
@@ -308,8 +340,7 @@ void sweep_hinges(const SweepJoints<Real>& arguments, std::size_t first, std::si
         Lanes::store(k.joints.impulse_x + c, lx + added.x),
             Lanes::store(k.joints.impulse_y + c, ly + added.y);
         a.push(added.x, added.y, F(-1)), b.push(added.x, added.y, one);
-        Lanes::store_rows4(k.velocity, k.joints.a + c, a.record);
-        Lanes::store_rows4(k.velocity, k.joints.b + c, b.record);
+        store_velocities<Lanes>(k, c, a, b);
     }
 }
 
@@ -322,21 +353,16 @@ void give_rods(const SweepJoints<Real>& arguments, std::size_t first, std::size_
     const SweepJoints<Real> k = arguments;  // a copy: no store can change it
     const F one(1), zero(0);
     for (std::size_t c = first; c < last; c += Lanes::size) {
-        JointSide<Lanes, kArms> a{Lanes::load_rows4(k.velocity, k.joints.a + c)},
-            b{Lanes::load_rows4(k.velocity, k.joints.b + c)};
+        JointSide<Lanes, kArms> a, b;
+        load_velocities<Lanes>(k, c, a, b);
         load_arms<Lanes, kArms>(k, c, a, b);
         if constexpr (kArms) turn_arms<Lanes>(k, c, a, b);
         const typename Lanes::Batch2 still{{zero, zero}};
-        const Pair2<F> d = between<Lanes, kArms>(k, c, still, still, a, b);
-        const F distance = simd::sqrt(d.x * d.x + d.y * d.y);
-        const auto has_length = distance > zero;
-        const F per_length = simd::select(has_length, one / distance, zero);
-        const F nx = simd::select(has_length, d.x * per_length, one), ny = d.y * per_length;
-        Lanes::store(k.joints.normal_x + c, nx), Lanes::store(k.joints.normal_y + c, ny);
+        const auto n = direction_of<Lanes>(between<Lanes, kArms>(k, c, still, still, a, b));
+        Lanes::store(k.joints.normal_x + c, n.x), Lanes::store(k.joints.normal_y + c, n.y);
         const F l = Lanes::load(k.joints.impulse_x + c);
-        a.push(l * nx, l * ny, F(-1)), b.push(l * nx, l * ny, one);
-        Lanes::store_rows4(k.velocity, k.joints.a + c, a.record);
-        Lanes::store_rows4(k.velocity, k.joints.b + c, b.record);
+        a.push(l * n.x, l * n.y, F(-1)), b.push(l * n.x, l * n.y, one);
+        store_velocities<Lanes>(k, c, a, b);
     }
 }
 
@@ -347,14 +373,13 @@ void give_hinges(const SweepJoints<Real>& arguments, std::size_t first, std::siz
     using F = typename Lanes::Batch;
     const SweepJoints<Real> k = arguments;  // a copy: no store can change it
     for (std::size_t c = first; c < last; c += Lanes::size) {
-        JointSide<Lanes, true> a{Lanes::load_rows4(k.velocity, k.joints.a + c)},
-            b{Lanes::load_rows4(k.velocity, k.joints.b + c)};
+        JointSide<Lanes, true> a, b;
+        load_velocities<Lanes>(k, c, a, b);
         load_arms<Lanes, true>(k, c, a, b);
         turn_arms<Lanes>(k, c, a, b);
         const F lx = Lanes::load(k.joints.impulse_x + c), ly = Lanes::load(k.joints.impulse_y + c);
         a.push(lx, ly, F(-1)), b.push(lx, ly, F(1));
-        Lanes::store_rows4(k.velocity, k.joints.a + c, a.record);
-        Lanes::store_rows4(k.velocity, k.joints.b + c, b.record);
+        store_velocities<Lanes>(k, c, a, b);
     }
 }
 

@@ -26,6 +26,8 @@ struct StoredJoint {
     JointType type = JointType::revolute;
     bool collide = false, has_lower = false, has_upper = false, has_motor = false;
     bool is_held = true;                      // whether the length of a distance joint is: a rope's is not
+    bool is_exchanged = false;                // whether a is what was given as b
+    bool is_free = true;                      // whether its group touched nothing in the last step
     Vec2 anchor_a, anchor_b;                  // m, in the frame of the body, or of the world
     Vec2 axis{1, 0};                          // of length 1, in the frame of a
     double angle = 0;                         // rad, of b against a, at which its angle counts as 0; of
@@ -36,13 +38,11 @@ struct StoredJoint {
     double frequency = 0, damping_ratio = 0;  // Hz; 0: rigid
     double ratio = 1;                         // of a gear
     std::uint32_t first = kNoJoint, second = kNoJoint;  // slots of the joints that a gear couples, or none
-    bool is_exchanged = false;                          // whether a is what was given as b
     Vec2 target;                                        // m
     double max_force = 0;                               // N
     double break_force = std::numeric_limits<double>::infinity();
     double break_torque = std::numeric_limits<double>::infinity();
     // What it did last.
-    bool is_free = true;              // whether its group touched nothing in the last step
     std::array<double, 3> impulse{};  // N s, of a substep, of its rows: constraints/joints/joint_rows.hpp
     Vec2 force;                       // N, on b
     double torque = 0;                // N m, on b
