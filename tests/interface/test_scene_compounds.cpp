@@ -1,31 +1,18 @@
 // Compounds, sensors and events of a scene file: what is read, and what is refused, where.
-#include "scene_reader.hpp"
+#include "interface/refused_scene.hpp"
 
 #include <doctest/doctest.h>
 
 #include <string>
 
 using namespace carom;
+using namespace carom::test;
 using namespace carom::tool;
 
 namespace {
 
 std::string with_body(const std::string& keys, const std::string& rest = "") {
     return R"({"carom": 1, "materials": {"lead": {"density": 11}}, "bodies": [{)" + keys + "}]" + rest + "}";
-}
-
-void check_refused(const std::string& text, ErrorCode code, const std::string& pointer,
-                   const std::string& words) {
-    CAPTURE(text);
-    try {
-        parse_scene(text, "test.json").validate();
-        FAIL_CHECK("it is read");
-    } catch (const SceneFileError& error) {
-        CAPTURE(error.what());
-        CHECK(error.code() == code);
-        CHECK(error.pointer() == pointer);
-        CHECK(std::string(error.what()).find(words) != std::string::npos);
-    }
 }
 
 }  // namespace
@@ -47,17 +34,17 @@ TEST_SUITE("interface: compounds and sensors") {
     }
 
     TEST_CASE("compounds that cannot be are refused where they stand") {
-        check_refused(with_body(R"("shape": {"compound": {"shapes": []}})"), ErrorCode::out_of_range,
-                      "/bodies/0/shape/compound/shapes", "a compound of 0 shapes");
-        check_refused(
+        check_refused_scene(with_body(R"("shape": {"compound": {"shapes": []}})"), ErrorCode::out_of_range,
+                            "/bodies/0/shape/compound/shapes", "a compound of 0 shapes");
+        check_refused_scene(
             with_body(
                 R"("shape": {"compound": {"shapes": [{"shape": {"segment": {"a": [0, 0], "b": [1, 0]}}}]}})"),
             ErrorCode::unknown_name, "/bodies/0/shape/compound/shapes/0/shape/segment", "segment");
-        check_refused(with_body(R"("shape": {"compound": {"shapes": [{"shape": {"disc": {"radius": 0}}}]}})"),
-                      ErrorCode::out_of_range, "/bodies/0/shape/compound/shapes/0/shape/disc/radius",
-                      "radius 0 m");
-        check_refused(with_body(R"("shape": {"compound": {"pieces": []}})"), ErrorCode::unknown_name,
-                      "/bodies/0/shape/compound/pieces", "pieces");
+        check_refused_scene(
+            with_body(R"("shape": {"compound": {"shapes": [{"shape": {"disc": {"radius": 0}}}]}})"),
+            ErrorCode::out_of_range, "/bodies/0/shape/compound/shapes/0/shape/disc/radius", "radius 0 m");
+        check_refused_scene(with_body(R"("shape": {"compound": {"pieces": []}})"), ErrorCode::unknown_name,
+                            "/bodies/0/shape/compound/pieces", "pieces");
     }
 
     TEST_CASE("sensors and the events that are wanted are read") {
@@ -66,11 +53,11 @@ TEST_SUITE("interface: compounds and sensors") {
         CHECK_FALSE(parse_scene(with_body(sensor), "t").events.sensor.has_value());
         CHECK(parse_scene(with_body(sensor, R"(, "events": ["sensor"])"), "t").events.sensor == true);
         CHECK(parse_scene(with_body(sensor, R"(, "events": [])"), "t").events.sensor == false);
-        check_refused(with_body(sensor, R"(, "events": ["hit"])"), ErrorCode::not_built_yet, "/events/0",
-                      "not built in this version");
-        check_refused(with_body(sensor, R"(, "events": ["sensors"])"), ErrorCode::unknown_name, "/events/0",
-                      "sensor");
-        check_refused(
+        check_refused_scene(with_body(sensor, R"(, "events": ["hit"])"), ErrorCode::not_built_yet,
+                            "/events/0", "not built in this version");
+        check_refused_scene(with_body(sensor, R"(, "events": ["sensors"])"), ErrorCode::unknown_name,
+                            "/events/0", "sensor");
+        check_refused_scene(
             with_body(
                 R"("shape": {"segment": {"a": [0, 0], "b": [1, 0]}}, "type": "static", "sensor": true)"),
             ErrorCode::inconsistent, "/bodies/0/sensor", "expected a shape with an area");

@@ -1,29 +1,18 @@
 // Filters of a scene file: what is read, and what is refused, where.
-#include "scene_reader.hpp"
+#include "interface/refused_scene.hpp"
 
 #include <doctest/doctest.h>
 
 #include <string>
 
 using namespace carom;
+using namespace carom::test;
 using namespace carom::tool;
 
 namespace {
 
 std::string with_filter(const std::string& filter) {
     return R"({"carom": 1, "bodies": [{"shape": {"disc": {"radius": 0.2}}, "filter": )" + filter + "}]}";
-}
-
-void check_refused(const std::string& filter, const std::string& pointer, const std::string& words) {
-    CAPTURE(filter);
-    try {
-        parse_scene(with_filter(filter), "test.json");
-        FAIL_CHECK("it is read");
-    } catch (const SceneFileError& error) {
-        CAPTURE(error.what());
-        CHECK(error.pointer() == pointer);
-        CHECK(std::string(error.what()).find(words) != std::string::npos);
-    }
 }
 
 }  // namespace
@@ -42,9 +31,13 @@ TEST_SUITE("interface: filters") {
     }
 
     TEST_CASE("filters that cannot be are refused where they stand") {
-        check_refused(R"({"category": 65536})", "/bodies/0/filter/category", "65536; expected 0 to 65535");
-        check_refused(R"({"mask": -1})", "/bodies/0/filter/mask", "mask -1; expected 0 to 65535");
-        check_refused(R"({"group": 2147483648})", "/bodies/0/filter/group", "group 2147483648");
-        check_refused(R"({"masks": 1})", "/bodies/0/filter/masks", "mask");
+        check_refused_scene(with_filter(R"({"category": 65536})"), ErrorCode::out_of_range,
+                            "/bodies/0/filter/category", "65536; expected 0 to 65535");
+        check_refused_scene(with_filter(R"({"mask": -1})"), ErrorCode::out_of_range, "/bodies/0/filter/mask",
+                            "mask -1; expected 0 to 65535");
+        check_refused_scene(with_filter(R"({"group": 2147483648})"), ErrorCode::out_of_range,
+                            "/bodies/0/filter/group", "group 2147483648");
+        check_refused_scene(with_filter(R"({"masks": 1})"), ErrorCode::unknown_name, "/bodies/0/filter/masks",
+                            "mask");
     }
 }

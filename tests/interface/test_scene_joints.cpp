@@ -1,11 +1,12 @@
 // Joints of a scene file: what is read, and what is refused, where.
-#include "scene_reader.hpp"
+#include "interface/refused_scene.hpp"
 
 #include <doctest/doctest.h>
 
 #include <string>
 
 using namespace carom;
+using namespace carom::test;
 using namespace carom::tool;
 
 namespace {
@@ -15,20 +16,6 @@ std::string with_joints(const std::string& joints, const std::string& type = "dy
            R"(", "shape": {"disc": {"radius": 0.2}}}, {"shape": {"disc": {"radius": 0.2}}, "position": [1, 0]}],
            "joints": [)" +
            joints + "]}";
-}
-
-void check_refused(const std::string& text, ErrorCode code, const std::string& pointer,
-                   const std::string& words) {
-    CAPTURE(text);
-    try {
-        parse_scene(text, "test.json");
-        FAIL_CHECK("it is read");
-    } catch (const SceneFileError& error) {
-        CAPTURE(error.what());
-        CHECK(error.code() == code);
-        CHECK(error.pointer() == pointer);
-        CHECK(std::string(error.what()).find(words) != std::string::npos);
-    }
 }
 
 }  // namespace
@@ -74,25 +61,25 @@ TEST_SUITE("interface: joints") {
     }
 
     TEST_CASE("joints that cannot be are refused where they stand") {
-        check_refused(with_joints(R"({"revolute": {"a": 7}})"), ErrorCode::unknown_name,
-                      "/joints/0/revolute/a", "body 7, but the file makes 2 bodies");
-        check_refused(with_joints(R"({"revolute": {"b": "arm"}})"), ErrorCode::unknown_name,
-                      "/joints/0/revolute/b", "names no body");
-        check_refused(with_joints(R"({"revolute": {"b": 1, "lower": 1, "upper": 0}})"),
-                      ErrorCode::inconsistent, "/joints/0/revolute/lower",
-                      "joint 0 has lower 1 rad above its upper 0");
-        check_refused(with_joints(R"({"weld": {"b": 0}})", "static"), ErrorCode::inconsistent, "/joints/0",
-                      "no dynamic body");
-        check_refused(with_joints(R"({"weld": {}})"), ErrorCode::missing, "/joints/0/weld", "no body");
-        check_refused(with_joints(R"({"weld": {"a": 1, "b": 1}})"), ErrorCode::inconsistent,
-                      "/joints/0/weld/b", "body 1 as a and as b");
-        check_refused(with_joints(R"({"distance": {"b": 0}})"), ErrorCode::out_of_range, "/joints/0/distance",
-                      "0 m apart");
-        check_refused(with_joints(R"({"target": {"b": 0, "target": [1, 1], "max_force": 0}})"),
-                      ErrorCode::out_of_range, "/joints/0/target/max_force", "max_force 0 N");
-        check_refused(with_joints(R"({"prismatic": {"b": 0, "axis": [0, 0]}})"), ErrorCode::out_of_range,
-                      "/joints/0/prismatic/axis", "expected a direction");
-        check_refused(with_joints(R"({"wheel": {"b": 0, "length": 1}})"), ErrorCode::unknown_name,
-                      "/joints/0/wheel/length", "length");
+        check_refused_scene(with_joints(R"({"revolute": {"a": 7}})"), ErrorCode::unknown_name,
+                            "/joints/0/revolute/a", "body 7, but the file makes 2 bodies");
+        check_refused_scene(with_joints(R"({"revolute": {"b": "arm"}})"), ErrorCode::unknown_name,
+                            "/joints/0/revolute/b", "names no body");
+        check_refused_scene(with_joints(R"({"revolute": {"b": 1, "lower": 1, "upper": 0}})"),
+                            ErrorCode::inconsistent, "/joints/0/revolute/lower",
+                            "joint 0 has lower 1 rad above its upper 0");
+        check_refused_scene(with_joints(R"({"weld": {"b": 0}})", "static"), ErrorCode::inconsistent,
+                            "/joints/0", "no dynamic body");
+        check_refused_scene(with_joints(R"({"weld": {}})"), ErrorCode::missing, "/joints/0/weld", "no body");
+        check_refused_scene(with_joints(R"({"weld": {"a": 1, "b": 1}})"), ErrorCode::inconsistent,
+                            "/joints/0/weld/b", "body 1 as a and as b");
+        check_refused_scene(with_joints(R"({"distance": {"b": 0}})"), ErrorCode::out_of_range,
+                            "/joints/0/distance", "0 m apart");
+        check_refused_scene(with_joints(R"({"target": {"b": 0, "target": [1, 1], "max_force": 0}})"),
+                            ErrorCode::out_of_range, "/joints/0/target/max_force", "max_force 0 N");
+        check_refused_scene(with_joints(R"({"prismatic": {"b": 0, "axis": [0, 0]}})"),
+                            ErrorCode::out_of_range, "/joints/0/prismatic/axis", "expected a direction");
+        check_refused_scene(with_joints(R"({"wheel": {"b": 0, "length": 1}})"), ErrorCode::unknown_name,
+                            "/joints/0/wheel/length", "length");
     }
 }

@@ -1,10 +1,11 @@
-#include "scene_reader.hpp"
+#include "interface/refused_scene.hpp"
 
 #include <doctest/doctest.h>
 
 #include <string>
 
 using namespace carom;
+using namespace carom::test;
 using namespace carom::tool;
 
 namespace {
@@ -20,15 +21,7 @@ Kind read(const std::string& shape) {
 
 void check_refused(const std::string& shape, ErrorCode code, const std::string& pointer,
                    const std::string& words) {
-    CAPTURE(shape);
-    try {
-        parse_scene(scene_with(shape), "test.json");
-        FAIL_CHECK("accepted");
-    } catch (const SceneFileError& error) {
-        CHECK(error.code() == code);
-        CHECK(error.pointer() == "/bodies/0/shape/" + pointer);
-        CHECK_MESSAGE(std::string(error.what()).find(words) != std::string::npos, error.what());
-    }
+    check_refused_scene(scene_with(shape), code, "/bodies/0/shape/" + pointer, words);
 }
 
 }  // namespace
