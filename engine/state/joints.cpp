@@ -93,7 +93,7 @@ struct Describe {
 
 }  // namespace
 
-/// A joint of a body and the world has the body as b: what lies on a then turns its sign.
+/// A joint of a body and the world has the body as b: what is counted of b against a then turns its sign.
 StoredJoint stored_joint(const Joint& joint, const JointBody& a, const JointBody& b) {
     StoredJoint stored;
     std::visit(Describe{stored, a, b, !joint.b}, joint.kind);
@@ -102,14 +102,11 @@ StoredJoint stored_joint(const Joint& joint, const JointBody& a, const JointBody
         stored.is_exchanged = true;
         std::swap(stored.a, stored.b);
         std::swap(stored.anchor_a, stored.anchor_b);
-        stored.axis = -rotate(rotation_by(a.angle), stored.axis);
+        stored.axis = rotate(rotation_by(a.angle), stored.axis);
         stored.angle = -stored.angle;
-        if (stored.type != JointType::distance) {
-            std::swap(stored.has_lower, stored.has_upper);
-            std::swap(stored.lower, stored.upper);
-            stored.lower = -stored.lower, stored.upper = -stored.upper;
-            stored.motor_speed = -stored.motor_speed;
-        }
+        if (stored.turns_sign()) std::swap(stored.has_lower, stored.has_upper);
+        stored.set_limits(stored.lower, stored.upper);
+        stored.motor_speed = stored.as_kept(stored.motor_speed);
     }
     stored.collide = joint.collide;
     stored.break_force = joint.break_force, stored.break_torque = joint.break_torque;

@@ -49,6 +49,14 @@ struct StoredJoint {
 
     bool is_on_world() const { return a == BodyId{}; }
     bool is_spring() const { return frequency > 0; }
+    /// Whether what is counted of b against a is kept with the other sign; a length has none.
+    bool turns_sign() const { return is_exchanged && type != JointType::distance; }
+    /// A way, an angle or a speed of b against a, as it was given, in the order in which the bodies are kept.
+    double as_kept(double value) const { return turns_sign() ? -value : value; }
+    /// @param low, high  as they were given [m or rad]
+    void set_limits(double low, double high) {
+        lower = turns_sign() ? -high : low, upper = turns_sign() ? -low : high;
+    }
 };
 
 /// Every joint of a world. Slots stay; a removed joint leaves a hole that the next one fills.

@@ -122,7 +122,7 @@ void BasicWorld<Real>::set_motor(JointId joint, double speed, double most) {
         stored.type == JointType::target || stored.type == JointType::gear)
         refuse(kWhere, "motor", "revolute, prismatic or wheel");
     own.wake_joint(slot);
-    stored.has_motor = most > 0, stored.motor_speed = speed, stored.max_motor = most;
+    stored.has_motor = most > 0, stored.motor_speed = stored.as_kept(speed), stored.max_motor = most;
     ++own.world().joints.version;
 }
 
@@ -139,7 +139,8 @@ void BasicWorld<Real>::set_limits(JointId joint, double lower, double upper) {
     check_number(kWhere, "lower", lower, stored.type == JointType::distance ? 0 : -most, most);
     check_number(kWhere, "upper", upper, lower, most);
     own.wake_joint(slot);
-    stored.has_lower = stored.has_upper = true, stored.lower = lower, stored.upper = upper;
+    stored.has_lower = stored.has_upper = true;
+    stored.set_limits(lower, upper);
     if (stored.type == JointType::distance) stored.is_held = stored.is_spring();
     ++own.world().joints.version;
 }
@@ -175,7 +176,9 @@ std::array<Vec2, 2> BasicWorld<Real>::joint_anchors(JointId joint) const {
     const JointPose a = pose_of(world, stored.a), b = pose_of(world, stored.b);
     const Vec2 from =
         stored.type == JointType::target ? stored.target : a.position + rotate(a.turn, stored.anchor_a);
-    return {from, b.position + rotate(b.turn, stored.anchor_b)};
+    const Vec2 to = b.position + rotate(b.turn, stored.anchor_b);
+    if (stored.is_exchanged) return {to, from};
+    return {from, to};
 }
 
 template <class Real>
