@@ -89,12 +89,7 @@ Picture::Box Picture::world() const {
         box.max_y = std::max(box.max_y, up.base + kSteps * up.step);
     }
     add_shapes(box);
-    if (!edges_.empty()) trajectory_.read_frame("position", 0, position);
-    for (const EdgeBody& edges : edges_) {
-        const double at_x = position[2 * edges.body], at_y = position[2 * edges.body + 1];
-        box = {std::min(box.min_x, at_x - edges.reach), std::min(box.min_y, at_y - edges.reach),
-               std::max(box.max_x, at_x + edges.reach), std::max(box.max_y, at_y + edges.reach)};
-    }
+    add_edges(box);
     return box;
 }
 
@@ -125,6 +120,33 @@ void Picture::add_shapes(Box& box) const {
     }
     box = {std::min(box.min_x - around, floors.min_x), std::min(box.min_y - around, floors.min_y),
            std::max(box.max_x + around, floors.max_x), std::max(box.max_y + around, floors.max_y)};
+}
+
+/// Room for segments and chains: where they are, of those that stay; of those that move, all around them.
+void Picture::add_edges(Box& box) const {
+    if (edges_.empty()) return;
+    std::vector<float> first(2 * trajectory_.body_count()), last(first);
+    trajectory_.read_frame("position", 0, first);
+    trajectory_.read_frame("position", time_.size() - 1, last);
+    const std::vector<float> angle = angles(0), end = angles(time_.size() - 1);
+    const auto add = [&box](double at_x, double at_y) {
+        box = {std::min(box.min_x, at_x), std::min(box.min_y, at_y), std::max(box.max_x, at_x),
+               std::max(box.max_y, at_y)};
+    };
+    for (const EdgeBody& edges : edges_) {
+        const std::size_t x_of = 2 * edges.body, y_of = x_of + 1;
+        const double px = first[x_of], py = first[y_of];
+        const bool turns = !angle.empty() && angle[edges.body] != end[edges.body];
+        if (turns || first[x_of] != last[x_of] || first[y_of] != last[y_of]) {
+            add(px - edges.reach, py - edges.reach);
+            add(px + edges.reach, py + edges.reach);
+            continue;
+        }
+        const double turn = angle.empty() ? 0 : static_cast<double>(angle[edges.body]);
+        const double c = std::cos(turn), s = std::sin(turn);
+        for (std::size_t i = 0; i < edges.x.size(); ++i)
+            add(px + c * edges.x[i] - s * edges.y[i], py + s * edges.x[i] + c * edges.y[i]);
+    }
 }
 
 void Picture::choose_colours() {

@@ -49,6 +49,7 @@ class Picture {
 
     Box world() const;
     void add_shapes(Box& box) const;
+    void add_edges(Box& box) const;
     void choose_colours();
     const std::vector<float>& positions(std::size_t frame);
     double x(double world_x) const { return (world_x - box_.min_x) * scale_ + left_; }

@@ -7,14 +7,19 @@ carom.view = carom.frames && (() => {
   const lowest = 220, sharpest = 2; // CSS pixels; device pixels a CSS pixel
   let centre = { x: 0, y: 0 }, scale = 1, fitted = true;
 
+  /** Points of a shape or of edges in the world, from those in the frame of their body. */
+  const turned = (points, x, y, angle) => {
+    const cos = Math.cos(angle), sin = Math.sin(angle);
+    return points.x.map((_, i) => [x + cos * points.x[i] - sin * points.y[i], y + sin * points.x[i] + cos * points.y[i]]);
+  };
+
   /** Points of a shape's outline in the world, if the body stays where it is from the first frame to the last. */
   const placeOfFloor = (body) => {
     const { frames } = carom, shape = frames.shapeOf(body);
     if (!shape) return null;
     const { x, y, angle } = frames.state(0, body), end = frames.state(frames.count - 1, body);
     if (!(Math.hypot(end.x - x, end.y - y) < 1e-3 * frames.radius[body])) return null;
-    const cos = Math.cos(angle), sin = Math.sin(angle);
-    return shape.x.map((_, i) => [x + cos * shape.x[i] - sin * shape.y[i], y + sin * shape.x[i] + cos * shape.y[i]]);
+    return turned(shape, x, y, angle);
   };
 
   /** The walls, or all that bodies reach: the largest radius around, but of shapes that stay the room they need. */
@@ -29,15 +34,19 @@ carom.view = carom.frames && (() => {
     });
     const [x0, y0, x1, y1] = view.every(Number.isFinite) ? view : [0, 0, 1, 1];
     const box = { min: [x0 - largest, y0 - largest], max: [x1 + largest, y1 + largest] };
-    for (const [x, y] of floors) {
+    const add = (x, y) => {
       box.min = [Math.min(box.min[0], x), Math.min(box.min[1], y)];
       box.max = [Math.max(box.max[0], x), Math.max(box.max[1], y)];
-    }
-    for (const { body, reach } of carom.frames.data.edges) {
-      const { x, y } = carom.frames.state(0, body);
+    };
+    for (const [x, y] of floors) add(x, y);
+    for (const edges of carom.frames.data.edges) {
+      const { frames } = carom, { x, y, angle } = frames.state(0, edges.body), end = frames.state(frames.count - 1, edges.body);
       if (!Number.isFinite(x)) continue;
-      box.min = [Math.min(box.min[0], x - reach), Math.min(box.min[1], y - reach)];
-      box.max = [Math.max(box.max[0], x + reach), Math.max(box.max[1], y + reach)];
+      const moved = Math.max(Math.hypot(end.x - x, end.y - y), Math.abs(end.angle - angle) * edges.reach);
+      if (moved > 1e-3 * edges.reach) { // room all around
+        add(x - edges.reach, y - edges.reach);
+        add(x + edges.reach, y + edges.reach);
+      } else for (const [px, py] of turned(edges, x, y, angle)) add(px, py);
     }
     return box;
   })();
