@@ -21,6 +21,7 @@ class PerformancePageTest(unittest.TestCase):
 
     def test_the_page_is_what_the_command_on_it_makes(self):
         self.assertEqual(PAGE, make.page(self.results))
+        self.assertEqual((SOURCE / "docs" / make.CHART).read_text(), make.chart(self.results))
 
     def test_the_folder_is_named_after_its_date_and_machine(self):
         self.assertTrue(FOLDER.name.startswith(self.results.parts["scaling"]["date"]))
