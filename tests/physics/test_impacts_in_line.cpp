@@ -31,20 +31,6 @@ Speeds after_impact(double m1, double v1, double m2, double v2, double e) {
     return {((m1 - e * m2) * v1 + (1 + e) * m2 * v2) / mass, ((m2 - e * m1) * v2 + (1 + e) * m1 * v1) / mass};
 }
 
-/// Newton's cradle: five balls of radius 0.5 with gaps, `moving` of them coming from the left at 2 m/s.
-Scene cradle(int moving, double gap, Solver solver, double friction) {
-    Scene scene;
-    scene.accuracy.solver = solver;
-    double x = 0;
-    for (int i = 0; i < 5; ++i) {
-        Body ball = disc(0.5, 1, {x, 0}, {i < moving ? 2.0 : 0.0, 0}, 1);
-        ball.material.friction = friction;
-        scene.add(ball);
-        x += 1 + gap + (i + 1 == moving ? 0.3 : 0);
-    }
-    return scene;
-}
-
 }  // namespace
 
 TEST_SUITE("physics/impacts in line") {
@@ -166,17 +152,7 @@ TEST_SUITE("physics/impacts in line") {
                     CAPTURE(name_of(solver));
                     CAPTURE(mass);
                     CAPTURE(dt);
-                    Scene scene;
-                    scene.accuracy.solver = solver;
-                    scene.walls = Walls{.min = {0, -10},
-                                        .max = {1e6, 10},
-                                        .right = false,
-                                        .bottom = false,
-                                        .top = false,
-                                        .material = bouncy(1)};
-                    scene.add(disc(0.5, 1, {1.5, 0}, {}, 1));
-                    scene.add(disc(0.5, mass, {3, 0}, {-1, 0}, 1));
-                    Trial<Real> trial(scene);
+                    Trial<Real> trial(galperin_billiard(mass, solver));
                     trial.run(static_cast<int>(std::lround(60 / dt)), dt);
                     CHECK(trial.world.profile().impacts == collisions);
                     const BodyState light = trial.state(0), heavy = trial.state(1);
@@ -196,17 +172,7 @@ TEST_SUITE("physics/impacts in line") {
 
     TEST_CASE("in double precision masses 1 and 1,000,000 collide 3141 times") {
         for (const Solver solver : kSolvers) {
-            Scene scene;
-            scene.accuracy.solver = solver;
-            scene.walls = Walls{.min = {0, -10},
-                                .max = {1e6, 10},
-                                .right = false,
-                                .bottom = false,
-                                .top = false,
-                                .material = bouncy(1)};
-            scene.add(disc(0.5, 1, {1.5, 0}, {}, 1));
-            scene.add(disc(0.5, 1e6, {3, 0}, {-1, 0}, 1));
-            Trial<double> trial(scene);
+            Trial<double> trial(galperin_billiard(1e6, solver));
             trial.run(360, kStep);
             CAPTURE(name_of(solver));
             CHECK(trial.world.profile().impacts == 3141);

@@ -31,6 +31,36 @@ inline Walls floor_at(double y, double restitution = 0) {
             .material = bouncy(restitution)};
 }
 
+/// Galperin's billiard: a wall at x = 0, a resting disc of 1 kg, one of `ratio` kg that comes at -1 m/s; all
+/// elastic. They collide floor(pi sqrt(ratio)) times.
+inline Scene galperin_billiard(double ratio, Solver solver) {
+    Scene scene;
+    scene.accuracy.solver = solver;
+    scene.walls = Walls{.min = {0, -10},
+                        .max = {1e6, 10},
+                        .right = false,
+                        .bottom = false,
+                        .top = false,
+                        .material = bouncy(1)};
+    scene.add(disc(0.5, 1, {1.5, 0}, {}, 1));
+    scene.add(disc(0.5, ratio, {3, 0}, {-1, 0}, 1));
+    return scene;
+}
+
+/// Newton's cradle: five balls of radius 0.5 m with gaps [m], `moving` of them coming from the left at 2 m/s.
+inline Scene cradle(int moving, double gap, Solver solver, double friction = 0) {
+    Scene scene;
+    scene.accuracy.solver = solver;
+    double x = 0;
+    for (int i = 0; i < 5; ++i) {
+        Body ball = disc(0.5, 1, {x, 0}, {i < moving ? 2.0 : 0.0, 0}, 1);
+        ball.material.friction = friction;
+        scene.add(ball);
+        x += 1 + gap + (i + 1 == moving ? 0.3 : 0);
+    }
+    return scene;
+}
+
 struct GasOptions {
     std::int64_t count = 1000;
     double packing_fraction = 0.4;

@@ -1,6 +1,5 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -10,7 +9,6 @@
 #include "profiling/profile_run.hpp"
 #include "results/whole_file.hpp"
 #include "run_settings.hpp"
-#include "scene_reader.hpp"
 
 namespace carom::tool {
 namespace {
@@ -24,11 +22,7 @@ struct ProfileWish {
 };
 
 int profile(const ProfileWish& asked) {
-    Scene scene = read_scene(asked.scene);
-    const bool ledger_unasked = !scene.effects.ledger && !asked.settings.effects.ledger;
-    apply_settings(asked.settings, scene);
-    if (ledger_unasked) scene.effects.ledger.reset();  // what a world of one's own would run
-    if (scene.name.empty()) scene.name = std::filesystem::path(asked.scene).stem().string();
+    const Scene scene = read_measured_scene(asked.scene, asked.settings);
     catch_interrupts();
     Trace trace;
     const measure::Json json = profile_scene(scene, asked.settings.machine, asked.trace ? &trace : nullptr);

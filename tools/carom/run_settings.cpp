@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include "exit_codes.hpp"
 #include "format.hpp"
 #include "option_values.hpp"
+#include "scene_reader.hpp"
 
 namespace carom::tool {
 namespace {
@@ -112,6 +114,15 @@ void apply_settings(const RunSettings& settings, Scene& scene) {
     for (const EffectName& effect : kEffects)
         if (settings.effects.*effect.wish) scene.effects.*effect.wish = settings.effects.*effect.wish;
     if (!scene.effects.ledger) scene.effects.ledger = true;
+}
+
+Scene read_measured_scene(const std::string& file, const RunSettings& settings) {
+    Scene scene = read_scene(file);
+    const bool ledger_unasked = !scene.effects.ledger && !settings.effects.ledger;
+    apply_settings(settings, scene);
+    if (ledger_unasked) scene.effects.ledger.reset();
+    if (scene.name.empty()) scene.name = std::filesystem::path(file).stem().string();
+    return scene;
 }
 
 }  // namespace carom::tool

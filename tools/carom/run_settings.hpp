@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "simulation/simulation.hpp"
 
@@ -31,5 +32,9 @@ void add_settings_options(CLI::App& command, RunSettings& settings);
 /// Puts the settings into the scene, and the ledger on unless scene or settings say otherwise.
 /// @throws UsageError for a precision the solver does not have
 void apply_settings(const RunSettings& settings, Scene& scene);
+
+/// A scene as a world of one's own would run it, to be measured: without a ledger unless it is asked for, and
+/// with the file's name if it has none. @throws as read_scene and apply_settings
+Scene read_measured_scene(const std::string& file, const RunSettings& settings);
 
 }  // namespace carom::tool

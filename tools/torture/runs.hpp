@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <initializer_list>
 #include <string>
 #include <vector>
@@ -24,6 +25,14 @@ inline std::vector<Precision> precisions_of(const Options& asked) {
 
 inline std::string name_of(Precision precision) {
     return precision == Precision::single_ ? "float" : "double";
+}
+
+/// Calls fn(index) for each random scene asked for: the only one, or so many from the first on.
+template <class Fn>
+void for_each_scene(const Options& asked, std::int64_t otherwise, const Fn& fn) {
+    const std::int64_t first = asked.only.value_or(0),
+                       last = asked.only ? first + 1 : asked.scenes.value_or(otherwise);
+    for (std::int64_t index = first; index < last; ++index) fn(static_cast<std::uint64_t>(index));
 }
 
 inline Material material_of(double restitution, double friction = 0) {

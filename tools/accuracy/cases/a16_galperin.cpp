@@ -8,16 +8,7 @@ constexpr double kRatio = 1e4, kTime = 30;  // masses 1 and 100²; s
 constexpr std::int64_t kCollisions = 314;   // floor(100 pi)
 
 Scene scene_of(int) {
-    Scene scene;
-    scene.walls = Walls{.min = {0, -10},
-                        .max = {1e5, 10},
-                        .right = false,
-                        .bottom = false,
-                        .top = false,
-                        .material = bouncy(1)};
-    scene.add(disc(0.5, 1, {1.5, 0}, {}, bouncy(1)));
-    scene.add(disc(0.5, kRatio, {3, 0}, {-1, 0}, bouncy(1)));
-    return scene;
+    return galperin_scene(kRatio);
 }
 
 std::vector<double> run(Stepper& stepper, const Scene&, int) {

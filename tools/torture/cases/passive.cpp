@@ -39,11 +39,8 @@ Outcome run(const PassiveTraits& traits, Solver solver, Precision precision, con
 
 std::vector<Task> tasks(const Options& asked) {
     std::vector<Task> all;
-    const std::int64_t first = asked.only.value_or(0),
-                       last = asked.only ? first + 1 : asked.scenes.value_or(kScenes);
-    for (std::int64_t index = first; index < last; ++index) {
-        const PassiveTraits traits =
-            passive_traits(asked.seed, static_cast<std::uint64_t>(index), asked.bodies.value_or(kMostBodies));
+    for_each_scene(asked, kScenes, [&](std::uint64_t index) {
+        const PassiveTraits traits = passive_traits(asked.seed, index, asked.bodies.value_or(kMostBodies));
         add_runs(all, {.case_id = "passive",
                        .scene = in_words(traits),
                        .solvers = solvers_of(
@@ -52,7 +49,7 @@ std::vector<Task> tasks(const Options& asked) {
                        .make = [traits] { return passive_scene(traits).scene; },
                        .run = [=](const Scene&, Solver solver,
                                   Precision precision) { return run(traits, solver, precision, asked); }});
-    }
+    });
     return all;
 }
 

@@ -81,11 +81,8 @@ Outcome run(const RandomWorld& world, const WorldTraits& traits, Solver solver, 
 
 std::vector<Task> tasks(const Options& asked) {
     std::vector<Task> all;
-    const std::int64_t first = asked.only.value_or(0),
-                       last = asked.only ? first + 1 : asked.scenes.value_or(kScenes);
-    for (std::int64_t index = first; index < last; ++index) {
-        const WorldTraits traits =
-            world_traits(asked.seed, static_cast<std::uint64_t>(index), asked.bodies.value_or(kMostBodies));
+    for_each_scene(asked, kScenes, [&](std::uint64_t index) {
+        const WorldTraits traits = world_traits(asked.seed, index, asked.bodies.value_or(kMostBodies));
         add_runs(all, {.case_id = "random",
                        .scene = in_words(traits),
                        .solvers = solvers_of(asked, {Solver::automatic, Solver::soft, Solver::impulse,
@@ -96,7 +93,7 @@ std::vector<Task> tasks(const Options& asked) {
                            [=](const Scene&, Solver solver, Precision precision) {
                                return run(random_world(traits), traits, solver, precision, asked);
                            }});
-    }
+    });
     return all;
 }
 

@@ -39,21 +39,6 @@ Outcome run_cradle(const Scene& scene, Solver solver, Precision precision, doubl
 
 // Galperin's billiard.
 
-Scene galperin(double ratio) {
-    Scene scene;
-    scene.walls = Walls{.min = {0, -10},
-                        .max = {1e5, 10},
-                        .right = false,
-                        .bottom = false,
-                        .top = false,
-                        .material = material_of(1)};
-    scene.add(disc_of(0.5, {1.5, 0}, {}, material_of(1)));
-    scene.bodies.back().mass = 1;
-    scene.add(disc_of(0.5, {3, 0}, {-1, 0}, material_of(1)));
-    scene.bodies.back().mass = ratio;
-    return scene;
-}
-
 Outcome run_galperin(const Scene& scene, Solver solver, Precision precision, double limit) {
     constexpr double kTime = 30;  // s
     const double ratio = *scene.bodies[1].mass;
@@ -133,7 +118,7 @@ void add_impacts_in_line(std::vector<Task>& all, const Options& asked) {
     for (const int k : {1, 2, 3})
         add_impacts(
             all, asked, measure::format("Galperin, k = %d", k), precisions_of(asked),
-            [=] { return galperin(std::pow(100.0, k)); },
+            [=] { return accuracy::galperin_scene(std::pow(100.0, k)); },
             [=](const Scene& scene, Solver solver, Precision precision) {
                 return run_galperin(scene, solver, precision, limit);
             });
