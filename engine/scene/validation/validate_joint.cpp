@@ -82,39 +82,13 @@ struct FindProblem {
         return check_spring(item, kKind, kind.frequency, kind.damping_ratio);
     }
     std::optional<Problem> operator()(const RevoluteJoint& kind) const {
-        constexpr std::string_view kKind = "/revolute";
-        if (auto found = check_anchor(kKind, kind.anchor)) return found;
-        if (auto found = check_ends(item, kKind, {"/lower", "/upper", kind.lower, kind.upper, kAngle}))
-            return found;
-        if (auto found = check_motor(item, kKind, kind.motor_speed, "/max_motor_torque",
-                                     kind.max_motor_torque, kMotorTorque))
-            return found;
-        return check_spring(item, kKind, kind.frequency, kind.damping_ratio);
+        return check_anchored("/revolute", kind);
     }
     std::optional<Problem> operator()(const PrismaticJoint& kind) const {
-        constexpr std::string_view kKind = "/prismatic";
-        if (auto found = check_axis(item, kKind, kind.axis)) return found;
-        if (auto found = check_anchor(kKind, kind.anchor)) return found;
-        if (auto found = check_ends(item, kKind, {"/lower", "/upper", kind.lower, kind.upper, kWay}))
-            return found;
-        if (auto found = check_motor(item, kKind, kind.motor_speed, "/max_motor_force", kind.max_motor_force,
-                                     kMotorForce))
-            return found;
-        return check_spring(item, kKind, kind.frequency, kind.damping_ratio);
+        return check_anchored("/prismatic", kind);
     }
-    std::optional<Problem> operator()(const WeldJoint& kind) const {
-        if (auto found = check_anchor("/weld", kind.anchor)) return found;
-        return check_spring(item, "/weld", kind.frequency, kind.damping_ratio);
-    }
-    std::optional<Problem> operator()(const WheelJoint& kind) const {
-        constexpr std::string_view kKind = "/wheel";
-        if (auto found = check_axis(item, kKind, kind.axis)) return found;
-        if (auto found = check_anchor(kKind, kind.anchor)) return found;
-        if (auto found = check_motor(item, kKind, kind.motor_speed, "/max_motor_torque",
-                                     kind.max_motor_torque, kMotorTorque))
-            return found;
-        return check_spring(item, kKind, kind.frequency, kind.damping_ratio);
-    }
+    std::optional<Problem> operator()(const WeldJoint& kind) const { return check_anchored("/weld", kind); }
+    std::optional<Problem> operator()(const WheelJoint& kind) const { return check_anchored("/wheel", kind); }
     std::optional<Problem> operator()(const TargetJoint& kind) const {
         constexpr std::string_view kKind = "/target";
         static constexpr Quantity kForce{"max_force", "N", std::numeric_limits<double>::min(), kNoLimit,
@@ -140,8 +114,30 @@ struct FindProblem {
     }
 
   private:
-    std::optional<Problem> check_anchor(std::string_view kind, const std::optional<Vec2>& anchor) const {
-        return anchor ? check_point(item, join(kind, "/anchor"), *anchor) : std::nullopt;
+    /// A joint about a point of the world, with what it has of axis, limits, motor and spring.
+    template <class Kind>
+    std::optional<Problem> check_anchored(std::string_view key, const Kind& kind) const {
+        if constexpr (requires { kind.axis; })
+            if (auto found = check_axis(item, key, kind.axis)) return found;
+        if (kind.anchor)
+            if (auto found = check_point(item, join(key, "/anchor"), *kind.anchor)) return found;
+        if constexpr (requires { kind.lower; }) {
+            const Quantity& quantity = requires {
+                kind.axis;
+            }
+            ? kWay : kAngle;
+            if (auto found = check_ends(item, key, {"/lower", "/upper", kind.lower, kind.upper, quantity}))
+                return found;
+        }
+        if constexpr (requires { kind.max_motor_torque; })
+            if (auto found = check_motor(item, key, kind.motor_speed, "/max_motor_torque",
+                                         kind.max_motor_torque, kMotorTorque))
+                return found;
+        if constexpr (requires { kind.max_motor_force; })
+            if (auto found = check_motor(item, key, kind.motor_speed, "/max_motor_force",
+                                         kind.max_motor_force, kMotorForce))
+                return found;
+        return check_spring(item, key, kind.frequency, kind.damping_ratio);
     }
 };
 

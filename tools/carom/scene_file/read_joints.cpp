@@ -38,65 +38,27 @@ void read_optional(const Node& node, std::string_view key, std::optional<Vec2>& 
     if (const auto value = node.find(key)) into = value->vec2();
 }
 
+/// A kind of joint, key by key as it has them.
 template <class Kind>
-void read_spring(const Node& node, Kind& kind) {
-    node.read("frequency", kind.frequency);
-    node.read("damping_ratio", kind.damping_ratio);
-}
-
-DistanceJoint read_distance(const Node& node) {
-    DistanceJoint kind;
-    node.read("anchor_a", kind.anchor_a), node.read("anchor_b", kind.anchor_b);
-    read_optional(node, "length", kind.length);
-    read_optional(node, "min", kind.min), read_optional(node, "max", kind.max);
-    read_spring(node, kind);
-    return kind;
-}
-
-RevoluteJoint read_revolute(const Node& node) {
-    RevoluteJoint kind;
-    read_optional(node, "anchor", kind.anchor);
-    read_optional(node, "lower", kind.lower), read_optional(node, "upper", kind.upper);
-    read_optional(node, "motor_speed", kind.motor_speed);
-    node.read("max_motor_torque", kind.max_motor_torque);
-    read_spring(node, kind);
-    return kind;
-}
-
-PrismaticJoint read_prismatic(const Node& node) {
-    PrismaticJoint kind;
-    node.read("axis", kind.axis);
-    read_optional(node, "anchor", kind.anchor);
-    read_optional(node, "lower", kind.lower), read_optional(node, "upper", kind.upper);
-    read_optional(node, "motor_speed", kind.motor_speed);
-    node.read("max_motor_force", kind.max_motor_force);
-    read_spring(node, kind);
-    return kind;
-}
-
-WeldJoint read_weld(const Node& node) {
-    WeldJoint kind;
-    read_optional(node, "anchor", kind.anchor);
-    read_spring(node, kind);
-    return kind;
-}
-
-WheelJoint read_wheel(const Node& node) {
-    WheelJoint kind;
-    node.read("axis", kind.axis);
-    read_optional(node, "anchor", kind.anchor);
-    read_optional(node, "motor_speed", kind.motor_speed);
-    node.read("max_motor_torque", kind.max_motor_torque);
-    read_spring(node, kind);
-    return kind;
-}
-
-TargetJoint read_target(const Node& node) {
-    TargetJoint kind;
-    node.read("anchor", kind.anchor);
-    kind.target = node.at("target").vec2();
-    kind.max_force = node.at("max_force").number();
-    read_spring(node, kind);
+Kind read_keys(const Node& node) {
+    Kind kind;
+    if constexpr (requires { kind.anchor_a; }) node.read("anchor_a", kind.anchor_a);
+    if constexpr (requires { kind.anchor_b; }) node.read("anchor_b", kind.anchor_b);
+    if constexpr (requires { kind.axis; }) node.read("axis", kind.axis);
+    if constexpr (requires { kind.anchor.value(); }) read_optional(node, "anchor", kind.anchor);
+    if constexpr (requires { kind.anchor.x; }) node.read("anchor", kind.anchor);
+    if constexpr (requires { kind.length; }) read_optional(node, "length", kind.length);
+    if constexpr (requires { kind.min; }) read_optional(node, "min", kind.min);
+    if constexpr (requires { kind.max; }) read_optional(node, "max", kind.max);
+    if constexpr (requires { kind.lower; }) read_optional(node, "lower", kind.lower);
+    if constexpr (requires { kind.upper; }) read_optional(node, "upper", kind.upper);
+    if constexpr (requires { kind.motor_speed; }) read_optional(node, "motor_speed", kind.motor_speed);
+    if constexpr (requires { kind.max_motor_torque; }) node.read("max_motor_torque", kind.max_motor_torque);
+    if constexpr (requires { kind.max_motor_force; }) node.read("max_motor_force", kind.max_motor_force);
+    if constexpr (requires { kind.target; }) kind.target = node.at("target").vec2();
+    if constexpr (requires { kind.max_force; }) kind.max_force = node.at("max_force").number();
+    if constexpr (requires { kind.frequency; }) node.read("frequency", kind.frequency);
+    if constexpr (requires { kind.damping_ratio; }) node.read("damping_ratio", kind.damping_ratio);
     return kind;
 }
 
@@ -147,13 +109,13 @@ Node::Names keys_of(std::string_view kind) {
 JointKind read_kind(const Node& node) {
     const std::string_view kind = node.key();
     node.expect_keys(keys_of(kind));
-    if (kind == "distance") return read_distance(node);
-    if (kind == "revolute") return read_revolute(node);
-    if (kind == "prismatic") return read_prismatic(node);
-    if (kind == "weld") return read_weld(node);
-    if (kind == "wheel") return read_wheel(node);
+    if (kind == "distance") return read_keys<DistanceJoint>(node);
+    if (kind == "revolute") return read_keys<RevoluteJoint>(node);
+    if (kind == "prismatic") return read_keys<PrismaticJoint>(node);
+    if (kind == "weld") return read_keys<WeldJoint>(node);
+    if (kind == "wheel") return read_keys<WheelJoint>(node);
     if (kind == "gear") return read_gear(node);
-    return read_target(node);
+    return read_keys<TargetJoint>(node);
 }
 
 Joint read_joint(const Node& entry, const Scene& scene) {
