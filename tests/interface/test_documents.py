@@ -97,14 +97,15 @@ class DocumentsTest(ProgramTest):
         self.assertEqual(*(re.search(r'"state_hash": "\w+"', summary).group() for summary in (scalar, best)))
 
     @unittest.skipUnless(IS_RELEASE, "the example is linked against the release build")
-    def test_embedding_example_prints_what_the_readme_shows(self):
-        blocks = blocks_of("README.md")
-        index = next(i for i, block in enumerate(blocks) if block[1] == "cpp")
-        (self.folder / "example.cpp").write_text(blocks[index][2])
+    def test_embedding_examples_print_what_their_pages_show(self):
         compiler = shutil.which("g++") or self.skipTest("no g++")
-        self.shell(f"{compiler} -std=c++20 -I {SOURCE}/engine/include example.cpp build/release/engine/libcarom.a -fopenmp "
-                   "-o example")
-        self.assertEqual(self.shell("./example"), blocks[index + 1][2])
+        for document in ("README.md", "docs/joints.md"):
+            blocks = blocks_of(document)
+            index = next(i for i, block in enumerate(blocks) if block[1] == "cpp")
+            (self.folder / "example.cpp").write_text(blocks[index][2])
+            self.shell(f"{compiler} -std=c++20 -I {SOURCE}/engine/include example.cpp build/release/engine/libcarom.a -fopenmp "
+                       "-o example")
+            self.assertEqual(self.shell("./example"), blocks[index + 1][2], document)
 
     def test_links_lead_somewhere(self):
         for document in (SOURCE / "README.md", *sorted((SOURCE / "docs").rglob("*.md"))):
