@@ -20,20 +20,33 @@ struct Rotation {
 /// bits, so that whole number times part is exact (Cody & Waite 1980). The rest are Taylor's series: x^17/17!
 /// and x^18/18! of π/4 are below 2^-53. Beyond 1e15 rad, where numbers are a turn's eighth and more apart,
 /// the angle says no direction: then, and where it is no number, there is no turn.
+///
+/// Cost: about 60 operations, none of them a division, and no call.
 inline Rotation rotation_by(double angle) {
     constexpr double kLargest = 1e15;  // rad
     if (!(std::fabs(angle) <= kLargest)) return {};
     constexpr double kPart[] = {0x1.921fb5p+0, 0x1.110b46p-26, 0x1.1a6263p-54, 0x1.8a2e03707344ap-81};
     constexpr double kTwoOverPi = 0.63661977236758134308;
-    const double quarters = std::floor(angle * kTwoOverPi + 0.5);
+    constexpr double kToWhole = 0x1.8p52;  // added and taken away again, it leaves a whole number
+    const double quarters = (angle * kTwoOverPi + kToWhole) - kToWhole;
     double x = angle;
     for (const double part : kPart) x -= quarters * part;
     const double square = x * x;
-    double c = 1, s = 1;
-    for (int n = 18; n >= 2; n -= 2) {  // 1 - x²/2 (1 - x²/12 (...)), and x (1 - x²/6 (1 - x²/20 (...)))
-        c = 1 - square / (n * (n - 1)) * c;
-        s = 1 - square / (n * (n + 1)) * s;
-    }
+    // The series in x², the highest power first: 16th to 0th of the cosine, 15th to 1st of the sine.
+    constexpr double kOfCosine[] = {1. / 20922789888000,
+                                    -1. / 87178291200,
+                                    1. / 479001600,
+                                    -1. / 3628800,
+                                    1. / 40320,
+                                    -1. / 720,
+                                    1. / 24,
+                                    -1. / 2,
+                                    1};
+    constexpr double kOfSine[] = {-1. / 1307674368000, 1. / 6227020800, -1. / 39916800, 1. / 362880,
+                                  -1. / 5040,          1. / 120,        -1. / 6,        1};
+    double c = 0, s = 0;
+    for (const double factor : kOfCosine) c = c * square + factor;
+    for (const double factor : kOfSine) s = s * square + factor;
     s *= x;
     switch (static_cast<long long>(quarters) & 3) {
         case 0:

@@ -131,28 +131,26 @@ void SurfaceFinder<Real>::find_walls(const WorldState<Real>& world, const Subste
                                      const ContactDistance& near, ManifoldList<Real>& list) {
     const Bodies<Real>& bodies = world.bodies;
     const Walls& walls = *world.walls;
+    const Enclosure<double> enclosure(&walls);
     for (std::size_t row = 0; row < bodies.moving(); ++row) {
         if (bodies.is_disc(row) || bodies.shape[row] < 0 || bodies.is_immovable(row)) continue;
         if (bodies.flags_of(row) & kSensor) continue;
-        const double way = reach_in_step(bodies, row, terms.dt);
-        const Vec2 centre{bodies.position_x[row], bodies.position_y[row]};
-        for (const std::int32_t side : kWallSides) {
-            if (!has_wall(walls, side)) continue;
-            const Vec2 n = wall_normal(side), corner = wall_corner(walls, side);
-            const double apart = dot(corner - centre, n) - static_cast<double>(bodies.radius[row]);
-            const double thickness = bodies.inradius(row);
-            if (apart > near(thickness) + thickness + way) continue;
+        const double way = reach_in_step(bodies, row, terms.dt), thickness = bodies.inradius(row);
+        const double reach = static_cast<double>(bodies.radius[row]) + near(thickness) + thickness + way;
+        const auto find_wall = [&](std::int32_t side) {
             world.shapes.for_each_piece(
                 bodies.shape[row],
                 [&](const ConvexShape<Real>& shape, std::int32_t number, const StoredPiece* piece) {
                     const double thick = shape.inradius, margin = near(thick) + thick + way;
-                    const Manifold<double> m = manifold_on_plane(placed_row(world, row, shape), n, corner);
+                    const Manifold<double> m = manifold_on_plane(placed_row(world, row, shape),
+                                                                 wall_normal(side), wall_corner(walls, side));
                     if (m.separation1 > margin && m.separation2 > margin) return;
                     list.add(static_cast<std::int32_t>(row), Partner::wall(side).stored(),
                              {bodies.id[row], BodyId{}, ManifoldName::place_of_side(side, number)});
                     manifolds_.push_back(m), pieces_.push_back(piece);
                 });
-        }
+        };
+        enclosure.for_each_side_within(bodies.position_x[row], bodies.position_y[row], reach, find_wall);
     }
 }
 

@@ -16,16 +16,21 @@ constexpr std::size_t kMostCompared = 12;
 /// of the angle between where they push the body, is -1 ... 1.
 constexpr float kLoadedFirst = 4;
 constexpr float kTiny = 1e-30f;  // m², so that a contact in the centre of mass has an arm of length 0
+/// Contacts of a path that is not slender, as towers are: its loads spread to others anyhow, and a long
+/// bundle is solved again as a whole for one contact that changes. docs/decisions/0038-broad-paths.md.
+constexpr std::uint32_t kLongestBroad = 64;
 constexpr std::uint32_t kMostColours = 64;  // bits of a word
 
 }  // namespace
 
 void PathCut::cut(std::span<const ContactLink> contacts, std::size_t rows, std::size_t longest) {
     list_contacts_of_bodies(contacts, rows);
+    count_loads(contacts, rows);
     joined_.assign(2 * contacts.size(), -1);
     for (std::size_t row = 0; row < rows; ++row)
         if (first_at_[row + 1] - first_at_[row] > 1) join_at(contacts, static_cast<std::int32_t>(row));
     walk(contacts, rows, longest);
+    split_broad(contacts);
     colour(contacts, rows);
     lay_out(contacts, rows);
 }
@@ -44,6 +49,13 @@ void PathCut::list_contacts_of_bodies(std::span<const ContactLink> contacts, std
         contact_at_[first_at_[row + 1]++] = static_cast<std::uint32_t>(i);
     });
     first_at_.pop_back();
+}
+
+void PathCut::count_loads(std::span<const ContactLink> contacts, std::size_t rows) {
+    loaded_count_.assign(rows, 0);
+    for (const ContactLink& link : contacts)
+        for (const std::int32_t row : {link.a, link.b})
+            if (link.is_loaded && row >= 0) ++loaded_count_[static_cast<std::size_t>(row)];
 }
 
 /// Joins the contacts of a body by twos: first the two that face each other best, then the best of the rest.
@@ -143,6 +155,21 @@ void PathCut::walk_from(std::span<const ContactLink> contacts, std::size_t conta
     }
 }
 
+/// Cuts paths into parts of about the same length if they are longer than what is no tower needs.
+void PathCut::split_broad(std::span<const ContactLink> contacts) {
+    const std::size_t count = pieces_.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        if (pieces_[i].length <= kLongestBroad || is_slender(contacts, pieces_[i])) continue;
+        const std::uint32_t length = pieces_[i].length, parts = (length + kLongestBroad - 1) / kLongestBroad;
+        const std::uint32_t first = pieces_[i].first;
+        pieces_[i].length = length / parts;
+        for (std::uint32_t part = 1; part < parts; ++part) {
+            const std::uint32_t begin = part * length / parts, end = (part + 1) * length / parts;
+            pieces_.push_back({first + begin, end - begin, 0});
+        }
+    }
+}
+
 /// Gives paths colours, long ones first. A path that fits into none as a whole is cut where it must be.
 void PathCut::colour(std::span<const ContactLink> contacts, std::size_t rows) {
     used_.assign(rows, 0), coloured_.clear();
@@ -200,10 +227,6 @@ void PathCut::colour(std::span<const ContactLink> contacts, std::size_t rows) {
 
 /// Bundles of each colour, the longest paths first.
 void PathCut::lay_out(std::span<const ContactLink> contacts, std::size_t rows) {
-    loaded_count_.assign(rows, 0);
-    for (const ContactLink& link : contacts)
-        for (const std::int32_t row : {link.a, link.b})
-            if (link.is_loaded && row >= 0) ++loaded_count_[static_cast<std::size_t>(row)];
     order_.resize(coloured_.size());
     for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
     std::stable_sort(order_.begin(), order_.end(), [&](std::uint32_t i, std::uint32_t j) {

@@ -47,7 +47,7 @@ class PathCut {
     };
 
     /// @param rows  of bodies
-    /// @param longest  contacts in a path, >= 1
+    /// @param longest  contacts in a path, >= 1; those that are not slender have at most 64
     void cut(std::span<const ContactLink> contacts, std::size_t rows, std::size_t longest);
 
     /// The place of each contact, in the order of `cut`.
@@ -88,6 +88,8 @@ class PathCut {
     };
 
     void list_contacts_of_bodies(std::span<const ContactLink> contacts, std::size_t rows);
+    void count_loads(std::span<const ContactLink> contacts, std::size_t rows);
+    void split_broad(std::span<const ContactLink> contacts);
     void join_at(std::span<const ContactLink> contacts, std::int32_t row);
     void walk(std::span<const ContactLink> contacts, std::size_t rows, std::size_t longest);
     void walk_from(std::span<const ContactLink> contacts, std::size_t contact, std::size_t longest);
