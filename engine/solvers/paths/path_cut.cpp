@@ -4,14 +4,17 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "kernels/paths/path_arguments.hpp"
 
 namespace carom {
 namespace {
 
-/// Contacts of a body that are compared with each other; more end their paths at the body.
-constexpr std::size_t kMostCompared = 12;
+/// Contacts of a body that are joined with each other; more end their paths at the body.
+constexpr std::size_t kMostJoined = 12;
+/// Contacts of a body that are compared with each other, loaded ones first; more only if they are loaded.
+constexpr std::size_t kMostCompared = 6;
 /// Two loaded contacts are joined before any other two: how well contacts face each other, minus the cosine
 /// of the angle between where they push the body, is -1 ... 1.
 constexpr float kLoadedFirst = 4;
@@ -20,6 +23,23 @@ constexpr float kTiny = 1e-30f;  // m², so that a contact in the centre of mass
 /// bundle is solved again as a whole for one contact that changes. docs/decisions/0038-broad-paths.md.
 constexpr std::uint32_t kLongestBroad = 64;
 constexpr std::uint32_t kMostColours = 64;  // bits of a word
+
+/// Two contacts of a body and how well they go together, as a number: the larger the better, of equal ones
+/// the first. The upper half is in the order of the score, the lower tells which two they are.
+std::int64_t two_of(float score, std::size_t i, std::size_t j) {
+    const auto bits = std::bit_cast<std::int32_t>(score + 0.0F);  // -0 becomes 0
+    const std::int32_t ordered = bits ^ ((bits >> 31) & std::numeric_limits<std::int32_t>::max());
+    return static_cast<std::int64_t>(ordered) * (std::int64_t{1} << 32) +
+           static_cast<std::int64_t>(255 - (16 * i + j));
+}
+std::uint32_t first_of(std::int64_t two) {
+    return (255 - (static_cast<std::uint32_t>(two) & 255)) / 16;
+}
+std::uint32_t second_of(std::int64_t two) {
+    return (255 - (static_cast<std::uint32_t>(two) & 255)) % 16;
+}
+constexpr std::int64_t kNoTwo = std::numeric_limits<std::int64_t>::min();
+static_assert(kMostJoined <= 16);
 
 }  // namespace
 
@@ -32,7 +52,7 @@ void PathCut::cut(std::span<const ContactLink> contacts, std::size_t rows, std::
     walk(contacts, rows, longest);
     split_broad(contacts);
     colour(contacts, rows);
-    lay_out(contacts, rows);
+    lay_out(contacts);
 }
 
 void PathCut::list_contacts_of_bodies(std::span<const ContactLink> contacts, std::size_t rows) {
@@ -58,7 +78,8 @@ void PathCut::count_loads(std::span<const ContactLink> contacts, std::size_t row
             if (link.is_loaded && row >= 0) ++loaded_count_[static_cast<std::size_t>(row)];
 }
 
-/// Joins the contacts of a body by twos: first the two that face each other best, then the best of the rest.
+/// Joins the contacts of a body by twos: first the two that face each other best, then the best of the rest,
+/// and in their order what is left.
 void PathCut::join_at(std::span<const ContactLink> contacts, std::int32_t row) {
     const auto r = static_cast<std::size_t>(row);
     const auto side = [&](std::uint32_t contact) {
@@ -69,46 +90,52 @@ void PathCut::join_at(std::span<const ContactLink> contacts, std::int32_t row) {
     };
     if (first_at_[r + 1] - first_at_[r] == 2)
         return join(contact_at_[first_at_[r]], contact_at_[first_at_[r] + 1]);
-    struct Arm {
-        std::uint32_t contact;
-        float x, y;  // no unit: where the contact pushes the body, seen from its centre of mass
-        bool is_loaded;
-    };
-    std::array<Arm, kMostCompared> arms;
-    std::size_t count = 0;
-    for (const bool loaded : {true, false})
-        for (std::uint32_t at = first_at_[r]; at < first_at_[r + 1] && count < kMostCompared; ++at) {
-            const std::uint32_t i = contact_at_[at];
-            const ContactLink& link = contacts[i];
-            if (link.is_loaded != loaded) continue;
-            const bool is_a = link.a == row;
-            const float x = is_a ? link.arm_a_x : link.arm_b_x, y = is_a ? link.arm_a_y : link.arm_b_y;
-            const float scale = 1 / std::sqrt(x * x + y * y + kTiny);
-            arms[count++] = {i, scale * x, scale * y, loaded};
-        }
-    struct Two {
-        float score;
-        std::uint8_t i, j;
-    };
-    std::array<Two, kMostCompared*(kMostCompared - 1) / 2> twos;
+    // Where contacts push the body, seen from its centre of mass; no unit. Loaded ones first.
+    std::array<std::uint32_t, kMostJoined> contact;
+    std::array<float, kMostJoined> x, y;
+    const std::size_t loaded = loaded_count_[r];
+    std::size_t next_loaded = 0, next_other = loaded;
+    for (std::uint32_t at = first_at_[r]; at < first_at_[r + 1]; ++at) {
+        const ContactLink& link = contacts[contact_at_[at]];
+        const std::size_t place = link.is_loaded ? next_loaded++ : next_other++;
+        if (place >= kMostJoined) continue;
+        const bool is_a = link.a == row;
+        contact[place] = contact_at_[at];
+        x[place] = is_a ? link.arm_a_x : link.arm_b_x, y[place] = is_a ? link.arm_a_y : link.arm_b_y;
+    }
+    const std::size_t count = std::min<std::size_t>(first_at_[r + 1] - first_at_[r], kMostJoined);
+    const std::size_t compared = std::min(count, std::max(loaded, kMostCompared));
+    for (std::size_t i = 0; i < compared; ++i) {
+        const float scale = 1 / std::sqrt(x[i] * x[i] + y[i] * y[i] + kTiny);
+        x[i] *= scale, y[i] *= scale;
+    }
+    std::array<std::int64_t, kMostJoined*(kMostJoined - 1) / 2> twos;
     std::size_t two_count = 0;
-    for (std::uint8_t i = 0; i < count; ++i)
-        for (auto j = static_cast<std::uint8_t>(i + 1); j < count; ++j)
-            twos[two_count++] = {(arms[i].is_loaded && arms[j].is_loaded ? kLoadedFirst : 0) -
-                                     (arms[i].x * arms[j].x + arms[i].y * arms[j].y),
-                                 i, j};
-    while (two_count > 0) {
-        Two best = twos[0];
-        for (std::size_t t = 1; t < two_count; ++t) best = twos[t].score > best.score ? twos[t] : best;
-        join(arms[best.i].contact, arms[best.j].contact);
-        const std::size_t before = two_count;
-        two_count = 0;
-        for (std::size_t t = 0; t < before; ++t) {
-            const Two two = twos[t];
-            twos[two_count] = two;
-            const bool is_left = two.i != best.i && two.i != best.j && two.j != best.i && two.j != best.j;
-            two_count += is_left ? 1 : 0;
+    std::int64_t best = kNoTwo;
+    for (std::size_t i = 0; i < compared; ++i)
+        for (std::size_t j = i + 1; j < compared; ++j) {
+            const float facing = -(x[i] * x[j] + y[i] * y[j]);
+            const std::int64_t two = two_of(j < loaded ? kLoadedFirst + facing : facing, i, j);
+            best = std::max(best, twos[two_count++] = two);
         }
+    std::uint32_t left = (1U << count) - 1;  // a bit for each contact that is not joined yet
+    while (best != kNoTwo) {
+        const std::uint32_t i = first_of(best), j = second_of(best);
+        join(contact[i], contact[j]), left &= ~(1U << i | 1U << j);
+        const std::size_t before = two_count;
+        two_count = 0, best = kNoTwo;
+        for (std::size_t t = 0; t < before; ++t) {
+            const std::int64_t two = twos[t];
+            const std::uint32_t k = first_of(two), l = second_of(two);
+            const bool is_left = (k != i) & (k != j) & (l != i) & (l != j);
+            twos[two_count] = two, two_count += is_left ? 1 : 0;
+            best = std::max(best, is_left ? two : kNoTwo);
+        }
+    }
+    while (std::popcount(left) > 1) {
+        const int i = std::countr_zero(left), j = std::countr_zero(left & (left - 1));
+        join(contact[static_cast<std::size_t>(i)], contact[static_cast<std::size_t>(j)]);
+        left &= ~(1U << i | 1U << j);
     }
 }
 
@@ -226,7 +253,7 @@ void PathCut::colour(std::span<const ContactLink> contacts, std::size_t rows) {
 }
 
 /// Bundles of each colour, the longest paths first.
-void PathCut::lay_out(std::span<const ContactLink> contacts, std::size_t rows) {
+void PathCut::lay_out(std::span<const ContactLink> contacts) {
     order_.resize(coloured_.size());
     for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
     std::stable_sort(order_.begin(), order_.end(), [&](std::uint32_t i, std::uint32_t j) {

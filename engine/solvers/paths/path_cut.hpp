@@ -94,7 +94,7 @@ class PathCut {
     void walk(std::span<const ContactLink> contacts, std::size_t rows, std::size_t longest);
     void walk_from(std::span<const ContactLink> contacts, std::size_t contact, std::size_t longest);
     void colour(std::span<const ContactLink> contacts, std::size_t rows);
-    void lay_out(std::span<const ContactLink> contacts, std::size_t rows);
+    void lay_out(std::span<const ContactLink> contacts);
     void lay_out_colour(std::span<const ContactLink> contacts, std::size_t first, std::size_t last);
     void put(std::span<const ContactLink> contacts, const Piece& piece, std::uint8_t lane, std::size_t link);
     bool is_slender(std::span<const ContactLink> contacts, const Piece& piece) const;

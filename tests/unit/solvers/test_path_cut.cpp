@@ -161,6 +161,34 @@ TEST_SUITE("solvers/paths/path_cut") {
         CHECK_FALSE(is_slender(12, false, false));
         CHECK_FALSE(is_slender(PathCut::kSlender, true, false));
     }
+    TEST_CASE("a tower of a hundred is one path, and in parts as long as each other once loads lead aside") {
+        const auto cut_tower = [](bool has_neighbours) {
+            std::vector<ContactLink> contacts{{0, ContactLink::kNothing, 0, -1, 0, 1, true}};
+            for (std::int32_t body = 1; body < 100; ++body)
+                contacts.push_back({body - 1, body, 0, 1, 0, -1, true});
+            if (has_neighbours)
+                for (std::int32_t body = 0; body < 100; ++body)
+                    contacts.push_back({body, 100 + body, 1, 0, -1, 0, true});
+            PathCut cut;
+            cut.cut(contacts, 200, 128);
+            CHECK(walk(cut, contacts).hangs_together);
+            return cut.longest();
+        };
+        CHECK(cut_tower(false) == 100);
+        CHECK(cut_tower(true) == 51);  // the last body leads on to its neighbour: 101 contacts in two parts
+    }
+    TEST_CASE("up to twelve contacts of a body are joined by twos, those without load, too") {
+        for (const bool is_loaded : {true, false})
+            for (std::int32_t count = 2; count <= 20; ++count) {
+                std::vector<ContactLink> contacts;
+                for (std::int32_t body = 1; body <= count; ++body)
+                    contacts.push_back({0, body, static_cast<float>(body), 1, 0, -1, is_loaded});
+                PathCut cut;
+                cut.cut(contacts, static_cast<std::size_t>(count) + 1, 16);
+                const int joined = std::min(count, 12);
+                CHECK(cut.paths() == static_cast<std::size_t>((joined + 1) / 2 + count - joined));
+            }
+    }
     TEST_CASE("a load goes straight through: contacts that face each other are joined") {
         // One body between four: left, right, below and above it.
         const std::vector<ContactLink> contacts{{0, 1, -1, 0, 1, 0, true},
