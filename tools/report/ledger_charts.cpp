@@ -59,7 +59,7 @@ void add_energy(const NumberTable& ledger, Page& page) {
         chart.series.push_back(over_time(time, ledger.at(column), column, colour++));
     chart.marks = impacts_of(ledger);
     const std::vector<double>& impacts = ledger.at("impacts");
-    if (!impacts.empty() && std::fabs(impacts.back()) < kMostImpacts)
+    if (!impacts.empty() && impacts.back() > 0 && impacts.back() < kMostImpacts)
         chart.note = "Marks on the time axis: steps in which bodies or walls collided, " +
                      std::to_string(static_cast<long long>(impacts.back())) + " impacts in all.";
     page.chart(std::move(chart));

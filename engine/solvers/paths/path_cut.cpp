@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "kernels/paths/path_arguments.hpp"
 
@@ -52,7 +54,27 @@ void PathCut::cut(std::span<const ContactLink> contacts, std::size_t rows, std::
     walk(contacts, rows, longest);
     split_broad(contacts);
     colour(contacts, rows);
+    assert(colours_share_no_body(contacts, rows));
     lay_out(contacts);
+}
+
+/// For assertions: whether no path names a body twice and no two paths of a colour name the same one.
+bool PathCut::colours_share_no_body(std::span<const ContactLink> contacts, std::size_t rows) const {
+    thread_local std::vector<std::uint64_t> seen;  // by row: colours
+    seen.assign(rows, 0);
+    for (const Piece& piece : coloured_) {
+        if (piece.colour >= kMostColours) continue;  // a path alone in its colour
+        const auto is_new = [&, bit = std::uint64_t{1} << piece.colour](std::int32_t row) {
+            if (row < 0) return true;
+            std::uint64_t& colours = seen[static_cast<std::size_t>(row)];
+            return (std::exchange(colours, colours | bit) & bit) == 0;
+        };
+        const Step& first = sequence_[piece.first];
+        if (!is_new(first.row_before(contacts))) return false;
+        for (std::uint32_t s = piece.first; s < piece.first + piece.length; ++s)
+            if (!is_new(sequence_[s].row_after(contacts))) return false;
+    }
+    return true;
 }
 
 void PathCut::list_contacts_of_bodies(std::span<const ContactLink> contacts, std::size_t rows) {
@@ -151,34 +173,29 @@ void PathCut::walk(std::span<const ContactLink> contacts, std::size_t rows, std:
 
 /// Follows a path from its first contact; a new piece begins where it is too long or comes to a body again.
 void PathCut::walk_from(std::span<const ContactLink> contacts, std::size_t contact, std::size_t longest) {
-    bool is_reversed = joined_[2 * contact] >= 0 && joined_[2 * contact + 1] < 0;
+    Step step = {static_cast<std::int32_t>(contact),
+                 joined_[2 * contact] >= 0 && joined_[2 * contact + 1] < 0};
     const auto begin_piece = [&](std::int32_t head) {
         pieces_.push_back({static_cast<std::uint32_t>(sequence_.size()), 0, 0});
         if (head >= 0)
             piece_of_row_[static_cast<std::size_t>(head)] = static_cast<std::uint32_t>(pieces_.size());
     };
-    const auto head_of = [&](std::size_t i, bool reversed) {
-        return reversed ? contacts[i].b : contacts[i].a;
-    };
-    const auto end_of = [&](std::size_t i, bool reversed) {
-        return reversed ? contacts[i].a : contacts[i].b;
-    };
-    begin_piece(head_of(contact, is_reversed));
+    begin_piece(step.row_before(contacts));
     while (!is_seen_[contact]) {
-        const std::int32_t end = end_of(contact, is_reversed);
+        const std::int32_t end = step.row_after(contacts);
         const auto piece = static_cast<std::uint32_t>(pieces_.size());
         if (pieces_.back().length == longest ||
             (end >= 0 && pieces_.back().length > 0 && piece_of_row_[static_cast<std::size_t>(end)] == piece))
-            begin_piece(head_of(contact, is_reversed));
+            begin_piece(step.row_before(contacts));
         is_seen_[contact] = 1;
-        sequence_.push_back({static_cast<std::int32_t>(contact), is_reversed});
+        sequence_.push_back(step);
         ++pieces_.back().length;
         if (end < 0) return;
         piece_of_row_[static_cast<std::size_t>(end)] = static_cast<std::uint32_t>(pieces_.size());
-        const std::int32_t next = joined_[2 * contact + (is_reversed ? 0 : 1)];
+        const std::int32_t next = joined_[2 * contact + (step.is_reversed ? 0 : 1)];
         if (next < 0) return;
         contact = static_cast<std::size_t>(next);
-        is_reversed = contacts[contact].a != end;
+        step = {next, contacts[contact].a != end};
     }
 }
 
@@ -210,26 +227,19 @@ void PathCut::colour(std::span<const ContactLink> contacts, std::size_t rows) {
 
     std::uint32_t next_alone = kMostColours;  // colours of what finds none
     const auto mask_of = [&](std::int32_t row) { return row < 0 ? 0 : used_[static_cast<std::size_t>(row)]; };
-    const auto head = [&](const Step& s) {
-        const ContactLink& link = contacts[static_cast<std::size_t>(s.contact)];
-        return s.is_reversed ? link.b : link.a;
-    };
-    const auto end = [&](const Step& s) {
-        const ContactLink& link = contacts[static_cast<std::size_t>(s.contact)];
-        return s.is_reversed ? link.a : link.b;
-    };
     for (const std::uint32_t number : order_) {
         std::uint32_t first = pieces_[number].first;
         const std::uint32_t last = first + pieces_[number].length;
         while (first < last) {
             // free: colours that the path can have as far as `reached`
-            std::uint64_t free = ~mask_of(head(sequence_[first]));
+            std::uint64_t free = ~mask_of(sequence_[first].row_before(contacts));
             constexpr std::uint64_t kPreferred = (std::uint64_t{1} << kColours) - 1;
             std::uint32_t reached = first;
             std::uint64_t limit = kPreferred;
-            if ((free & ~mask_of(end(sequence_[first])) & kPreferred) == 0) limit = ~std::uint64_t{0};
+            if ((free & ~mask_of(sequence_[first].row_after(contacts)) & kPreferred) == 0)
+                limit = ~std::uint64_t{0};
             while (reached < last) {
-                const std::uint64_t still_free = free & ~mask_of(end(sequence_[reached]));
+                const std::uint64_t still_free = free & ~mask_of(sequence_[reached].row_after(contacts));
                 if ((still_free & limit) == 0) break;
                 free = still_free, ++reached;
             }
@@ -244,8 +254,8 @@ void PathCut::colour(std::span<const ContactLink> contacts, std::size_t rows) {
                 const auto mark = [&](std::int32_t row) {
                     if (row >= 0) used_[static_cast<std::size_t>(row)] |= bit;
                 };
-                mark(head(sequence_[first]));
-                for (std::uint32_t s = first; s < reached; ++s) mark(end(sequence_[s]));
+                mark(sequence_[first].row_before(contacts));
+                for (std::uint32_t s = first; s < reached; ++s) mark(sequence_[s].row_after(contacts));
             }
             first = reached;
         }
@@ -332,7 +342,7 @@ bool PathCut::is_slender(std::span<const ContactLink> contacts, const Piece& pie
     int alone = 0;  // bodies between two links of the path that no other load leads to
     for (std::uint32_t s = piece.first; s + 1 < piece.first + piece.length; ++s) {
         const ContactLink& link = contacts[static_cast<std::size_t>(sequence_[s].contact)];
-        const std::int32_t row = sequence_[s].is_reversed ? link.a : link.b;
+        const std::int32_t row = sequence_[s].row_after(contacts);
         if (link.is_loaded && loaded_count_[static_cast<std::size_t>(row)] <= 2) ++alone;
     }
     return alone > kSlender;

@@ -85,6 +85,15 @@ class PathCut {
     struct Step {
         std::int32_t contact;
         bool is_reversed;
+
+        std::int32_t row_before(std::span<const ContactLink> contacts) const {
+            const ContactLink& link = contacts[static_cast<std::size_t>(contact)];
+            return is_reversed ? link.b : link.a;
+        }
+        std::int32_t row_after(std::span<const ContactLink> contacts) const {
+            const ContactLink& link = contacts[static_cast<std::size_t>(contact)];
+            return is_reversed ? link.a : link.b;
+        }
     };
 
     void list_contacts_of_bodies(std::span<const ContactLink> contacts, std::size_t rows);
@@ -98,6 +107,7 @@ class PathCut {
     void lay_out_colour(std::span<const ContactLink> contacts, std::size_t first, std::size_t last);
     void put(std::span<const ContactLink> contacts, const Piece& piece, std::uint8_t lane, std::size_t link);
     bool is_slender(std::span<const ContactLink> contacts, const Piece& piece) const;
+    bool colours_share_no_body(std::span<const ContactLink> contacts, std::size_t rows) const;
 
     std::vector<std::uint32_t> first_at_;  // by row: its contacts, in contact_at_
     std::vector<std::uint32_t> contact_at_;

@@ -1,7 +1,9 @@
 #include "solvers/soft/stages.hpp"
 
 #include <algorithm>
+#include <cassert>
 
+#include "constraints/contact_faults.hpp"
 #include "solvers/shared/candidate_stages.hpp"
 
 namespace carom {
@@ -61,6 +63,8 @@ void update_contacts(SoftSimulation<Real>& sim) {
     }
     sim.graph_of_rebuild = sim.candidates.rebuild_count();
     sim.sleepers.restore_impulses(sim.soft.graph, sim.world, sim.soft.substep_of_impulses());
+    assert(!fault_of(sim.soft.graph.pairs, sim.soft.graph.groups, sim.world.bodies, true));
+    assert(!fault_of(sim.soft.graph.supports, sim.soft.graph.groups, sim.world.bodies, false));
 }
 
 template <class Real>
