@@ -68,7 +68,8 @@ struct SolvePaths {
                               // change the worst alone
     int most_iterations;      // of the active set
     int most_of_slender;      // likewise, of bundles that are slender
-    int sweeps_of_unsettled;  // over paths that settle neither as a whole nor in pieces
+    bool tries_pieces;        // whether paths that do not settle as a whole are solved in pieces
+    int sweeps_of_unsettled;  // over paths that do not settle so either
     void* scratch;            // of path_scratch_bytes(longest bundle) bytes, aligned to 64
 };
 
@@ -80,8 +81,7 @@ inline constexpr std::size_t path_scratch_bytes(std::size_t longest) {
 
 /// What the kernel met.
 struct PathCounts {
-    std::size_t iterations = 0;  // batch and link
-    std::size_t unsettled = 0;   // lanes
+    std::size_t unsettled = 0;  // lanes
 };
 
 }  // namespace carom

@@ -371,8 +371,7 @@ template <class Lanes, class Real, class Fn>
 /// @return lanes whose active set did not settle
 template <class Lanes, class Real>
 typename Lanes::Mask solve_exactly(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch, int most_iterations,
-                                   typename Lanes::Mask where, PathCounts& counts,
-                                   typename Lanes::Batch& restless) {
+                                   typename Lanes::Mask where, typename Lanes::Batch& restless) {
     using F = typename Lanes::Batch;
     const SolvePaths<Real>& k = p.k;
     const F fastest = begin_paths<Lanes>(p, scratch, restless);
@@ -385,7 +384,6 @@ typename Lanes::Mask solve_exactly(const PathBatch<Real>& p, LinkScratch<Lanes>*
         eliminate<Lanes>(p, scratch);
         const std::size_t stretch = i < k.bold_iterations ? 0 : i < kIterationsByPieces ? kPiece : kLongPiece;
         bad = substitute<Lanes>(p, scratch, by_speed, by_impulse, most, stretch);
-        counts.iterations += p.length;
     }
     apply_changes<Lanes>(p, scratch, where & !bad);
     return bad & where;
@@ -393,9 +391,10 @@ typename Lanes::Mask solve_exactly(const PathBatch<Real>& p, LinkScratch<Lanes>*
 
 /// What does not settle as a whole may in pieces: first those that begin with the path, then those that begin
 /// half a piece later, across the ends of the first.
+/// @return lanes in which some piece did not
 template <class Lanes, class Real>
-void solve_in_pieces(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch, typename Lanes::Mask where,
-                     PathCounts& counts) {
+typename Lanes::Mask solve_in_pieces(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch,
+                                     typename Lanes::Mask where) {
     const SolvePaths<Real>& k = p.k;
     auto bad = where;
     typename Lanes::Batch restless;
@@ -405,12 +404,11 @@ void solve_in_pieces(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch, type
             const std::size_t to = from == 0 && shift > 0 ? shift : from + kPiece;
             const std::size_t length = (to < p.length ? to : p.length) - from;
             const PathBatch<Real> piece{k, p.link + from, length, p.lane, p.near_rows(from)};
-            bad = bad | solve_exactly<Lanes>(piece, scratch, kIterationsOfPiece, where, counts, restless);
+            bad = bad | solve_exactly<Lanes>(piece, scratch, kIterationsOfPiece, where, restless);
             from += length;
         }
     }
-    if (!simd::any(bad)) return;
-    for (int i = 0; i < k.sweeps_of_unsettled; ++i) sweep_paths<Lanes>(p, i % 2 == 0, bad);
+    return bad;
 }
 
 /// Whether a bundle is left out: all of its paths were slow when they were solved last.
@@ -447,12 +445,15 @@ PathCounts solve_paths(const SolvePaths<Real>& arguments, std::size_t first, std
         if (is_left_out) return;
         part_paths<Lanes>(p);
         F restless;
-        const int most = k.is_slender[first_lane / kPathLanes] != 0 ? k.most_of_slender : k.most_iterations;
-        const auto bad = solve_exactly<Lanes>(p, scratch, most, F(0) <= F(0), counts, restless);
+        const bool is_slender = k.is_slender[first_lane / kPathLanes] != 0;
+        auto bad = solve_exactly<Lanes>(p, scratch, is_slender ? k.most_of_slender : k.most_iterations,
+                                        F(0) <= F(0), restless);
         Lanes::store(k.restless + first_lane, simd::select(bad, F(static_cast<Real>(kUnsettled)), restless));
         if (!simd::any(bad)) return;
         counts.unsettled += static_cast<std::size_t>(__builtin_popcount(simd::bitmask(bad)));
-        solve_in_pieces<Lanes>(p, scratch, bad, counts);
+        if (k.tries_pieces) bad = solve_in_pieces<Lanes>(p, scratch, bad);
+        if (!simd::any(bad)) return;
+        for (int i = 0; i < k.sweeps_of_unsettled; ++i) sweep_paths<Lanes>(p, i % 2 == 0, bad);
     });
     return counts;
 }

@@ -283,7 +283,7 @@ void Manifolds<Real>::find_chunk(const WorldState<Real>& world, double dt, const
         if (end > begin) {
             describe_pairs(world, near, begin, end);
             find_pairs(world, kernels, begin, end);
-            find_meetings(world, dt, begin, end);
+            look_at_gaps(world, dt, near, begin, end);
         }
         begin = end + kRowPadding;  // that block need not
     }
@@ -356,32 +356,65 @@ void Manifolds<Real>::find_pairs(const WorldState<Real>& world, const ConvexKern
     }
 }
 
-/// The contacts of bodies that in this step come farther than they are thick.
+/// Bodies that do not touch yet may meet elsewhere than where they face each other (meeting.hpp), or not at
+/// all in this step, whatever becomes of them: those contacts are left out.
 template <class Real>
-void Manifolds<Real>::find_meetings(const WorldState<Real>& world, double dt, std::size_t first,
-                                    std::size_t last) {
+void Manifolds<Real>::look_at_gaps(const WorldState<Real>& world, double dt, const ContactDistance& near,
+                                   std::size_t first, std::size_t last) {
+    const auto none = static_cast<Real>(kNoPoint);
+    for (std::size_t i = first; i < last; ++i) {
+        const Real gap = std::min(bodies_.separation1[i], bodies_.separation2[i]);
+        if (!(gap > 0) || !(gap < none)) continue;
+        if (!find_meeting(world, dt, i, static_cast<double>(gap)) && !can_close(world, dt, near, i))
+            bodies_.separation1[i] = bodies_.separation2[i] = none;
+    }
+}
+
+/// @return whether the bodies meet later than at once
+template <class Real>
+bool Manifolds<Real>::find_meeting(const WorldState<Real>& world, double dt, std::size_t i, double gap) {
     const Bodies<Real>& bodies = world.bodies;
     const auto turns = [&](std::size_t row) {
         return bodies.has_rotation ? static_cast<double>(bodies.angular_velocity[row]) : 0;
     };
-    for (std::size_t i = first; i < last; ++i) {
-        const Real gap = std::min(bodies_.separation1[i], bodies_.separation2[i]);
-        if (!(gap > 0) || !(gap < static_cast<Real>(kNoPoint))) continue;
-        const auto a = static_cast<std::size_t>(bodies_.a[i]), b = static_cast<std::size_t>(bodies_.b[i]);
-        const Vec2 dv{static_cast<double>(bodies.velocity_x[b]) - static_cast<double>(bodies.velocity_x[a]),
-                      static_cast<double>(bodies.velocity_y[b]) - static_cast<double>(bodies.velocity_y[a])};
-        const double way = dt * (std::sqrt(length_squared(dv)) + std::fabs(turns(a)) * bodies.radius[a] +
-                                 std::fabs(turns(b)) * bodies.radius[b]);
-        const double thickness = bodies_.thickness[i];
-        if (!(way > kFastThicknesses * thickness) || !(way > static_cast<double>(gap))) continue;
-        Manifold<double> met{};
-        const auto moving = [&](std::size_t row, const Column<std::int32_t>& items) {
-            if (items_.empty()) return moving_row(world, row, bodies.shape[row]);
-            return moving_row(world, row, shape_of(world, static_cast<std::int32_t>(row), items[i]));
-        };
-        if (meeting_manifold(moving(a, bodies_.item_a), moving(b, bodies_.item_b), dt, thickness, met))
-            bodies_.set_manifold(i, met);
-    }
+    const auto a = static_cast<std::size_t>(bodies_.a[i]), b = static_cast<std::size_t>(bodies_.b[i]);
+    const Vec2 dv{static_cast<double>(bodies.velocity_x[b]) - static_cast<double>(bodies.velocity_x[a]),
+                  static_cast<double>(bodies.velocity_y[b]) - static_cast<double>(bodies.velocity_y[a])};
+    const double way = dt * (std::sqrt(length_squared(dv)) + std::fabs(turns(a)) * bodies.radius[a] +
+                             std::fabs(turns(b)) * bodies.radius[b]);
+    const double thickness = bodies_.thickness[i];
+    if (!(way > kFastThicknesses * thickness) || !(way > gap)) return false;
+    Manifold<double> met{};
+    const auto moving = [&](std::size_t row, const Column<std::int32_t>& items) {
+        if (items_.empty()) return moving_row(world, row, bodies.shape[row]);
+        return moving_row(world, row, shape_of(world, static_cast<std::int32_t>(row), items[i]));
+    };
+    const bool meets =
+        meeting_manifold(moving(a, bodies_.item_a), moving(b, bodies_.item_b), dt, thickness, met);
+    if (meets) bodies_.set_manifold(i, met);
+    return meets;
+}
+
+/// Whether a gap may close in the step. What flies may keep its velocity, be stopped or come back with its
+/// restitution: a contact of two bodies that fly side by side counts only once one of them may be stopped.
+template <class Real>
+bool Manifolds<Real>::can_close(const WorldState<Real>& world, double dt, const ContactDistance& near,
+                                std::size_t i) const {
+    const Bodies<Real>& bodies = world.bodies;
+    const auto a = static_cast<std::size_t>(bodies_.a[i]), b = static_cast<std::size_t>(bodies_.b[i]);
+    const Real nx = bodies_.normal_x[i], ny = bodies_.normal_y[i], e = bodies_.restitution[i];
+    const Real va = bodies.velocity_x[a] * nx + bodies.velocity_y[a] * ny,
+               vb = bodies.velocity_x[b] * nx + bodies.velocity_y[b] * ny;
+    const Real wa = bodies.has_rotation ? bodies.angular_velocity[a] : Real(0),
+               wb = bodies.has_rotation ? bodies.angular_velocity[b] : Real(0);
+    const auto towards = [&](Real speed) { return std::max(speed, -e * speed); };
+    const auto reach = static_cast<Real>(near(static_cast<double>(bodies_.thickness[i])));
+    const auto closes = [&](Real separation, Real lever_a, Real lever_b) {
+        return separation <=
+               reach + static_cast<Real>(dt) * (towards(va + wa * lever_a) + towards(-vb - wb * lever_b));
+    };
+    return closes(bodies_.separation1[i], bodies_.lever_a1[i], bodies_.lever_b1[i]) ||
+           closes(bodies_.separation2[i], bodies_.lever_a2[i], bodies_.lever_b2[i]);
 }
 
 /// @return whether they are those of the step before
@@ -400,8 +433,29 @@ bool Manifolds<Real>::list_live() {
             live_.push_back(~static_cast<std::int32_t>(i));
         else
             surfaces_.memory[i] = {};
+    count_changes();
     return live_ == was_live_ &&
            std::equal(surfaces_.a.begin(), surfaces_.a.end(), old_surfaces_.a.begin(), old_surfaces_.a.end());
+}
+
+/// Contacts of two bodies keep their numbers until pairs are found anew; then was_live_ is empty.
+template <class Real>
+void Manifolds<Real>::count_changes() {
+    changed_share_ = -1;
+    if (was_live_.empty() || live_.empty()) return;
+    std::size_t same = 0, now = 0, before = 0;  // of bodies: those below 0 come last
+    const auto count_of = [](const std::vector<std::int32_t>& live) {
+        std::size_t count = live.size();
+        while (count > 0 && live[count - 1] < 0) --count;
+        return count;
+    };
+    const std::size_t all_now = count_of(live_), all_before = count_of(was_live_);
+    while (now < all_now && before < all_before) {
+        const std::int32_t a = live_[now], b = was_live_[before];
+        same += a == b;
+        now += a <= b, before += b <= a;
+    }
+    changed_share_ = static_cast<double>(all_now + all_before - 2 * same) / static_cast<double>(live_.size());
 }
 
 template <class Real>

@@ -63,6 +63,9 @@ class Manifolds {
     }
     /// Whether some were carried on.
     bool some_are_carried() const { return some_are_carried_; }
+    /// Contacts of two bodies that have come or gone since the step before, as a share of those there are;
+    /// negative where that is not known, since pairs have been found anew.
+    double changed_share() const { return changed_share_; }
     /// What bodies have come in the step before.
     PoseWatch<Real>& poses() { return poses_; }
     ManifoldMemory<Real>& memory_of(std::int32_t contact) {
@@ -115,9 +118,14 @@ class Manifolds {
         const StoredPiece* piece = items_.piece_of(world, row, item);
         return piece ? piece->number : world.bodies.shape[static_cast<std::size_t>(row)];
     }
+    void count_changes();
     void find_pairs(const WorldState<Real>& world, const ConvexKernels<Real>& kernels, std::size_t first,
                     std::size_t last);
-    void find_meetings(const WorldState<Real>& world, double dt, std::size_t first, std::size_t last);
+    void look_at_gaps(const WorldState<Real>& world, double dt, const ContactDistance& near,
+                      std::size_t first, std::size_t last);
+    bool find_meeting(const WorldState<Real>& world, double dt, std::size_t i, double gap);
+    bool can_close(const WorldState<Real>& world, double dt, const ContactDistance& near,
+                   std::size_t i) const;
     bool list_live();
 
     PieceItems<Real> items_;
@@ -131,6 +139,7 @@ class Manifolds {
     std::vector<KeptManifold<Real>> asleep_;
     std::size_t asleep_then_ = 0;  // bodies that slept then
     std::vector<std::int32_t> live_, was_live_;
+    double changed_share_ = -1;
     std::vector<LoadedContact> loaded_;
     std::vector<std::uint8_t> is_box_of_;         // by shape
     std::vector<std::uint8_t> blocks_are_boxes_;  // by block of kRowPadding contacts of bodies_

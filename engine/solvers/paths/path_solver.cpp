@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace carom {
 namespace {
@@ -18,18 +19,30 @@ constexpr double kRecovery = 0.1;
 constexpr double kSlop = 0.015, kSlowShare = 0.1;
 /// Largest displacement of that kind, in thicknesses a second.
 constexpr double kPushThicknesses = 6;
-/// Contacts in a path: what is longer is cut. While many paths do not settle they are kept short: a long one
-/// that fails has done more in vain.
-constexpr std::size_t kLongestPath = 128, kLongestOfRestless = 16;
-/// Share of paths that do not settle, below which paths become long and above which they become short.
+/// How paths are solved: contacts in a path, since what is longer is cut; iterations of the active set, at
+/// most, of paths that alone hold their bodies and of others; and whether those that do not settle are solved
+/// in pieces.
+struct PathPlan {
+    std::size_t longest;
+    int most_of_slender, most;
+    bool tries_pieces;
+};
+/// By PathMood. While many paths do not settle they are kept short: a long one that fails has done more in
+/// vain. Where contacts come and go, exact solutions are soon out of date.
+/// docs/decisions/0042-contacts-that-cannot-close.md has the measurements of the last.
+constexpr PathPlan kPlans[] = {{128, 40, 10, true}, {16, 8, 8, true}, {12, 4, 4, false}};
+const PathPlan& plan_of(PathMood mood) {
+    return kPlans[static_cast<std::size_t>(mood)];
+}
+/// Share of paths that do not settle, below which paths are calm and above which they are restless.
 constexpr double kCalm = 0.001, kRestless = 0.01;
+/// Share of contacts that come or go in a step, above which paths are wild and below which no longer.
+constexpr double kWild = 0.005, kTame = 0.002;
 /// Fewer contacts have long paths from the start; more begin with short ones, as heaps do that still settle.
 constexpr std::size_t kFewContacts = 1024;
-/// Iterations of the active set: those that change all of its rows that are wrong; all, while paths are long,
-/// of those that alone hold their bodies and of others; all while paths are short. Gauss-Seidel sweeps over a
-/// path that settles neither so nor in pieces.
-constexpr int kBoldIterations = 4, kMostOfSlender = 40, kMostIterations = 10, kMostOfRestless = 8,
-              kSweepsOfUnsettled = 4;
+/// Iterations of the active set that change all of its rows that are wrong; Gauss-Seidel sweeps over paths
+/// that do not settle.
+constexpr int kBoldIterations = 4, kSweepsOfUnsettled = 4;
 /// By which a contact may miss its law, in shares of what gravity adds to a speed in a substep.
 constexpr double kTolerance = 2e-3;
 /// Paths whose contacts all were slower than this may rest for a substep, in shares of the same,
@@ -58,22 +71,25 @@ void PathSolver<Real>::find(const WorldState<Real>& world, const EdgeCandidates<
     const bool is_same = manifolds.find(world, edges, terms, near, loops);
     counters.contacts = static_cast<std::int64_t>(manifolds.live().size());
     if (manifolds.live().empty()) return rolling_.clear();
-    note_calm();
-    if (!is_same || ++since_cut_ >= kStepsOfCut || is_cut_calm_ != is_calm_) cut_paths(world);
+    judge_mood();
+    if (!is_same || ++since_cut_ >= kStepsOfCut || mood_of_cut_ != mood_) cut_paths(world);
     lay_out(world, edges, terms, records, loops);
     if (world.effects.rolling_resistance) rolling_.find(world, manifolds, row_of_far_);
 }
 
-/// Judges by the last step whether paths settle.
+/// Judges by the last step whether paths settle, and by this one whether contacts come and go.
 template <class Real>
-void PathSolver<Real>::note_calm() {
-    if (solved_ == 0) {
-        is_calm_ = manifolds.live().size() < kFewContacts;
-        return;
-    }
-    const double share = static_cast<double>(counters.unsettled) / static_cast<double>(solved_);
-    is_calm_ = share < (is_calm_ ? kRestless : kCalm);
-    solved_ = 0;
+void PathSolver<Real>::judge_mood() {
+    const double share =
+        solved_ > 0 ? static_cast<double>(counters.unsettled) / static_cast<double>(solved_) : 0;
+    const bool was_solved = std::exchange(solved_, 0) > 0;
+    const double changed = manifolds.changed_share();
+    if (changed > (mood_ == PathMood::wild ? kTame : kWild) || (changed < 0 && mood_ == PathMood::wild))
+        mood_ = PathMood::wild;
+    else if (!was_solved)
+        mood_ = manifolds.live().size() < kFewContacts ? PathMood::calm : PathMood::restless;
+    else
+        mood_ = share < (mood_ == PathMood::calm ? kRestless : kCalm) ? PathMood::calm : PathMood::restless;
 }
 
 template <class Real>
@@ -99,8 +115,8 @@ void PathSolver<Real>::cut_paths(const WorldState<Real>& world) {
         arm(list.lever_b1[i], list.lever_b2[i], list.lever_b_t[i], link.arm_b_x, link.arm_b_y);
         contact_links_.push_back(link);
     }
-    is_cut_calm_ = is_calm_;
-    cut_.cut(contact_links_, bodies.moving(), is_calm_ ? kLongestPath : kLongestOfRestless);
+    mood_of_cut_ = mood_;
+    cut_.cut(contact_links_, bodies.moving(), plan_of(mood_).longest);
     since_cut_ = 0, ++counters.cuts;
     links_hold_ = false;
 }
@@ -298,10 +314,10 @@ SolvePaths<Real> PathSolver<Real>::arguments(const SubstepTerms& terms, BodyReco
     k.restless = restless_.data(), k.is_slender = cut_.is_slender().data(), k.resting_speed = 0;
     k.resting_thickness =
         static_cast<Real>(kRestingSpeed * terms.fall_speed() * terms.substep_dt / kRestingShare);
+    const PathPlan& plan = plan_of(mood_of_cut_);
     k.bold_iterations = kBoldIterations;
-    k.most_iterations = is_cut_calm_ ? kMostIterations : kMostOfRestless;
-    k.most_of_slender = is_cut_calm_ ? kMostOfSlender : kMostOfRestless;
-    k.sweeps_of_unsettled = kSweepsOfUnsettled;
+    k.most_iterations = plan.most, k.most_of_slender = plan.most_of_slender;
+    k.tries_pieces = plan.tries_pieces, k.sweeps_of_unsettled = kSweepsOfUnsettled;
     return k;
 }
 

@@ -25,6 +25,9 @@ struct PathCounters {
     std::int64_t cuts = 0;       ///< steps that cut the contacts into paths anew, so far
 };
 
+/// How paths are solved: what has settled, what settles, and where contacts come and go.
+enum class PathMood : std::uint8_t { calm, restless, wild };
+
 /// A contact in its place along a path.
 template <class Real>
 struct PathContact {
@@ -86,7 +89,7 @@ class PathSolver {
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
         archive(self.counters, self.manifolds, self.rolling_, self.cut_, self.since_cut_, self.solved_,
-                self.is_calm_, self.is_cut_calm_);
+                self.mood_, self.mood_of_cut_);
         if constexpr (!std::is_const_v<Self>) self.links_hold_ = false;
     }
 
@@ -108,7 +111,7 @@ class PathSolver {
 
     SolvePaths<Real> arguments(const SubstepTerms& terms, BodyRecords<Real>& records);
     void run(Pass pass, SolvePaths<Real> arguments, const StepLoops<Real>& loops);
-    void note_calm();
+    void judge_mood();
     /// Row of the body where a link begins.
     std::int32_t near_row(PathCut::Place place) const {
         const bool is_first = place.link == cut_.first_link()[place.bundle];
@@ -136,8 +139,7 @@ class PathSolver {
     PathCut cut_;
     int since_cut_ = 0;        // steps
     std::int64_t solved_ = 0;  // paths, in the substeps of the last step
-    bool is_calm_ = true;      // paths settle
-    bool is_cut_calm_ = true;  // when they were cut
+    PathMood mood_ = PathMood::calm, mood_of_cut_ = PathMood::calm;
     Column<PathLink<Real>> links_;
     bool links_hold_ = false;  // they are laid out as the cut says, with what the step before left
     std::vector<std::int32_t> with_kinematic_;  // contacts of two bodies, one of which is kinematic

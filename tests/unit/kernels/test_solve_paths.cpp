@@ -81,7 +81,8 @@ struct RandomPaths {
         k.restless = restless.data(), k.is_slender = &is_slender;
         k.h = static_cast<Real>(kH), k.inverse_h = static_cast<Real>(1 / kH);
         k.recovery = Real(0.05), k.push = 6, k.velocity_tolerance = Real(1e-5);
-        k.bold_iterations = 4, k.most_iterations = k.most_of_slender = 60, k.sweeps_of_unsettled = 0;
+        k.bold_iterations = 4, k.most_iterations = k.most_of_slender = 60;
+        k.tries_pieces = true, k.sweeps_of_unsettled = 0;
         k.scratch = scratch.data();
         return k;
     }
@@ -248,17 +249,21 @@ TEST_SUITE("kernels/paths/solve_paths") {
         for (std::uint64_t seed = 1; seed <= 12; ++seed) {
             RandomPaths<Real> first(seed, 1 + seed % 16, 0.5);
             bool is_first = true;
+            PathCounts first_counts;
             for (const KernelTables* tables : runnable_kernel_tables()) {
                 RandomPaths<Real> paths(seed, 1 + seed % 16, 0.5);
                 SolvePaths<Real> k = paths.arguments();
                 k.bold_iterations = 2, k.most_iterations = k.most_of_slender = 3,
-                k.sweeps_of_unsettled = 4;  // so that some do not settle
+                k.tries_pieces = seed % 2 == 0, k.sweeps_of_unsettled = 4;  // so that some do not settle
                 const auto& kernels = tables->of<Real>().convex->paths;
-                kernels.warm_start(k, 0, 1), kernels.solve(k, 0, 1), kernels.sweep(k, 0, 1);
+                kernels.warm_start(k, 0, 1);
+                const PathCounts counts = kernels.solve(k, 0, 1);
+                kernels.sweep(k, 0, 1);
                 if (is_first) {
-                    first = paths, is_first = false;
+                    first = paths, first_counts = counts, is_first = false;
                     continue;
                 }
+                CHECK(counts.unsettled == first_counts.unsettled);
                 CHECK(have_equal_bits(first.velocity, paths.velocity));
                 CHECK(have_equal_bits(first.displacement, paths.displacement));
                 CHECK(have_equal_bits(first.turn, paths.turn));
