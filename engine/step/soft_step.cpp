@@ -27,8 +27,11 @@ class SoftStep final : public SoftSimulation<Real> {
     static constexpr auto bounces = [](const Sim& sim) {
         return sim.world.effects.restitution && sim.can_touch();
     };
-    static constexpr auto has_edges = [](const Sim& sim) {
-        return !sim.world.edges.empty() && sim.can_meet();
+    static constexpr auto has_shapes = [](const Sim& sim) {
+        return sim.world.bodies.has_shapes && !sim.soft.joints.is_rattle;
+    };
+    static constexpr auto has_edges_or_shapes = [](const Sim& sim) {
+        return (!sim.world.edges.empty() || has_shapes(sim)) && sim.can_meet();
     };
     static constexpr auto has_changes = [](const Sim& sim) { return sim.has_changes(); };
     static constexpr auto has_walls = [](const Sim& sim) { return sim.world.effects.walls; };
@@ -43,9 +46,6 @@ class SoftStep final : public SoftSimulation<Real> {
     };
     static constexpr auto has_masses = [](const Sim& sim) {
         return sim.can_touch() && (!sim.world.bodies.mass.is_uniform() || sim.world.bodies.has_flags);
-    };
-    static constexpr auto has_shapes = [](const Sim& sim) {
-        return sim.world.bodies.has_shapes && !sim.soft.joints.is_rattle;
     };
     static constexpr auto shapes_bounce = [](const Sim& sim) {
         return has_shapes(sim) && sim.world.effects.restitution;
@@ -146,9 +146,8 @@ class SoftStep final : public SoftSimulation<Real> {
         {"end_substeps", [](Sim& sim) { sim.soft.end_substeps(sim.world.bodies, sim.lost_rows, sim.lost); },
          always, KernelChoice::isa, "velocity records, displacements",
          "position, velocity, angle, angular velocity"},
-        {"undo_tunnelling",
-         [](Sim& sim) { sim.tunnelling.undo(sim.world, sim.flight(), sim.soft.graph.supports); }, has_edges,
-         KernelChoice::none, "motion, position, edges", "position, velocity, books"},
+        {"undo_tunnelling", [](Sim& sim) { undo_tunnelling(sim); }, has_edges_or_shapes, KernelChoice::none,
+         "motion, position, edges, contacts of shapes", "position, angle, velocity, books"},
         {"clamp_to_walls", [](Sim& sim) { clamp_to_walls(sim); }, has_walls, KernelChoice::none,
          "motion, position", "position, velocity, books"},
         {"quarantine_bodies", [](Sim& sim) { quarantine_bodies(sim); }, has_lost_bodies, KernelChoice::none,

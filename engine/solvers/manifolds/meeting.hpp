@@ -37,6 +37,9 @@ MovingConvex moving_row(const WorldState<Real>& world, std::size_t row, std::int
             turns ? static_cast<double>(bodies.angular_velocity[row]) : 0};
 }
 
+/// An edge as a shape that does not move, in the frame of its body.
+MovingConvex still_edge(const Edge& edge);
+
 /// Moves separations at a moment back to the start of the step.
 /// @param time  s, from the start of the step
 void move_back(Manifold<double>& manifold, const MovingConvex& a, const MovingConvex& b, double time);

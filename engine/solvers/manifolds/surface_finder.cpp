@@ -30,21 +30,6 @@ PlacedConvex placed_row(const WorldState<Real>& world, std::size_t row, const Co
                   rotation_by(bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0));
 }
 
-/// An edge as a shape that does not move, in the frame of its body.
-MovingConvex still_edge(const Edge& edge) {
-    const Vec2 centre = 0.5 * (edge.a + edge.b), half = 0.5 * (edge.b - edge.a);
-    const double length = std::sqrt(length_squared(half));
-    const Vec2 normal{half.y / length, -half.x / length};  // right of the way from a to b
-    ConvexShape<double> shape{};
-    for (int i = 0; i < kMostVertices; ++i) {
-        const double end = i == 0 ? -1 : 1;
-        shape.x[i] = end * half.x, shape.y[i] = end * half.y;
-        shape.normal_x[i] = -end * normal.x, shape.normal_y[i] = -end * normal.y;
-    }
-    shape.extent = length, shape.count = 2;
-    return {shape, centre, {}, 0, 0};
-}
-
 /// A piece around its own centroid, which edges ask for: they have to know on which side of them it is.
 PlacedConvex around_own_centre(const PlacedConvex& placed, Vec2 offset) {
     PlacedConvex piece = placed;

@@ -147,7 +147,7 @@ void SoftSimulation<Real>::report(Profile& profile) const {
 template <class Real>
 std::size_t SoftSimulation<Real>::bytes() const {
     return Simulation<Real>::bytes() + sizeof(*this) + edge_candidates.bytes() + soft.bytes() +
-           tunnelling.bytes() + sleepers.bytes() + motion.bytes();
+           tunnelling.bytes() + shape_tunnelling.bytes() + sleepers.bytes() + motion.bytes();
 }
 
 template class SoftSimulation<float>;

@@ -3,6 +3,7 @@
 #include "broadphase/edge_candidates.hpp"
 #include "sleeping/sleepers.hpp"
 #include "solvers/shared/simulation.hpp"
+#include "solvers/soft/impacts/shape_tunnelling.hpp"
 #include "solvers/soft/impacts/tunnelling.hpp"
 #include "solvers/soft/soft_solver.hpp"
 
@@ -79,6 +80,7 @@ class SoftSimulation : public Simulation<Real> {
     EdgeCandidates<Real> edge_candidates;
     mutable SoftSolver<Real> soft;  // finds groups of joints when asked for a plan
     Tunnelling<Real> tunnelling;
+    ShapeTunnelling<Real> shape_tunnelling;
     Sleepers<Real> sleepers;
     std::int64_t graph_of_rebuild = -1;  ///< which candidate pairs the contact graph was made of
     std::uint32_t kinds_of_graph = 0;    ///< what columns of contacts it was described with

@@ -73,6 +73,13 @@ void end_joints(SoftSimulation<Real>& sim) {
 }
 
 template <class Real>
+void undo_tunnelling(SoftSimulation<Real>& sim) {
+    if (!sim.world.edges.empty()) sim.tunnelling.undo(sim.world, sim.flight(), sim.soft.graph.supports);
+    if (sim.world.bodies.has_shapes && sim.can_touch())
+        sim.shape_tunnelling.undo(sim.world, sim.flight(), sim.soft.records(), sim.soft.paths.manifolds);
+}
+
+template <class Real>
 void quarantine_bodies(SoftSimulation<Real>& sim) {
     for (const std::int32_t lost : sim.lost) {
         const auto row = static_cast<std::size_t>(lost);
@@ -99,6 +106,8 @@ template void update_contacts(SoftSimulation<float>&);
 template void update_contacts(SoftSimulation<double>&);
 template void end_joints(SoftSimulation<float>&);
 template void end_joints(SoftSimulation<double>&);
+template void undo_tunnelling(SoftSimulation<float>&);
+template void undo_tunnelling(SoftSimulation<double>&);
 template void quarantine_bodies(SoftSimulation<float>&);
 template void quarantine_bodies(SoftSimulation<double>&);
 

@@ -35,6 +35,10 @@ bool wake_marked(SoftSimulation<Real>& sim);
 template <class Real>
 void end_joints(SoftSimulation<Real>& sim);
 
+/// Puts back what has passed an edge, or a shape that nothing moves, within the step.
+template <class Real>
+void undo_tunnelling(SoftSimulation<Real>& sim);
+
 /// Puts back what was thrown through a wall within the step.
 template <class Real>
 void clamp_to_walls(SoftSimulation<Real>& sim);

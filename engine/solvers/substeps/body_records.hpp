@@ -41,6 +41,7 @@ class BodyRecords {
     StartColumns<Real> start_columns();
     /// m, by row: rim displacement since the start of the step; null without rotation.
     Real* turn();
+    const Real* turn() const { return has_rotation_ ? turn_.data() : nullptr; }
     /// Rows behind all others, of bodies that nothing moves: at rest until the next `begin`.
     void add_still_rows(std::size_t rows);
     /// Changes the velocity of a body by dv [m/s] and du [m/s] of its rim at once: at the start of the

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "math/vec2_math.hpp"
+#include "narrowphase/line_crossing.hpp"
 
 namespace carom {
 namespace {
@@ -20,15 +21,6 @@ constexpr double kWiderCircle = 1 + 1e-9;
 
 /// A disc that is put back may get behind another edge by that.
 constexpr int kRounds = 3;
-
-/// When the line from p to q crosses the one from a to b, as a share of the way; 2 if it does not.
-double time_of_crossing(Vec2 p, Vec2 q, Vec2 a, Vec2 b) {
-    const Vec2 along = b - a;
-    const double before = cross(along, p - a), after = cross(along, q - a);
-    if (!((before < 0 && after > 0) || (before > 0 && after < 0))) return 2;
-    const double time = before / (before - after), place = dot(p + time * (q - p) - a, along);
-    return place >= 0 && place <= length_squared(along) ? time : 2;
-}
 
 }  // namespace
 

@@ -1,0 +1,279 @@
+#include "solvers/soft/impacts/shape_tunnelling.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/vec2_math.hpp"
+#include "narrowphase/line_crossing.hpp"
+#include "solvers/manifolds/meeting.hpp"
+
+namespace carom {
+namespace {
+
+/// What moves less than this share of its inradius towards what it touches is still held by its contact.
+constexpr double kSmallestWay = 0.5;
+
+/// A body that is put back may get behind something else by that.
+constexpr int kRounds = 3;
+
+/// The core of a body, in inradii: where another one is in it, their contact may take the wrong side.
+constexpr double kCore = 0.5;
+
+/// A disc that moves straight on for a time of 1.
+MovingConvex moving_disc(Vec2 from, Vec2 to, double radius) {
+    ConvexShape<double> disc{};
+    disc.count = 1, disc.radius = disc.extent = disc.inradius = radius;
+    return {disc, from, to - from, 0, 0};
+}
+
+/// When a core meets something, as a share of its way; 2 if it does not. What begins the step in it is none
+/// that has passed it.
+struct CoreImpact {
+    double time;
+    Vec2 normal;  // into it
+
+    CoreImpact(const MovingConvex& core, const MovingConvex& still) {
+        const ConvexImpact impact = impact_time(core, still, 1, kMeetingTarget * core.shape.radius);
+        const bool comes_nearer = impact.distance > 0 && dot(core.velocity, impact.normal) > 0;
+        time = impact.touches && (impact.time > 0 || comes_nearer) ? impact.time : 2;
+        normal = impact.normal;
+    }
+};
+
+/// Where a body that nothing moves is over the step.
+template <class Real>
+EdgePose pose_of(const Bodies<Real>& bodies, const StepFlight<Real>& flight, std::size_t row) {
+    const bool moves = (bodies.flags_of(row) & kKinematic) != 0;
+    const double angle = bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0,
+                 turned = moves && bodies.has_rotation
+                              ? flight.dt * static_cast<double>(bodies.angular_velocity[row])
+                              : 0;
+    const Vec2 at{bodies.position_x[row], bodies.position_y[row]};
+    return {moves ? flight.start_of(row) : at,
+            at,
+            rotation_by(angle - turned),
+            rotation_by(angle),
+            angle - turned,
+            angle,
+            true,
+            static_cast<std::uint32_t>(row)};
+}
+
+/// m, sum of the components: at least how far it is.
+template <class Real>
+Real way_along_axes(const Real* xy) {
+    return std::fabs(xy[0]) + std::fabs(xy[1]);
+}
+
+}  // namespace
+
+template <class Real>
+typename ShapeTunnelling<Real>::Core ShapeTunnelling<Real>::Core::seen_from(const EdgePose& pose) const {
+    return {rotate_back(pose.turn, from - pose.position), rotate_back(pose.end_turn, to - pose.end_position),
+            radius};
+}
+
+template <class Real>
+void ShapeTunnelling<Real>::mark(std::size_t row) {
+    if (is_swift_[row] != 0) return;
+    is_swift_[row] = 1;
+    swift_.push_back(static_cast<std::int32_t>(row));
+}
+
+/// Lists bodies that came far enough towards something that they touched, and those that came farther than
+/// their contacts were looked for: the velocity of the start takes them so far, and what they could not have
+/// reached then is an inradius beyond that.
+template <class Real>
+void ShapeTunnelling<Real>::list_swift(const Inputs& in, const Manifolds<Real>& manifolds) {
+    const Bodies<Real>& bodies = in.world.bodies;
+    const auto dt = static_cast<Real>(in.flight.dt);
+    const auto least = static_cast<Real>(kSmallestWay);
+    const Real* displacement = in.records.displacement.data();
+    const Real* motion = in.flight.motion.data();
+    swift_.clear(), is_swift_.resize(bodies.rows());
+    for (std::size_t row = 0; row < bodies.moving(); ++row) {
+        const Real foreseen = dt * way_along_axes(motion + 4 * row + 2);
+        if (way_along_axes(displacement + 2 * row) > foreseen + bodies.inradius(row)) mark(row);
+    }
+    for (const std::int32_t contact : manifolds.live()) {
+        const ManifoldList<Real>& list = manifolds.list_of(contact);
+        const std::size_t i = Manifolds<Real>::place_of(contact);
+        const auto row = static_cast<std::size_t>(list.a[i]);
+        const Partner partner(list.b[i]);
+        Real come = way_along_axes(displacement + 2 * row);
+        if (partner.is_wall()) continue;
+        if (partner.is_edge()) {
+            const EdgePose& pose = in.flight.edges.pose_of(in.world.edges[partner.edge_number()]);
+            const Vec2 way = pose.end_position - pose.position;
+            come += static_cast<Real>(std::fabs(way.x) + std::fabs(way.y) +
+                                      std::fabs(pose.end_angle - pose.angle) *
+                                          in.world.edges.body_of(partner.edge_number()).reach);
+        } else {
+            const auto other = static_cast<std::size_t>(partner.row());
+            if (other < bodies.count && !bodies.is_immovable(other)) continue;
+            come += dt * (std::fabs(bodies.velocity_x[other]) + std::fabs(bodies.velocity_y[other]));
+            if (bodies.has_rotation)
+                come += dt * std::fabs(bodies.angular_velocity[other]) * bodies.radius[other];
+        }
+        if (come > least * list.thickness[i]) mark(row);
+    }
+    for (const std::int32_t row : swift_) is_swift_[static_cast<std::size_t>(row)] = 0;
+    std::sort(swift_.begin(), swift_.end());
+}
+
+template <class Real>
+void ShapeTunnelling<Real>::undo(WorldState<Real>& world, const StepFlight<Real>& flight,
+                                 const BodyRecords<Real>& records, const Manifolds<Real>& manifolds) {
+    const Inputs in{world, flight, records};
+    list_swift(in, manifolds);
+    for (const std::int32_t row : swift_) look_at(in, static_cast<std::size_t>(row));
+}
+
+template <class Real>
+void ShapeTunnelling<Real>::look_at(const Inputs& in, std::size_t row) {
+    constexpr std::uint8_t kTakesNoPart = kImmovable | kDisabled | kSensor | kEdges;
+    const Bodies<Real>& bodies = in.world.bodies;
+    if ((bodies.flags_of(row) & kTakesNoPart) != 0) return;
+    Way way{row, in.flight.start_of(row), {bodies.position_x[row], bodies.position_y[row]}, 0, 0};
+    if (bodies.has_rotation) {
+        way.turned = static_cast<double>(in.records.turn()[row]) / static_cast<double>(bodies.rim(row));
+        way.angle = static_cast<double>(bodies.angle[row]) - way.turned;
+    }
+    for (int round = 0; round < kRounds; ++round) {
+        const Passed passed = first_passed(in, way);
+        if (passed.time > 1) return;
+        put_back(in, way, passed, round > 0);
+    }
+}
+
+/// What the core of a body, or of a piece of it, met first.
+template <class Real>
+typename ShapeTunnelling<Real>::Passed ShapeTunnelling<Real>::first_passed(const Inputs& in, const Way& way) {
+    const Bodies<Real>& bodies = in.world.bodies;
+    Passed first;
+    const double half = 0.5 * std::sqrt(length_squared(way.end - way.start));
+    const std::size_t found = in.flight.candidates.find_around(way.row, half + bodies.radius[way.row],
+                                                               0.5 * (way.start + way.end), near_);
+    const Rotation at_start = rotation_by(way.angle), at_end = rotation_by(way.angle + way.turned);
+    in.world.shapes.for_each_piece(
+        bodies.shape[way.row], [&](const ConvexShape<Real>& shape, std::int32_t, const StoredPiece* piece) {
+            const Vec2 centre = piece ? Vec2{piece->x, piece->y} : Vec2{};
+            const Core core{way.start + rotate(at_start, centre), way.end + rotate(at_end, centre),
+                            kCore * static_cast<double>(shape.inradius)};
+            if (!bodies.is_disc(way.row)) look_at_edges(in, way, core, first);
+            for (std::size_t k = 0; k < found; ++k)
+                look_at_body(in, way, core, static_cast<std::size_t>(near_[k]), first);
+        });
+    return first;
+}
+
+template <class Real>
+void ShapeTunnelling<Real>::look_at_edges(const Inputs& in, const Way& way, const Core& core,
+                                          Passed& first) const {
+    constexpr double kWiderCircle = 1 + 1e-9;  // against rounding
+    for (const EdgeBody& body : in.world.edges.bodies) {
+        const EdgePose& pose = in.flight.edges.pose_of(in.world.edges[body.first]);
+        if (!pose.takes_part || (in.world.has_filters() && !in.world.may_collide(way.row, pose.row)))
+            continue;
+        const Core seen = core.seen_from(pose);
+        const MovingConvex moving = moving_disc(seen.from, seen.to, seen.radius);
+        const double half = 0.5 * std::sqrt(length_squared(moving.velocity));
+        in.world.edges.for_each_near(
+            body, 0.5 * (seen.from + seen.to), kWiderCircle * (half + seen.radius), [&](std::int32_t number) {
+                const Edge& edge = in.world.edges[number];
+                MovingConvex still = still_edge(edge);
+                const double time = std::min(time_of_crossing(seen.from, seen.to, edge.a, edge.b),
+                                             CoreImpact(moving, still).time);
+                if (!(time < first.time)) return;
+                const Vec2 along = edge.b - edge.a;
+                const double length = std::sqrt(length_squared(along)),
+                             side = cross(along, seen.from - edge.a) > 0 ? 1 / length : -1 / length;
+                for (int i = 0; i < kMostVertices; ++i)
+                    still.shape.x[i] += still.centre.x, still.shape.y[i] += still.centre.y;
+                first = {time, pose, seen.from + time * moving.velocity, side * Vec2{along.y, -along.x},
+                         still.shape};
+            });
+    }
+}
+
+template <class Real>
+void ShapeTunnelling<Real>::look_at_body(const Inputs& in, const Way& way, const Core& core,
+                                         std::size_t other, Passed& first) const {
+    constexpr std::uint8_t kTakesNoPart = kDisabled | kSensor | kEdges;
+    const Bodies<Real>& bodies = in.world.bodies;
+    const std::uint8_t flags = bodies.flags_of(other);
+    if ((flags & kImmovable) == 0 || (flags & kTakesNoPart) != 0) return;
+    if (in.world.has_filters() && !in.world.may_collide(way.row, other)) return;
+    const EdgePose pose = pose_of(bodies, in.flight, other);
+    const Core seen = core.seen_from(pose);
+    const MovingConvex moving = moving_disc(seen.from, seen.to, seen.radius);
+    const double reach = static_cast<double>(bodies.radius[other]) + seen.radius +
+                         0.5 * std::sqrt(length_squared(moving.velocity));
+    if (length_squared(0.5 * (seen.from + seen.to)) > reach * reach) return;
+    in.world.shapes.for_each_piece(bodies.shape[other], [&](const ConvexShape<Real>& shape, std::int32_t,
+                                                            const StoredPiece*) {
+        const MovingConvex still{placed(shape, {}, {}).shape, {}, {}, 0, 0};
+        const ConvexImpact impact = impact_time(moving, still, 1, kMeetingTarget * seen.radius);
+        // What begins the step in it is none that has passed it.
+        if (!impact.touches || !(impact.time > 0) || !(impact.time < first.time)) return;
+        first = {impact.time, pose, seen.from + impact.time * moving.velocity, impact.normal, still.shape};
+    });
+}
+
+/// To where it met what it passed, as seen from there, and without its velocity into it. In a corner that may
+/// be behind something else: then to where it was before the step, beside the same thing.
+template <class Real>
+void ShapeTunnelling<Real>::put_back(const Inputs& in, Way& way, const Passed& passed, bool to_start) {
+    Bodies<Real>& bodies = in.world.bodies;
+    const EdgePose& pose = passed.pose;
+    const Core line = Core{way.start, way.end, 0}.seen_from(pose);
+    const double turned = pose.end_angle - pose.angle;
+    MovingConvex moving{{}, line.from, line.to - line.from, way.angle - pose.angle, way.turned - turned};
+    const MovingConvex still{passed.obstacle, {}, {}, 0, 0};
+    const double thickness = bodies.inradius(way.row);
+    double time = passed.time;
+    in.world.shapes.for_each_piece(
+        bodies.shape[way.row], [&](const ConvexShape<Real>& shape, std::int32_t, const StoredPiece*) {
+            moving.shape = placed(shape, {}, {}).shape;
+            const ConvexImpact impact = impact_time(moving, still, 1, kMeetingTarget * thickness);
+            if (impact.touches) time = std::min(time, impact.time);
+        });
+    if (to_start) time = 0;
+    const Vec2 x = pose.end_position + rotate(pose.end_turn, moving.centre + time * moving.velocity);
+    bodies.position_x[way.row] = static_cast<Real>(x.x), bodies.position_y[way.row] = static_cast<Real>(x.y);
+    way.end = {bodies.position_x[way.row], bodies.position_y[way.row]};
+    if (bodies.has_rotation) {
+        way.turned = turned + time * moving.spin;
+        bodies.angle[way.row] = static_cast<Real>(way.angle + way.turned);
+    }
+    stop(in, way, passed);
+}
+
+/// Takes the velocity of a body into what it has passed.
+template <class Real>
+void ShapeTunnelling<Real>::stop(const Inputs& in, const Way& way, const Passed& passed) {
+    Bodies<Real>& bodies = in.world.bodies;
+    const EdgePose& pose = passed.pose;
+    const Vec2 v{bodies.velocity_x[way.row], bodies.velocity_y[way.row]};
+    const Vec2 arm = rotate(pose.end_turn, passed.point), normal = rotate(pose.end_turn, passed.normal);
+    const double spin = (pose.end_angle - pose.angle) / in.flight.dt;
+    const Vec2 surface =
+        (1 / in.flight.dt) * (pose.end_position - pose.position) + spin * Vec2{-arm.y, arm.x};
+    const double into = dot(v - surface, normal);
+    if (!(into > 0)) return;
+    const Vec2 held = v - into * normal;
+    bodies.velocity_x[way.row] = static_cast<Real>(held.x);
+    bodies.velocity_y[way.row] = static_cast<Real>(held.y);
+    if (!in.world.books.is_open) return;
+    const double mass = bodies.mass[way.row];
+    const Vec2 now{bodies.velocity_x[way.row], bodies.velocity_y[way.row]};
+    const double drive = mass * dot(now - v, surface);
+    in.world.books.drive += drive;
+    in.world.books.restitution += 0.5 * mass * (length_squared(now) - length_squared(v)) - drive;
+    in.world.books.immovable_momentum += mass * (now - v);
+}
+
+template class ShapeTunnelling<float>;
+template class ShapeTunnelling<double>;
+
+}  // namespace carom
