@@ -95,28 +95,31 @@ void ShapeTunnelling<Real>::list_swift(const Inputs& in, const Manifolds<Real>& 
         const Real foreseen = dt * way_along_axes(motion + 4 * row + 2);
         if (way_along_axes(displacement + 2 * row) > foreseen + bodies.inradius(row)) mark(row);
     }
+    const auto look = [&](std::int32_t number, Real of_other) {
+        const auto row = static_cast<std::size_t>(number);
+        if (way_along_axes(displacement + 2 * row) + of_other > least * bodies.inradius(row)) mark(row);
+    };
     for (const std::int32_t contact : manifolds.live()) {
+        if (contact < 0)
+            break;  // edges have contacts but where they face a body, and walls are looked at later
         const ManifoldList<Real>& list = manifolds.list_of(contact);
         const std::size_t i = Manifolds<Real>::place_of(contact);
-        const auto row = static_cast<std::size_t>(list.a[i]);
-        const Partner partner(list.b[i]);
-        Real come = way_along_axes(displacement + 2 * row);
-        if (partner.is_wall()) continue;
-        if (partner.is_edge()) {
-            const EdgePose& pose = in.flight.edges.pose_of(in.world.edges[partner.edge_number()]);
-            const Vec2 way = pose.end_position - pose.position;
-            come += static_cast<Real>(std::fabs(way.x) + std::fabs(way.y) +
-                                      std::fabs(pose.end_angle - pose.angle) *
-                                          in.world.edges.body_of(partner.edge_number()).reach);
-        } else {
-            const auto other = static_cast<std::size_t>(partner.row());
-            if (other < bodies.count && !bodies.is_immovable(other)) continue;
-            come += dt * (std::fabs(bodies.velocity_x[other]) + std::fabs(bodies.velocity_y[other]));
-            if (bodies.has_rotation)
-                come += dt * std::fabs(bodies.angular_velocity[other]) * bodies.radius[other];
-        }
-        if (come > least * list.thickness[i]) mark(row);
+        const auto other = static_cast<std::size_t>(list.b[i]);
+        if (other < bodies.count && !bodies.is_immovable(other)) continue;
+        Real of_other = dt * (std::fabs(bodies.velocity_x[other]) + std::fabs(bodies.velocity_y[other]));
+        if (bodies.has_rotation)
+            of_other += dt * std::fabs(bodies.angular_velocity[other]) * bodies.radius[other];
+        look(list.a[i], of_other);
     }
+    edge_ways_.clear();
+    for (const EdgeBody& body : in.world.edges.bodies) {
+        const EdgePose& pose = in.flight.edges.pose_of(in.world.edges[body.first]);
+        const Vec2 way = pose.end_position - pose.position;
+        edge_ways_.push_back(static_cast<Real>(std::fabs(way.x) + std::fabs(way.y) +
+                                               std::fabs(pose.end_angle - pose.angle) * body.reach));
+    }
+    for (const EdgePair& pair : in.flight.edges.pairs())
+        look(pair.row, edge_ways_[static_cast<std::size_t>(in.world.edges[pair.edge].body)]);
     for (const std::int32_t row : swift_) is_swift_[static_cast<std::size_t>(row)] = 0;
     std::sort(swift_.begin(), swift_.end());
 }

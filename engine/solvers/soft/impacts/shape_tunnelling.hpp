@@ -27,7 +27,8 @@ class ShapeTunnelling {
               const Manifolds<Real>& manifolds);
 
     std::size_t bytes() const {
-        return swift_.capacity() * sizeof(std::int32_t) + is_swift_.capacity() + near_.bytes();
+        return swift_.capacity() * sizeof(std::int32_t) + is_swift_.capacity() + near_.bytes() +
+               edge_ways_.capacity() * sizeof(Real);
     }
 
   private:
@@ -68,6 +69,7 @@ class ShapeTunnelling {
 
     std::vector<std::int32_t> swift_;     // rows that may have passed something
     std::vector<std::uint8_t> is_swift_;  // by row; all zero but within undo()
+    std::vector<Real> edge_ways_;         // m, of what edges belong to, in the step
     Column<std::int32_t> near_;
 };
 
