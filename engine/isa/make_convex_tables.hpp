@@ -3,6 +3,7 @@
 #include "isa/convex_kernels.hpp"
 #include "kernels/find_manifolds.hpp"
 #include "kernels/paths/solve_paths.hpp"
+#include "kernels/paths/warm_start_paths.hpp"
 #include "simd/lanes.hpp"
 
 namespace carom {

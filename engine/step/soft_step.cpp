@@ -95,8 +95,8 @@ class SoftStep final : public SoftSimulation<Real> {
          KernelChoice::none, "contacts, contacts of removed bodies", "impulses"},
         {"warm_start", [](Sim& sim) { sim.soft.warm_start(); }, can_meet, KernelChoice::contacts,
          "contacts, impulses", "velocity records"},
-        {"warm_start_paths", [](Sim& sim) { sim.soft.warm_start_paths(); }, has_shapes, KernelChoice::isa,
-         "paths of contacts", "velocity records"},
+        {"warm_start_paths", [](Sim& sim) { sim.soft.warm_start_paths(sim.world); }, has_shapes,
+         KernelChoice::isa, "paths of contacts", "velocity records"},
         {"begin_joints", [](Sim& sim) { sim.soft.begin_joints(sim.world, sim.flight_dt); }, has_joints,
          KernelChoice::scalar_f64, "joints, position, angle, contacts", "joints, velocity records"},
     };

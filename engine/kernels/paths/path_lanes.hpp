@@ -100,5 +100,16 @@ struct PathBatch {
     const std::int32_t* far_rows(std::size_t i) const { return link[i].body + lane; }
 };
 
+/// Calls fn(batch) for each batch of each bundle.
+template <class Lanes, class Real, class Fn>
+[[gnu::always_inline]] inline void for_each_path_batch(const SolvePaths<Real>& k, std::size_t first,
+                                                       std::size_t last, const Fn& fn) {
+    for (std::size_t bundle = first; bundle < last; ++bundle)
+        for (std::size_t lane = 0; lane < kPathLanes; lane += Lanes::size)
+            fn(PathBatch<Real>{k, k.links + k.first_link[bundle],
+                               k.first_link[bundle + 1] - k.first_link[bundle], lane,
+                               k.heads + bundle * kPathLanes + lane});
+}
+
 }  // namespace
 }  // namespace carom

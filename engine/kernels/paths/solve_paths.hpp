@@ -17,6 +17,9 @@ namespace {
 constexpr double kRegularisation = 1e-5;
 /// Contacts change no velocity by more than so many times the largest relative speed there is: rows that are
 /// nearly alike have solutions that would, and would make energy of round-off.
+/// Nor does an impulse change by more than would do that to all bodies of the path together, each taken for
+/// as heavy as the heaviest: a squeeze between two things that nothing moves has no solution, and that of a
+/// matrix which is regularised is as large as the regularisation is small. docs/decisions/0040-squeezes.md.
 constexpr double kMostChange = 64;
 /// By which friction may be beyond its limit, in shares of what a normal impulse may pull by: what a contact
 /// holds beyond its limit never slides.
@@ -104,10 +107,11 @@ void sweep_paths(const PathBatch<Real>& p, bool is_forward, typename Lanes::Mask
 
 /// Relative velocities of the links and a first guess of the active set.
 /// @param restless  becomes what SolvePaths::restless says of each lane
+/// @param inverse_mass  becomes that of the heaviest body of each lane [1/kg]
 /// @return the largest relative speed of each lane [m/s]
 template <class Lanes, class Real>
 typename Lanes::Batch begin_paths(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch,
-                                  typename Lanes::Batch& restless) {
+                                  typename Lanes::Batch& restless, typename Lanes::Batch& inverse_mass) {
     using F = typename Lanes::Batch;
     const SolvePaths<Real>& k = p.k;
     const F zero(0), tolerance(k.velocity_tolerance);
@@ -117,12 +121,18 @@ typename Lanes::Batch begin_paths(const PathBatch<Real>& p, LinkScratch<Lanes>* 
     PathBody<Lanes> a{Lanes::load_rows4(k.velocity, p.head)};
     LinkScratch<Lanes>& head = scratch[p.length];
     head.body = a, head.w = a.inverse_mass(), head.w2 = a.inverse_rim_mass();
+    const F no_mass(static_cast<Real>(1e30));  // 1/kg
+    const auto note_mass = [&](F w) {
+        inverse_mass = simd::min(inverse_mass, simd::select(w > zero, w, no_mass));
+    };
+    inverse_mass = no_mass, note_mass(head.w);
     for (std::size_t i = 0; i < p.length; ++i) {
         const PathLink<Real>& link = p.link[i];
         LinkScratch<Lanes>& s = scratch[i];
         const LinkLanes<Lanes, Real> l(link, p.lane);
         const PathBody<Lanes> b{Lanes::load_rows4(k.velocity, p.far_rows(i))};
         s.body = b, s.w = b.inverse_mass(), s.w2 = b.inverse_rim_mass();
+        note_mass(s.w);
         l.relative(b.record[0] - a.record[0], b.record[1] - a.record[1], a.record[2], b.record[2], s.v1, s.v2,
                    s.vt);
         s.floor1 = Lanes::load(link.floor1 + p.lane), s.floor2 = Lanes::load(link.floor2 + p.lane);
@@ -248,20 +258,23 @@ void change_row(LinkScratch<Lanes>& s, typename Lanes::Batch row, typename Lanes
 
 /// The impulses from the last link to the first, what they do to the bodies, and the next active set.
 /// @param by_speed, by_impulse  tolerances [m/s], the second of impulse times inverse mass
-/// @param most  m/s: no body's velocity changes by more
+/// @param most  m/s: no body's velocity changes by more, nor an impulse times `inverse_mass`
+/// @param inverse_mass  1/kg, of the whole path at least
 /// @param stretch  links of which the active set of each lane changes in one row alone, the one that is
 /// farthest from its law: where many change at once they may do so for ever; 0: all that are wrong change
 /// @return lanes that are not solved yet
 template <class Lanes, class Real>
 typename Lanes::Mask substitute(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch,
                                 typename Lanes::Batch by_speed, typename Lanes::Batch by_impulse,
-                                typename Lanes::Batch most, std::size_t stretch) {
+                                typename Lanes::Batch most, typename Lanes::Batch inverse_mass,
+                                std::size_t stretch) {
     using F = typename Lanes::Batch;
     using simd::select;
     const F zero(0), by_friction = F(static_cast<Real>(kFrictionTolerance)) * by_impulse;
     auto bad = zero < zero;
     F worst = zero, worst_row(Real(-1));  // of a stretch: m/s; 3 link + row of the link
     F largest = zero;                     // m/s, change of a body's velocity
+    F strongest = zero;                   // N s, change of an impulse
     // Change of velocity of the far body of the link that is looked at, and of its near body.
     F far_x = zero, far_y = zero, far_u = zero;
     const auto check = [&](std::size_t i, F near_x, F near_y, F near_u) {
@@ -321,6 +334,7 @@ typename Lanes::Mask substitute(const PathBatch<Real>& p, LinkScratch<Lanes>* sc
         x0 = s.change[0] = y0, x1 = s.change[1] = y1, x2 = s.change[2] = y2;
         F jx, jy;
         l.impulse(x0 + x1, x2, jx, jy);
+        strongest = simd::max(strongest, simd::max(simd::abs(x0), simd::abs(x1)));
         s.dvx = s.w * (jx - jx_next), s.dvy = s.w * (jy - jy_next);
         s.du = s.w2 * (l.far1 * x0 + l.far2 * x1 + l.far_t * x2 - spin_next);
         if (i + 1 < p.length) check(i + 1, s.dvx, s.dvy, s.du);
@@ -330,7 +344,7 @@ typename Lanes::Mask substitute(const PathBatch<Real>& p, LinkScratch<Lanes>* sc
     LinkScratch<Lanes>& head = scratch[p.length];
     head.dvx = -head.w * jx_next, head.dvy = -head.w * jy_next, head.du = -head.w2 * spin_next;
     check(0, head.dvx, head.dvy, head.du);
-    return bad | (largest > most);
+    return bad | (largest > most) | (strongest * inverse_mass > most);
 }
 
 /// Gives the bodies and the links the changes, of the lanes in `where` alone.
@@ -355,17 +369,6 @@ void apply_changes(const PathBatch<Real>& p, const LinkScratch<Lanes>* scratch, 
     }
 }
 
-/// Calls fn(batch) for each batch of each bundle.
-template <class Lanes, class Real, class Fn>
-[[gnu::always_inline]] inline void for_each_path_batch(const SolvePaths<Real>& k, std::size_t first,
-                                                       std::size_t last, const Fn& fn) {
-    for (std::size_t bundle = first; bundle < last; ++bundle)
-        for (std::size_t lane = 0; lane < kPathLanes; lane += Lanes::size)
-            fn(PathBatch<Real>{k, k.links + k.first_link[bundle],
-                               k.first_link[bundle + 1] - k.first_link[bundle], lane,
-                               k.heads + bundle * kPathLanes + lane});
-}
-
 /// Solves the paths of a batch, or pieces of them, exactly; the lanes in `where` alone take the solution.
 /// @param restless  becomes what SolvePaths::restless says of each lane
 /// @return lanes whose active set did not settle
@@ -374,7 +377,9 @@ typename Lanes::Mask solve_exactly(const PathBatch<Real>& p, LinkScratch<Lanes>*
                                    typename Lanes::Mask where, typename Lanes::Batch& restless) {
     using F = typename Lanes::Batch;
     const SolvePaths<Real>& k = p.k;
-    const F fastest = begin_paths<Lanes>(p, scratch, restless);
+    F heaviest;  // 1/kg
+    const F fastest = begin_paths<Lanes>(p, scratch, restless, heaviest);
+    const F inverse_mass = heaviest / F(static_cast<Real>(p.length + 1));
     // Round-off of velocities, in shares of the largest.
     const F by_speed = F(k.velocity_tolerance) + fastest * F(static_cast<Real>(4e-6)),
             by_impulse = F(k.velocity_tolerance) + fastest * F(static_cast<Real>(1e-6)),
@@ -383,7 +388,7 @@ typename Lanes::Mask solve_exactly(const PathBatch<Real>& p, LinkScratch<Lanes>*
     for (int i = 0; i < most_iterations && simd::any(bad & where); ++i) {
         eliminate<Lanes>(p, scratch);
         const std::size_t stretch = i < k.bold_iterations ? 0 : i < kIterationsByPieces ? kPiece : kLongPiece;
-        bad = substitute<Lanes>(p, scratch, by_speed, by_impulse, most, stretch);
+        bad = substitute<Lanes>(p, scratch, by_speed, by_impulse, most, inverse_mass, stretch);
     }
     apply_changes<Lanes>(p, scratch, where & !bad);
     return bad & where;
@@ -466,31 +471,6 @@ PathCounts sweep_all_paths(const SolvePaths<Real>& arguments, std::size_t first,
     const SolvePaths<Real> k = arguments;  // a copy: no store can change it
     for_each_path_batch<Lanes>(k, first, last,
                                [&](const PathBatch<Real>& p) { sweep_paths<Lanes>(p, true, F(0) <= F(0)); });
-    return {};
-}
-
-/// Gives the bodies the impulses that their contacts had at the end of the step before.
-template <class Real, class Isa>
-PathCounts warm_start_paths(const SolvePaths<Real>& arguments, std::size_t first, std::size_t last) {
-    using Lanes = simd::Lanes<Real, Isa>;
-    using F = typename Lanes::Batch;
-    const SolvePaths<Real> k = arguments;  // a copy: no store can change it
-    for_each_path_batch<Lanes>(k, first, last, [&](const PathBatch<Real>& p) {
-        for (std::size_t i = 0; i < p.length; ++i) {
-            const PathLink<Real>& link = p.link[i];
-            const LinkLanes<Lanes, Real> l(link, p.lane);
-            PathBody<Lanes> a{Lanes::load_rows4(k.velocity, p.near_rows(i))},
-                b{Lanes::load_rows4(k.velocity, p.far_rows(i))};
-            const F n1 = Lanes::load(link.normal1 + p.lane), n2 = Lanes::load(link.normal2 + p.lane),
-                    t = Lanes::load(link.tangent + p.lane);
-            F jx, jy;
-            l.impulse(n1 + n2, t, jx, jy);
-            a.apply(F(-1), jx, jy, l.near1 * n1 + l.near2 * n2 + l.near_t * t);
-            b.apply(F(1), jx, jy, l.far1 * n1 + l.far2 * n2 + l.far_t * t);
-            Lanes::store_rows4(k.velocity, p.near_rows(i), a.record);
-            Lanes::store_rows4(k.velocity, p.far_rows(i), b.record);
-        }
-    });
     return {};
 }
 

@@ -383,6 +383,29 @@ void PathSolver<Real>::advance(const SubstepTerms& terms, BodyRecords<Real>& rec
 }
 
 template <class Real>
+void PathSolver<Real>::take_back(const std::vector<std::uint8_t>& is_of, BodyRecords<Real>& records) {
+    for (const PathCut::Place place : cut_.places()) {
+        PathLink<Real>& link = links_[place.link];
+        const std::size_t lane = place.lane;
+        const auto near = static_cast<std::size_t>(near_row(place)),
+                   far = static_cast<std::size_t>(link.body[lane]);
+        if ((is_of[near] | is_of[far]) == 0) continue;
+        const Real taken1 = std::exchange(link.normal1[lane], Real(0)),
+                   taken2 = std::exchange(link.normal2[lane], Real(0)),
+                   taken_t = std::exchange(link.tangent[lane], Real(0)), normal = taken1 + taken2;
+        const Real jx = normal * link.normal_x[lane] - taken_t * link.normal_y[lane],
+                   jy = normal * link.normal_y[lane] + taken_t * link.normal_x[lane];
+        const auto give = [&](std::size_t row, Real sign, Real spin) {
+            Real* record = &records.velocity[4 * row];
+            const Real w = sign * std::fabs(record[3]), w2 = 2 * sign * std::max(record[3], Real(0));
+            record[0] += w * jx, record[1] += w * jy, record[2] += w2 * spin;
+        };
+        give(near, 1, link.near1[lane] * taken1 + link.near2[lane] * taken2 + link.near_t[lane] * taken_t);
+        give(far, -1, link.far1[lane] * taken1 + link.far2[lane] * taken2 + link.far_t[lane] * taken_t);
+    }
+}
+
+template <class Real>
 void PathSolver<Real>::end() {
     for (std::size_t n = 0; n < manifolds.live().size(); ++n) {
         const PathCut::Place place = cut_.places()[n];

@@ -81,6 +81,9 @@ class PathSolver {
         while (first > 0 && live[first - 1] < 0) --first;
         for_each_from(first, fn);
     }
+    /// Takes the impulses back that contacts of some bodies have.
+    /// @param is_of  [rows], not 0 for these bodies
+    void take_back(const std::vector<std::uint8_t>& is_of, BodyRecords<Real>& records);
     /// Keeps the impulses for the next step.
     void end();
 

@@ -171,7 +171,8 @@ template <class Real>
 std::size_t SoftSolver<Real>::bytes() const {
     return graph.bytes() + paths.bytes() + impacts.bytes() + joints.bytes() + masses_.bytes() +
            records_.bytes() + supports_.bytes() + support_finder_.bytes() + warm_start_.bytes() +
-           sweeps_.bytes() + loads_.bytes() + uneven_.bytes() + projection_.bytes() + pair_finder_.bytes();
+           warm_start_limit_.bytes() + sweeps_.bytes() + loads_.bytes() + uneven_.bytes() +
+           projection_.bytes() + pair_finder_.bytes();
 }
 
 template class SoftSolver<float>;

@@ -9,6 +9,7 @@
 #include "solvers/paths/path_books.hpp"
 #include "solvers/paths/path_impacts.hpp"
 #include "solvers/paths/path_solver.hpp"
+#include "solvers/paths/warm_start_limit.hpp"
 #include "solvers/soft/books.hpp"
 #include "solvers/soft/contacts/contact_settings.hpp"
 #include "solvers/soft/contacts/contact_sweeps.hpp"
@@ -89,8 +90,12 @@ class SoftSolver {
     /// Gives the bodies last step's impulses.
     void warm_start();
 
-    /// Gives bodies last step's impulses of shapes.
-    void warm_start_paths() { paths.warm_start(terms_, records_, loops_); }
+    /// Gives bodies last step's impulses of shapes, as far as these make no energy.
+    void warm_start_paths(const WorldState<Real>& world) {
+        paths.warm_start(terms_, records_, loops_);
+        warm_start_limit_.apply(paths, world.bodies, terms_, records_,
+                                world.joints.empty() ? nullptr : joints.joined(), loops_);
+    }
     /// Carries out the impacts of shapes in a substep.
     void carry_out_shape_impacts(const Bodies<Real>& bodies, Books& books) {
         paths.counters.impacts += carom::carry_out_impacts(paths, terms_, bodies, records_, books);
@@ -203,6 +208,7 @@ class SoftSolver {
     PairFinder<Real> pair_finder_;
     SupportFinder<Real> support_finder_;
     WarmStart<Real> warm_start_;
+    WarmStartLimit<Real> warm_start_limit_;
     ContactSweeps<Real> sweeps_;
     LoadCorrection<Real> loads_;
     UnevenContacts<Real> uneven_;

@@ -1,0 +1,100 @@
+// B37 of docs/hard-cases.md: what a kinematic body squeezes against what stands is not shot out.
+#include "support/effort.hpp"
+#include "support/report.hpp"
+
+#include <carom/carom.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <random>
+
+using namespace carom;
+
+namespace {
+
+constexpr double kStep = 1.0 / 60;
+constexpr double kPlateSpeed = 0.6, kTilt = 0.02;  // m/s, rad
+
+struct Squeeze {
+    int bodies;
+    double friction, turning;  // turning: of the plate [rad/s]
+    std::uint32_t seed;
+};
+
+/// Boxes and triangles on a floor, and a plate, hardly tilted, that comes down on them at 0.6 m/s.
+Scene scene_of(const Squeeze& squeeze) {
+    std::mt19937 random(squeeze.seed);
+    const auto uniform = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    Scene scene;
+    scene.accuracy.solver = Solver::soft;
+    scene.gravity = {0, -10};
+    const Material material{.friction = squeeze.friction};
+    scene.add(
+        {.type = BodyType::static_body, .shape = Box{40, 1}, .position = {0, -0.5}, .material = material});
+    scene.add({.type = BodyType::kinematic_body,
+               .shape = Box{40, 1},
+               .position = {0, 3},
+               .angle = kTilt,
+               .velocity = {0, -kPlateSpeed},
+               .angular_velocity = squeeze.turning,
+               .material = material});
+    for (int i = 0; i < squeeze.bodies; ++i) {
+        const double width = uniform(0.4, 0.8), height = uniform(0.4, 0.8);
+        Shape shape = Polygon{{{-0.4, -0.3}, {0.4, -0.3}, {0, 0.5}}};
+        if (i % 2 == 1) shape = Box{width, height};
+        const double x = uniform(-2, 2), y = uniform(0.5, 2), angle = uniform(0, 6);
+        scene.add({.shape = shape,
+                   .position = {x, y},
+                   .angle = angle,
+                   .mass = uniform(1, 10),
+                   .material = material});
+    }
+    return scene;
+}
+
+/// The fastest that a body is while the plate comes down for five seconds and goes up for one [m/s].
+template <class Real>
+double fastest(const Squeeze& squeeze) {
+    const Scene scene = scene_of(squeeze);
+    BasicWorld<Real> world(scene, {.threads = 1});
+    double most = 0;
+    for (int i = 0; i < 360; ++i) {
+        if (i == 300) world.set_velocity({1, 0}, {0, kPlateSpeed});
+        world.step(kStep);
+        for (std::uint32_t body = 2; body < scene.bodies.size(); ++body) {
+            const Vec2 v = world.state({body, 0}).velocity;
+            most = std::fmax(most, std::hypot(v.x, v.y));
+        }
+    }
+    CHECK(world.quarantined().empty());
+    return most;
+}
+
+}  // namespace
+
+TEST_SUITE("hard cases/squeezes") {
+    TEST_CASE_TEMPLATE("B37: shapes that a plate squeezes are not shot out", Real, float, double) {
+        const double wedge = kPlateSpeed / std::tan(kTilt);  // m/s: what is smooth slides out so fast
+        double most = 0;
+        for (const double friction : {0.5, 5.0})
+            for (const double turning : {0.0, 0.02})
+                for (const int bodies : {1, 3, 10})
+                    for (std::uint32_t seed = 1; seed <= static_cast<std::uint32_t>(test::scaled(6, 1));
+                         ++seed) {
+                        const Squeeze squeeze{bodies, friction, turning, seed};
+                        CAPTURE(friction);
+                        CAPTURE(turning);
+                        CAPTURE(bodies);
+                        CAPTURE(seed);
+                        const double speed = fastest<Real>(squeeze);
+                        most = std::fmax(most, speed);
+                        CHECK(speed < 3 * wedge);
+                    }
+        test::report("fastest ", most, " m/s, of a smooth wedge ", wedge);
+    }
+}
