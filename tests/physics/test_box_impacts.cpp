@@ -208,6 +208,25 @@ TEST_SUITE("physics/box impacts") {
             CHECK(std::fabs(run.spin(1)) < 1e-3);
         }
     }
+    TEST_CASE_TEMPLATE("A4: a box under drag that bounces is as fast as one that flies on, times e", Real,
+                       float, double) {
+        for (const double drag : {1.0, 20.0})
+            for (const double restitution : {0.5, 1.0}) {
+                CAPTURE(drag);
+                CAPTURE(restitution);
+                Scene scene;
+                scene.accuracy.solver = Solver::soft;
+                scene.drag = {.linear = drag, .angular = drag};
+                Body wall{.type = BodyType::static_body, .shape = Box{1, 9}, .position = {1, 0}};
+                wall.material.restitution = restitution;
+                scene.add(wall);
+                scene.add(free_box({0, 0}, 0.5, 0.5, 0, {20, 0}, 0, restitution, 0));
+                BoxRun<Real> run(scene);
+                run.steps(6);
+                const double speed = run.world.state({1, 0}).velocity.x;
+                CHECK(speed == doctest::Approx(-restitution * 20 * std::exp(-drag * 0.1)).epsilon(1e-5));
+            }
+    }
     TEST_CASE("A36: a box that spins freely turns by its rate times the time, for a million steps") {
         for (const double spin : {0.7, -13.0}) {
             Scene scene;

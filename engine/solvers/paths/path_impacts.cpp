@@ -57,8 +57,9 @@ void share_points(const Bodies<Real>& bodies, const BodyRecords<Real>& records,
 
 /// @return whether there was an impact
 template <class Real>
-bool carry_out(const PathContact<Real>& contact, double rest_speed, double h, const Bodies<Real>& bodies,
+bool carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, const Bodies<Real>& bodies,
                BodyRecords<Real>& records, Books& books) {
+    const double rest_speed = kRestFalls * terms.fall_speed(), h = terms.substep_dt;
     const PathLink<Real>& link = contact.link;
     const std::size_t lane = contact.lane;
     const double e = contact.restitution;
@@ -128,7 +129,7 @@ bool carry_out(const PathContact<Real>& contact, double rest_speed, double h, co
         if (!(body.w > 0)) return;
         const Vec2 dv = (sign * body.w) * impulse;
         records.add_velocity(body.row, dv,
-                             sign * body.w2 * (lever[0] * x[0] + lever[1] * x[1] + lever[2] * y));
+                             sign * body.w2 * (lever[0] * x[0] + lever[1] * x[1] + lever[2] * y), terms);
     };
     give(a, -1, lever_a), give(b, 1, lever_b);
     if (contact.partner.is_wall()) books.wall_impulse += sum;
@@ -151,7 +152,6 @@ bool carry_out(const PathContact<Real>& contact, double rest_speed, double h, co
 template <class Real>
 std::int64_t carry_out_impacts(const PathSolver<Real>& paths, const SubstepTerms& terms,
                                const Bodies<Real>& bodies, BodyRecords<Real>& records, Books& books) {
-    const double rest_speed = kRestFalls * terms.fall_speed();
     std::int64_t impacts = 0;
     bool goes_on = true;
     for (int round = 0; round < kRounds && goes_on; ++round) {
@@ -160,7 +160,7 @@ std::int64_t carry_out_impacts(const PathSolver<Real>& paths, const SubstepTerms
             const bool is_pressed =
                 contact.link.normal1[contact.lane] + contact.link.normal2[contact.lane] > 0;
             if (!(contact.restitution > 0) || is_pressed) return;
-            if (!carry_out(contact, rest_speed, terms.substep_dt, bodies, records, books)) return;
+            if (!carry_out(contact, terms, bodies, records, books)) return;
             ++impacts, goes_on = true;
         });
     }

@@ -61,11 +61,13 @@ void BodyRecords<Real>::add_still_rows(std::size_t added) {
 }
 
 template <class Real>
-void BodyRecords<Real>::add_velocity(std::int32_t row, Vec2 dv, double du) {
+void BodyRecords<Real>::add_velocity(std::int32_t row, Vec2 dv, double du, const SubstepTerms& terms) {
     const auto i = static_cast<std::size_t>(row);
     const auto x = static_cast<Real>(dv.x), y = static_cast<Real>(dv.y), rim = static_cast<Real>(du);
-    velocity[4 * i] += x, velocity[4 * i + 1] += y, start_x_[i] += x, start_y_[i] += y;
-    if (has_rotation_) velocity[4 * i + 2] += rim, start_rim_[i] += rim;
+    const auto left = static_cast<Real>(terms.decay), spin_left = static_cast<Real>(terms.spin_decay);
+    start_x_[i] += x, start_y_[i] += y;
+    velocity[4 * i] += left * x, velocity[4 * i + 1] += left * y;
+    if (has_rotation_) start_rim_[i] += rim, velocity[4 * i + 2] += spin_left * rim;
 }
 
 template <class Real>

@@ -45,8 +45,8 @@ class BodyRecords {
     /// Rows behind all others, of bodies that nothing moves: at rest until the next `begin`.
     void add_still_rows(std::size_t rows);
     /// Changes the velocity of a body by dv [m/s] and du [m/s] of its rim at once: at the start of the
-    /// substep as at its end, so that the next one does not foresee it.
-    void add_velocity(std::int32_t row, Vec2 dv, double du);
+    /// substep, and at its end by what drag leaves of it, so that the next one does not foresee it.
+    void add_velocity(std::int32_t row, Vec2 dv, double du, const SubstepTerms& terms);
     /// All rows, padding and such still ones included.
     std::size_t rows() const { return displacement.size() / 2; }
     /// Nothing of the last step is known any more.
