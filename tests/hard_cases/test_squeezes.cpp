@@ -75,6 +75,53 @@ double fastest(const Squeeze& squeeze) {
     return most;
 }
 
+/// How often a body is outside of a closed room, on whose floor and walls a kinematic disc and box press as
+/// they leave it.
+template <class Real>
+int times_outside() {
+    constexpr int kBodies = 40;
+    constexpr double kWidth = 8, kHeight = 4;  // m
+    std::mt19937 random(37);
+    const auto uniform = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    Scene scene;
+    scene.accuracy.solver = Solver::soft;
+    scene.gravity = {0, -10};
+    const Material material{.friction = 0.5};
+    scene.add({.type = BodyType::static_body,
+               .shape = Chain{.points = {{0, 0}, {kWidth, 0}, {kWidth, kHeight}, {0, kHeight}}, .loop = true},
+               .material = material});
+    scene.add({.type = BodyType::kinematic_body,
+               .shape = Disc{1},
+               .position = {3, 3},
+               .velocity = {0, -0.5},
+               .material = material});
+    scene.add({.type = BodyType::kinematic_body,
+               .shape = Box{1.5, 2},
+               .position = {5, 2},
+               .velocity = {0.5, -0.2},
+               .angular_velocity = 0.3,
+               .material = material});
+    for (int i = 0; i < kBodies; ++i) {
+        Shape shape = Box{uniform(0.2, 0.8), 0.3};
+        if (i % 3 == 1) shape = Capsule{0.4, 0.1};
+        if (i % 3 == 2) shape = Polygon{{{-0.3, -0.2}, {0.3, -0.2}, {0, 0.4}}};
+        const double x = uniform(0.6, kWidth - 0.6), y = uniform(0.6, kHeight - 0.6);
+        scene.add({.shape = shape, .position = {x, y}, .angle = uniform(0, 6), .material = material});
+    }
+    BasicWorld<Real> world(scene, {.threads = 1});
+    int count = 0;
+    for (int i = 0; i < 900; ++i) {
+        world.step(kStep);
+        for (std::uint32_t body = 3; body < scene.bodies.size(); ++body) {
+            const Vec2 p = world.state({body, 0}).position;
+            count += p.x > 0 && p.x < kWidth && p.y > 0 && p.y < kHeight ? 0 : 1;
+        }
+    }
+    return count;
+}
+
 }  // namespace
 
 TEST_SUITE("hard cases/squeezes") {
@@ -96,5 +143,12 @@ TEST_SUITE("hard cases/squeezes") {
                         CHECK(speed < 3 * wedge);
                     }
         test::report("fastest ", most, " m/s, of a smooth wedge ", wedge);
+    }
+
+    TEST_CASE_TEMPLATE("B37: shapes that are pressed against the walls of a closed room do not leave it",
+                       Real, float, double) {
+        const int outside = times_outside<Real>();
+        test::report(outside, " times a body was outside");
+        CHECK(outside == 0);
     }
 }

@@ -13,8 +13,9 @@ namespace {
 /// What moves less than this share of its inradius towards what it touches is still held by its contact.
 constexpr double kSmallestWay = 0.5;
 
-/// A body that is put back may get behind something else by that.
-constexpr int kRounds = 3;
+/// A body that is put back may get behind something else by that. In the last round it is kept from passing
+/// what is static alone: what is squeezed against that stays on its side.
+constexpr int kRounds = 4;
 
 /// The core of a body, in inradii: where another one is in it, their contact may take the wrong side.
 constexpr double kCore = 0.5;
@@ -100,10 +101,13 @@ void ShapeTunnelling<Real>::list_swift(const Inputs& in, const Manifolds<Real>& 
         if (way_along_axes(displacement + 2 * row) + of_other > least * bodies.inradius(row)) mark(row);
     };
     for (const std::int32_t contact : manifolds.live()) {
-        if (contact < 0)
-            break;  // edges have contacts but where they face a body, and walls are looked at later
         const ManifoldList<Real>& list = manifolds.list_of(contact);
         const std::size_t i = Manifolds<Real>::place_of(contact);
+        if (contact < 0) {  // an edge has one but where it faces a body; it tells who is pressed into it
+            const Real deepest = std::min(list.separation1[i], list.separation2[i]);
+            if (deepest < -least * list.thickness[i]) mark(static_cast<std::size_t>(list.a[i]));
+            continue;
+        }
         const auto other = static_cast<std::size_t>(list.b[i]);
         if (other < bodies.count && !bodies.is_immovable(other)) continue;
         Real of_other = dt * (std::fabs(bodies.velocity_x[other]) + std::fabs(bodies.velocity_y[other]));
@@ -143,7 +147,7 @@ void ShapeTunnelling<Real>::look_at(const Inputs& in, std::size_t row) {
         way.angle = static_cast<double>(bodies.angle[row]) - way.turned;
     }
     for (int round = 0; round < kRounds; ++round) {
-        const Passed passed = first_passed(in, way);
+        const Passed passed = first_passed(in, way, round + 1 == kRounds);
         if (passed.time > 1) return;
         put_back(in, way, passed, round > 0);
     }
@@ -151,7 +155,8 @@ void ShapeTunnelling<Real>::look_at(const Inputs& in, std::size_t row) {
 
 /// What the core of a body, or of a piece of it, met first.
 template <class Real>
-typename ShapeTunnelling<Real>::Passed ShapeTunnelling<Real>::first_passed(const Inputs& in, const Way& way) {
+typename ShapeTunnelling<Real>::Passed ShapeTunnelling<Real>::first_passed(const Inputs& in, const Way& way,
+                                                                           bool is_last) {
     const Bodies<Real>& bodies = in.world.bodies;
     Passed first;
     const double half = 0.5 * std::sqrt(length_squared(way.end - way.start));
@@ -163,21 +168,25 @@ typename ShapeTunnelling<Real>::Passed ShapeTunnelling<Real>::first_passed(const
             const Vec2 centre = piece ? Vec2{piece->x, piece->y} : Vec2{};
             const Core core{way.start + rotate(at_start, centre), way.end + rotate(at_end, centre),
                             kCore * static_cast<double>(shape.inradius)};
-            if (!bodies.is_disc(way.row)) look_at_edges(in, way, core, first);
-            for (std::size_t k = 0; k < found; ++k)
-                look_at_body(in, way, core, static_cast<std::size_t>(near_[k]), first);
+            if (!bodies.is_disc(way.row)) look_at_edges(in, way, core, is_last, first);
+            for (std::size_t k = 0; k < found; ++k) {
+                const auto other = static_cast<std::size_t>(near_[k]);
+                if (is_last && (bodies.flags_of(other) & kKinematic) != 0) continue;
+                look_at_body(in, way, core, other, first);
+            }
         });
     return first;
 }
 
 template <class Real>
-void ShapeTunnelling<Real>::look_at_edges(const Inputs& in, const Way& way, const Core& core,
+void ShapeTunnelling<Real>::look_at_edges(const Inputs& in, const Way& way, const Core& core, bool is_last,
                                           Passed& first) const {
     constexpr double kWiderCircle = 1 + 1e-9;  // against rounding
     for (const EdgeBody& body : in.world.edges.bodies) {
         const EdgePose& pose = in.flight.edges.pose_of(in.world.edges[body.first]);
         if (!pose.takes_part || (in.world.has_filters() && !in.world.may_collide(way.row, pose.row)))
             continue;
+        if (is_last && (in.world.bodies.flags_of(pose.row) & kKinematic) != 0) continue;
         const Core seen = core.seen_from(pose);
         const MovingConvex moving = moving_disc(seen.from, seen.to, seen.radius);
         const double half = 0.5 * std::sqrt(length_squared(moving.velocity));

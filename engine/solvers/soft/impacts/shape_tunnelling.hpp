@@ -60,8 +60,8 @@ class ShapeTunnelling {
     void list_swift(const Inputs& in, const Manifolds<Real>& manifolds);
     void mark(std::size_t row);
     void look_at(const Inputs& in, std::size_t row);
-    Passed first_passed(const Inputs& in, const Way& way);
-    void look_at_edges(const Inputs& in, const Way& way, const Core& core, Passed& first) const;
+    Passed first_passed(const Inputs& in, const Way& way, bool is_last);
+    void look_at_edges(const Inputs& in, const Way& way, const Core& core, bool is_last, Passed& first) const;
     void look_at_body(const Inputs& in, const Way& way, const Core& core, std::size_t other,
                       Passed& first) const;
     void put_back(const Inputs& in, Way& way, const Passed& passed, bool to_start);
