@@ -433,8 +433,12 @@ bool Manifolds<Real>::list_live() {
             live_.push_back(~static_cast<std::int32_t>(i));
         else
             surfaces_.memory[i] = {};
-    count_changes();
-    return live_ == was_live_ &&
+    const bool is_same = live_ == was_live_;
+    if (is_same && !live_.empty())
+        changed_share_ = 0;
+    else
+        count_changes();
+    return is_same &&
            std::equal(surfaces_.a.begin(), surfaces_.a.end(), old_surfaces_.a.begin(), old_surfaces_.a.end());
 }
 
