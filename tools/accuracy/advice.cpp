@@ -38,7 +38,7 @@ std::string winners(const std::vector<const CaseResult*>& cases, double target) 
     std::map<std::string, int> wins;
     for (const CaseResult* result : cases)
         if (const Point* best = cheapest(*result, target)) ++wins[name_of(best->setting)];
-    if (wins.empty()) return "nobody gets there";
+    if (wins.empty()) return "none gets there";
     std::string text;
     for (const auto& [name, count] : wins)
         text += format("%s%s (cheapest in %d of %zu)", text.empty() ? "" : " or ", name.c_str(), count,

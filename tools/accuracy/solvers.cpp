@@ -31,9 +31,8 @@ const std::vector<SweptSolver> kOurs{
      true,
      {4, 1, 2, 8, 16},
      {1},
-     "holds contacts at rest with friction, which no other solver here does; impacts take effect where a "
-     "step ends, "
-     "so bounces are first order in the step",
+     "holds contacts at rest with friction, shapes and joints, which no other solver here does, by substeps; "
+     "impacts are carried out at their own time within a substep",
      true},
     {Solver::rattle,
      {kSingle, kDouble},

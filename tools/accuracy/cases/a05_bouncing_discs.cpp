@@ -43,10 +43,6 @@ Case bouncing_discs() {
             .errors = {{"energy", "root mean square change of the energy above the floor, over the first"},
                        {"height", "root mean square difference in height, over the first height"}},
             .solvers = {"event", "impulse", "soft", "pairwise"},
-            .note =
-                "`soft` lets a bounce begin where a step ends, so the period is rounded up to whole steps: "
-                "2.0193 s "
-                "become 2.02 s at each of these steps, and heights are off by the same.",
             .steps = {0.02, 0.01, 0.005, 0.002, 0.001},
             .scene = scene_of,
             .run = run};
