@@ -121,9 +121,10 @@ const bool kAdded = [] {
     };
     for (const char* scene : {"gas", "rough-gas", "packed"}) add_scene(scene, false, &disc_sizes);
     for (const char* scene : {"pyramid", "pyramid-start"}) add_scene(scene, true, &sizes_of<5'050>);
-    for (const char* scene : {"box-pile", "mixed-pile"}) add_scene(scene, true, &sizes_of<10'000>);
+    for (const char* scene : {"box-pile", "box-pile-start", "mixed-pile", "mixed-pile-start"})
+        add_scene(scene, true, &sizes_of<10'000>);
     add_scene("smash", true, &sizes_of<5'001>);
-    add_scene("planks", true, &sizes_of<1'000>);
+    for (const char* scene : {"planks", "planks-start"}) add_scene(scene, true, &sizes_of<1'000>);
     return true;
 }();
 

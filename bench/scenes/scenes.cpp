@@ -103,10 +103,14 @@ BenchScene tumbler(std::int64_t bodies) {
 
 const std::vector<std::string>& scene_names() {
     static const std::vector<std::string> names{
-        "gas",      "rough-gas",  "pile",  "packed", "tumbler", "pyramid", "pyramid-start",
-        "box-pile", "mixed-pile", "smash", "planks", "net",     "ragdolls"};
+        "gas",      "rough-gas",      "pile",       "packed",           "tumbler", "pyramid", "pyramid-start",
+        "box-pile", "box-pile-start", "mixed-pile", "mixed-pile-start", "smash",   "planks",  "planks-start",
+        "net",      "ragdolls"};
     return names;
 }
+
+// Steps: the pyramid closes its gaps, what is dropped has fallen on each other.
+constexpr int kStartOfPyramid = 120, kStartOfPile = 300;
 
 BenchScene make_scene(const std::string& name, std::int64_t bodies) {
     if (name == "gas") return {"gas", measure::flown_gas_scene(bodies), {}, 6};
@@ -115,11 +119,14 @@ BenchScene make_scene(const std::string& name, std::int64_t bodies) {
     if (name == "packed") return packed(bodies);
     if (name == "tumbler") return tumbler(bodies);
     if (name == "pyramid") return pyramid(bodies);
-    if (name == "pyramid-start") return pyramid_start(bodies);
+    if (name == "pyramid-start") return start_of(pyramid(bodies), kStartOfPyramid);
     if (name == "box-pile") return box_pile(bodies);
+    if (name == "box-pile-start") return start_of(box_pile(bodies), kStartOfPile);
     if (name == "mixed-pile") return mixed_pile(bodies);
+    if (name == "mixed-pile-start") return start_of(mixed_pile(bodies), kStartOfPile);
     if (name == "smash") return smash(bodies);
     if (name == "planks") return planks(bodies);
+    if (name == "planks-start") return start_of(planks(bodies), kStartOfPile);
     if (name == "net") return net(bodies);
     if (name == "ragdolls") return ragdolls(bodies);
     throw std::invalid_argument(measure::joined("no benchmark scene is called ", name));

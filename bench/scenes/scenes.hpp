@@ -26,9 +26,9 @@ struct BenchScene {
     int restart_steps = 0;  ///< timed steps after which it starts over, as it would change; 0: never
 };
 
-/// The kinds there are: "gas", "rough-gas", "pile", "packed", "tumbler" of discs, then "pyramid",
-/// "pyramid-start", "box-pile", "mixed-pile", "smash", "planks" of other shapes, "net" and "ragdolls" of
-/// joints.
+/// The kinds there are: "gas", "rough-gas", "pile", "packed", "tumbler" of discs; "pyramid", "box-pile",
+/// "mixed-pile", "smash", "planks" of other shapes, all but "smash" with "-start", too; "net" and "ragdolls"
+/// of joints.
 const std::vector<std::string>& scene_names();
 
 /// @param name    one of `scene_names`

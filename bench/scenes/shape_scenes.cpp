@@ -16,7 +16,6 @@ constexpr RadiusRange kHalfSides{0.4, 0.6};       // m, uniform; of discs and ca
 constexpr double kLoosePart = 1.02;               // spacing of a loose grid over the largest diameter
 constexpr double kSettledPacking = 0.82;          // about what friction leaves
 constexpr int kCalmAfter = 300;                   // steps
-constexpr int kStart = 120;                       // steps
 constexpr int kSettleFew = 1200, kSettle = 2400;  // steps, of up to 1,000 bodies and of more
 
 /// The same numbers on every machine. Source: splitmix64, Steele, Lea and Flood 2014.
@@ -107,10 +106,6 @@ BenchScene pyramid(std::int64_t bodies) {
     return {"pyramid", std::move(scene), {}, kCalmAfter};
 }
 
-BenchScene pyramid_start(std::int64_t bodies) {
-    return {"pyramid-start", pyramid(bodies).scene, {}, 0, kStart};
-}
-
 BenchScene box_pile(std::int64_t bodies) {
     return dropped("box-pile", bodies, 2 * std::numbers::sqrt2 * kHalfSides.max,
                    [](Random& random, std::int64_t) -> Shape { return random_box(random); });
@@ -169,6 +164,11 @@ BenchScene planks(std::int64_t bodies) {
     Random random;
     for (Body& body : scene.bodies) body.angle = random.between(-kTilt, kTilt);
     return {"planks", std::move(scene), {}, kSettleFew};
+}
+
+BenchScene start_of(BenchScene scene, int steps) {
+    scene.name += "-start", scene.settle_steps = 0, scene.restart_steps = steps;
+    return scene;
 }
 
 }  // namespace carom::bench

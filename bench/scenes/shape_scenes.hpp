@@ -10,9 +10,6 @@ namespace carom::bench {
 /// time it is timed.
 BenchScene pyramid(std::int64_t bodies);
 
-/// The first two seconds of the same.
-BenchScene pyramid_start(std::int64_t bodies);
-
 /// Boxes of random sides and angles dropped from a loose grid into an open box.
 BenchScene box_pile(std::int64_t bodies);
 
@@ -24,5 +21,8 @@ BenchScene smash(std::int64_t bodies);
 
 /// Planks a hundred times longer than thick, dropped flat into an open box that is wide enough for three.
 BenchScene planks(std::int64_t bodies);
+
+/// The first steps of a scene, over and over, before it has settled. Its name ends with "-start".
+BenchScene start_of(BenchScene scene, int steps);
 
 }  // namespace carom::bench
