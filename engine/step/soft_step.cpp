@@ -102,7 +102,8 @@ class SoftStep final : public SoftSimulation<Real> {
     };
     static constexpr Stage<Sim> kSubstep[] = {
         {"solve_joints", [](Sim& sim) { sim.soft.solve_joints(sim.world, sim.substep); }, has_joints,
-         KernelChoice::isa, "joints, velocity records, displacements", "velocity records, displacements"},
+         KernelChoice::isa, "joints, contacts, velocity records, displacements",
+         "impulses, velocity records, displacements"},
         {"bounce_shapes",
          [](Sim& sim) { sim.soft.carry_out_shape_impacts(sim.world.bodies, sim.world.books); }, shapes_bounce,
          KernelChoice::scalar_f64, "paths of contacts, velocity records, displacements",
@@ -138,7 +139,8 @@ class SoftStep final : public SoftSimulation<Real> {
     };
     static constexpr Stage<Sim> kEnd[] = {
         {"end_joints", [](Sim& sim) { end_joints(sim); }, has_joints, KernelChoice::scalar_f64,
-         "joints, velocity records, displacements", "joints, velocity records, displacements, books"},
+         "joints, contacts, velocity records, displacements",
+         "joints, velocity records, displacements, books"},
         {"end_contacts", [](Sim& sim) { sim.soft.end_contacts(); }, can_meet, KernelChoice::none, "contacts",
          "impulses"},
         {"project_positions", [](Sim& sim) { sim.soft.project_positions(sim.world, sim.flight()); }, can_meet,

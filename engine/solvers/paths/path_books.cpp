@@ -2,14 +2,10 @@
 
 #include <array>
 
+#include "solvers/paths/contact_work.hpp"
+
 namespace carom {
 namespace {
-
-/// Mean velocity of a body over a substep.
-struct MeanVelocity {
-    Vec2 velocity;   // m/s
-    double rim = 0;  // m/s
-};
 
 template <class Real>
 MeanVelocity mean_of(const BodyRecords<Real>& records, std::int32_t row) {
@@ -18,32 +14,6 @@ MeanVelocity mean_of(const BodyRecords<Real>& records, std::int32_t row) {
     if (static_cast<std::size_t>(row) < records.count()) start = records.start_of_substep(row);
     return {{0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])}, 0.5 * (start[2] + end[2])};
 }
-
-/// The contact in a lane of a link, in double precision.
-template <class Real>
-struct BookedContact {
-    Vec2 normal;
-    std::array<double, 3> lever_near, lever_far, impulse;  // normal 1, normal 2, tangent: rims, N s
-
-    explicit BookedContact(const PathContact<Real>& contact) : BookedContact(contact.link, contact.lane) {}
-    BookedContact(const PathLink<Real>& link, std::size_t lane)
-        : normal{link.normal_x[lane], link.normal_y[lane]},
-          lever_near{link.near1[lane], link.near2[lane], link.near_t[lane]},
-          lever_far{link.far1[lane], link.far2[lane], link.far_t[lane]},
-          impulse{link.normal1[lane], link.normal2[lane], link.tangent[lane]} {}
-
-    Vec2 tangent() const { return {-normal.y, normal.x}; }
-    /// Work of impulse k on both bodies [J].
-    double work(std::size_t k, const MeanVelocity& near, const MeanVelocity& far) const {
-        const Vec2 along = k < 2 ? normal : tangent();
-        return impulse[k] *
-               (dot(far.velocity - near.velocity, along) + far.rim * lever_far[k] - near.rim * lever_near[k]);
-    }
-    double work(const MeanVelocity& near, const MeanVelocity& far) const {
-        return work(0, near, far) + work(1, near, far) + work(2, near, far);
-    }
-    Vec2 on_far() const { return (impulse[0] + impulse[1]) * normal + impulse[2] * tangent(); }
-};
 
 }  // namespace
 
@@ -58,7 +28,7 @@ void book_paths(const PathSolver<Real>& paths, const BodyRecords<Real>& records,
     paths.rolling().book(records, books);
     const auto is_moved = [&](std::int32_t row) { return static_cast<std::size_t>(row) < records.count(); };
     paths.for_each([&](const PathContact<Real>& contact) {
-        const BookedContact<Real> booked(contact);
+        const ContactWork<Real> booked(contact);
         const bool is_wall = contact.partner.is_wall();
         const MeanVelocity near = mean_of(records, contact.near), far = mean_of(records, contact.far);
         books.restitution += booked.work(0, near, far) + booked.work(1, near, far);

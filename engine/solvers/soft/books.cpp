@@ -1,8 +1,8 @@
 #include "solvers/soft/books.hpp"
 
-#include "constraints/contact_law.hpp"
 #include "effects/flight.hpp"
 #include "math/vec2_math.hpp"
+#include "solvers/soft/contacts/stored_contact.hpp"
 
 namespace carom {
 namespace {
@@ -16,14 +16,6 @@ DoubleBody mean_of(const DoubleBody& before, const Column<Real>& to, std::int32_
 
 Vec2 velocity_of(const DoubleBody& body) {
     return {body.record[0], body.record[1]};
-}
-
-template <class Real>
-DoubleSurface surface_at(const ContactRows<Real>& supports, std::size_t i) {
-    const double rolling =
-        supports.surface_rolling.empty() ? 0 : static_cast<double>(supports.surface_rolling[i]);
-    return {static_cast<double>(supports.surface_normal[i]), static_cast<double>(supports.surface_tangent[i]),
-            rolling};
 }
 
 /// The impulses of the contacts of one kind, pairs or supports, by contact [N s].

@@ -130,6 +130,7 @@ class SoftSolver {
     }
     void solve_joints(WorldState<Real>& world, int number) {
         joints.solve(joint_step(world), loops_, number);
+        joints.forget_blows(joint_step(world), view(), paths);
     }
     /// Contacts and joints in turns, where they bear on each other.
     void solve_joints_and_contacts(WorldState<Real>& world);
@@ -138,7 +139,7 @@ class SoftSolver {
     }
     /// @return whether a joint broke
     bool end_joints(WorldState<Real>& world, Books& books, double dt) {
-        return joints.end_step(joint_step(world), books, dt);
+        return joints.end_step(joint_step(world), view(), paths, books, dt);
     }
 
     /// The impulses back to the candidates.

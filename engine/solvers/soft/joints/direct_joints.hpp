@@ -32,6 +32,8 @@ class DirectJoints {
     /// What contacts have changed since.
     void solve_again(const JointStep<Real>& step);
     bool touches() const { return touches_; }
+    /// At the end of a step: nothing that it could touch presses on it.
+    void leave() { touches_ = false; }
     /// The end of a step: velocities at whole times. Nothing where bodies touch others.
     void end_step(const JointStep<Real>& step);
     /// Adds what its joints gave since the last solve_first or end_step to their forces.

@@ -117,6 +117,7 @@ void SoftJoints<Real>::find_groups(const WorldState<Real>& world) {
         for (const std::int32_t row : direct_[i].rows())
             if (row >= 0 && moves(static_cast<std::size_t>(row)))
                 group_of_[static_cast<std::size_t>(row)] = static_cast<std::int32_t>(i);
+    blows_.set_groups(group_of_, first_beside_);
 }
 
 /// Whether sweeps hold a group of joints in a heap as well as an exact solve: bodies of like masses, and
@@ -143,39 +144,50 @@ bool SoftJoints<Real>::is_fit_for_crowd(const WorldState<Real>& world,
 template <class Real>
 void SoftJoints<Real>::find_touching(const JointStep<Real>& step, const StepView<Real>& contacts,
                                      const PathSolver<Real>& paths, double dt) {
-    group_touches_.assign(direct_.size() + 1, 0);
+    group_touches_.assign(first_beside_, 0);
     const Bodies<Real>& bodies = step.world.bodies;
     const auto speed_of = [&](std::size_t row) {
         return std::fabs(static_cast<double>(bodies.velocity_x[row])) +
                std::fabs(static_cast<double>(bodies.velocity_y[row]));
     };
-    const auto group_at = [&](std::int32_t row) {
-        return static_cast<std::size_t>(row) < group_of_.size() ? group_of_[static_cast<std::size_t>(row)]
-                                                                : -1;
-    };
     const auto look = [&](const ContactRows<Real>& rows, std::size_t i, std::int32_t a, std::int32_t b) {
-        const std::int32_t of_a = group_at(a), of_b = b < 0 ? -1 : group_at(b);
-        if (of_a < 0 && of_b < 0) return;
         const auto row = static_cast<std::size_t>(a);
         double near = 0.05 * static_cast<double>(bodies.radius[row]) + dt * speed_of(row);
         if (b >= 0 && static_cast<std::size_t>(b) < bodies.count)
             near += dt * speed_of(static_cast<std::size_t>(b));
         if (!(rows.normal_impulse[i] > 0) && static_cast<double>(rows.separation[i]) > near) return;
-        if (of_a >= 0) group_touches_[static_cast<std::size_t>(of_a)] = 1;
-        if (of_b >= 0) group_touches_[static_cast<std::size_t>(of_b)] = 1;
+        mark(a, b, group_touches_);
     };
     const ContactRows<Real>& pairs = contacts.graph.pairs;
-    for (std::size_t group = 0; group < pairs.groups(); ++group)
-        pairs.for_each(group, group + 1, [&](std::size_t i) {
-            if (pairs.is_live[i / kContactBlock]) look(pairs, i, pairs.a[i], pairs.b[i]);
-        });
-    if (bodies.has_shapes)
-        paths.for_each([&](const PathContact<Real>& contact) {
-            for (const std::int32_t row : {contact.near, contact.far})
-                if (group_at(row) >= 0) group_touches_[static_cast<std::size_t>(group_at(row))] = 1;
-        });
+    pairs.for_each([&](std::size_t i) {
+        if (pairs.is_live[i / kContactBlock]) look(pairs, i, pairs.a[i], pairs.b[i]);
+    });
     contacts.supports.for_each(
         [&](std::size_t i) { look(contacts.supports, i, contacts.supports.a[i], -1); });
+    if (bodies.has_shapes)
+        paths.for_each(
+            [&](const PathContact<Real>& contact) { mark(contact.near, contact.far, group_touches_); });
+}
+
+/// Marks groups on which a contact presses, beside those that are marked.
+template <class Real>
+void SoftJoints<Real>::find_pressed(const JointStep<Real>& step, const StepView<Real>& contacts,
+                                    const PathSolver<Real>& paths, std::vector<std::uint8_t>& groups) const {
+    groups.resize(first_beside_);
+    const ContactRows<Real>& pairs = contacts.graph.pairs;
+    pairs.for_each([&](std::size_t i) {
+        if (pairs.is_live[i / kContactBlock] && pairs.normal_impulse[i] > 0)
+            mark(pairs.a[i], pairs.b[i], groups);
+    });
+    const ContactRows<Real>& supports = contacts.supports;
+    supports.for_each([&](std::size_t i) {
+        if (supports.normal_impulse[i] > 0) mark(supports.a[i], -1, groups);
+    });
+    if (step.world.bodies.has_shapes)
+        paths.for_each([&](const PathContact<Real>& contact) {
+            if (contact.link.normal1[contact.lane] + contact.link.normal2[contact.lane] > 0)
+                mark(contact.near, contact.far, groups);
+        });
 }
 
 template <class Real>
@@ -184,10 +196,12 @@ void SoftJoints<Real>::begin_step(const JointStep<Real>& step, const StepView<Re
     find_touching(step, contacts, paths, dt);
     touches_ = false;
     for (std::size_t i = 0; i < direct_.size(); ++i) {
-        const bool touches = i >= first_beside_ || group_touches_[i];
-        touches_ = touches_ || (group_touches_[i] && i < first_beside_);
-        direct_[i].begin_step(step, touches, i >= first_beside_, is_rattle);
+        const bool is_beside = i >= first_beside_, touches = is_beside || group_touches_[i] != 0;
+        touches_ = touches_ || (touches && !is_beside);
+        direct_[i].begin_step(step, touches, is_beside, is_rattle);
     }
+    is_pressed_.clear();
+    if (touches_) find_pressed(step, contacts, paths, is_pressed_);
     if (!swept_.empty()) swept_.begin_step(step, contacts.loops);
 }
 
@@ -201,6 +215,15 @@ void SoftJoints<Real>::solve(const JointStep<Real>& step, const StepLoops<Real>&
                                   [&](std::size_t i) { direct_[i].solve_first(step, substep); });
     for (std::size_t i = first_beside_; i < direct_.size(); ++i) direct_[i].solve_first(step, substep);
     if (first_beside_ < direct_.size() && !swept_.empty()) swept_.sweep(step, loops, Begin::nothing);
+}
+
+template <class Real>
+void SoftJoints<Real>::forget_blows(const JointStep<Real>& step, const StepView<Real>& contacts,
+                                    PathSolver<Real>& paths) {
+    if (!blows_.find(step, contacts, paths, group_touches_)) return;
+    blows_.take_back(contacts, paths);
+    for (std::size_t i = 0; i < first_beside_; ++i)
+        if (blows_.is_thrown(i)) direct_[i].solve_again(step);
 }
 
 template <class Real>
@@ -226,8 +249,14 @@ void SoftJoints<Real>::end_substep(const JointStep<Real>& step, Books& books) {
 }
 
 template <class Real>
-bool SoftJoints<Real>::end_step(const JointStep<Real>& step, Books& books, double dt) {
+bool SoftJoints<Real>::end_step(const JointStep<Real>& step, const StepView<Real>& contacts,
+                                const PathSolver<Real>& paths, Books& books, double dt) {
     JointStore& joints = step.world.joints;
+    if (touches_) {
+        find_pressed(step, contacts, paths, is_pressed_);
+        for (std::size_t i = 0; i < first_beside_; ++i)
+            if (!is_pressed_[i]) direct_[i].leave();
+    }
     for (DirectJoints<Real>& group : direct_) {
         if (!group.touches()) {
             group.end_step(step);
@@ -298,7 +327,8 @@ std::string SoftJoints<Real>::describe() const {
 
 template <class Real>
 std::size_t SoftJoints<Real>::bytes() const {
-    std::size_t bytes = swept_.bytes() + joined_.bytes() + group_of_.capacity() * sizeof(std::int32_t);
+    std::size_t bytes = swept_.bytes() + joined_.bytes() + blows_.bytes() +
+                        group_of_.capacity() * sizeof(std::int32_t) + group_touches_.capacity();
     for (const DirectJoints<Real>& group : direct_) bytes += group.bytes() + sizeof(group);
     return bytes;
 }

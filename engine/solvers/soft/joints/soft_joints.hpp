@@ -7,6 +7,7 @@
 #include "constraints/contact_graph.hpp"
 #include "solvers/paths/path_solver.hpp"
 #include "solvers/soft/joints/direct_joints.hpp"
+#include "solvers/soft/joints/foreseen_blows.hpp"
 #include "solvers/soft/joints/swept_joints.hpp"
 #include "solvers/soft/step_view.hpp"
 
@@ -34,6 +35,8 @@ class SoftJoints {
     void begin_step(const JointStep<Real>& step, const StepView<Real>& contacts,
                     const PathSolver<Real>& paths, double dt);
     void solve(const JointStep<Real>& step, const StepLoops<Real>& loops, int substep);
+    /// Takes back what contacts foresaw where that gives a group energy, after `solve`.
+    void forget_blows(const JointStep<Real>& step, const StepView<Real>& contacts, PathSolver<Real>& paths);
     /// Once more, after contacts have changed velocities.
     void solve_again(const JointStep<Real>& step, const StepLoops<Real>& loops);
     /// Whether contacts and joints are to be solved in turns in this step.
@@ -42,7 +45,9 @@ class SoftJoints {
     bool touches_exactly() const { return touches_; }
     void end_substep(const JointStep<Real>& step, Books& books);
     /// @return whether a joint broke
-    bool end_step(const JointStep<Real>& step, Books& books, double dt);
+    /// @param contacts, paths  as they are after the last substep
+    bool end_step(const JointStep<Real>& step, const StepView<Real>& contacts, const PathSolver<Real>& paths,
+                  Books& books, double dt);
 
     /// [rows], above zero for bodies that have joints.
     const Real* joined() const { return joined_.data(); }
@@ -59,6 +64,15 @@ class SoftJoints {
     static JointBreak break_of(const JointStep<Real>& step, std::size_t slot, double dt);
     void find_touching(const JointStep<Real>& step, const StepView<Real>& contacts,
                        const PathSolver<Real>& paths, double dt);
+    void find_pressed(const JointStep<Real>& step, const StepView<Real>& contacts,
+                      const PathSolver<Real>& paths, std::vector<std::uint8_t>& groups) const;
+    /// Marks the groups of two rows; below zero or beyond the bodies: none.
+    void mark(std::int32_t a, std::int32_t b, std::vector<std::uint8_t>& groups) const {
+        for (const std::int32_t row : {a, b})
+            if (row >= 0 && static_cast<std::size_t>(row) < group_of_.size() &&
+                group_of_[static_cast<std::size_t>(row)] >= 0)
+                groups[static_cast<std::size_t>(group_of_[static_cast<std::size_t>(row)])] = 1;
+    }
 
     bool is_known_ = false, touches_ = false;
     std::int64_t version_ = -1;  // of the store
@@ -68,8 +82,10 @@ class SoftJoints {
     std::size_t swept_groups_ = 0, crowd_groups_ = 0;
     std::vector<std::size_t> breakable_;  // slots of joints that can break
     Column<Real> joined_;
+    // Of groups that are solved exactly, in the order of direct_.
     std::vector<std::int32_t> group_of_;  // by row; -1: none
-    std::vector<std::uint8_t> group_touches_;
+    std::vector<std::uint8_t> group_touches_, is_pressed_;
+    ForeseenBlows<Real> blows_;
 };
 
 extern template class SoftJoints<float>;

@@ -1,0 +1,162 @@
+// Ragdolls: what joints hold may not gain energy by a blow, and a heap of them comes to rest.
+#include "support/effort.hpp"
+#include "support/ragdoll.hpp"
+#include "support/report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+using namespace carom;
+using namespace carom::test;
+
+namespace {
+
+constexpr double kStep = 1.0 / 60;
+
+/// Ragdolls in a row that fall by 2 m on a floor.
+Scene falling_ragdolls(int count, double tilt, const Ragdolls& how) {
+    Scene scene;
+    scene.gravity = {0, -10};
+    scene.add({.type = BodyType::static_body,
+               .shape = Segment{{-100, 0}, {100, 0}},
+               .material = {.friction = how.friction, .restitution = how.restitution}});
+    for (int i = 0; i < count; ++i) add_ragdoll(scene, {2.5 * i, 3.2}, tilt, -1 - i, how);
+    scene.effects.ledger = true;
+    return scene;
+}
+
+/// In shares of the energy that a scene starts with, over its floor.
+struct Gains {
+    double joints = 0;  // the most that the cause `joints` gained in a step
+    double energy = 0;  // the most that the energy was above that of the start
+};
+
+Gains gains_of(const Scene& scene, double dt, double seconds) {
+    World world(scene);
+    const double start = world.ledger().energy.total();
+    Gains gains;
+    double before = 0;
+    for (int i = 0; i < static_cast<int>(seconds / dt); ++i) {
+        world.step(dt);
+        const Ledger books = world.ledger();
+        gains.joints = std::max(gains.joints, (books.energy_by_cause.joints - before) / start);
+        gains.energy = std::max(gains.energy, (books.energy.total() - start) / start);
+        before = books.energy_by_cause.joints;
+    }
+    return gains;
+}
+
+/// A heap between walls. @param torque  N m, of the friction in each hinge
+Scene heap_of_ragdolls(int count, double torque, unsigned seed) {
+    std::mt19937 random(seed);
+    Scene scene;
+    scene.gravity = {0, -10};
+    const int across = static_cast<int>(std::lround(std::sqrt(0.62 * count) / 0.6));
+    scene.walls.emplace();
+    scene.walls->max = {0.6 * across, 1e4}, scene.walls->top = false;
+    scene.walls->material.friction = 0.5;
+    for (int i = 0; i < count; ++i) {
+        const double shift = 0.12 * (static_cast<double>(random()) / 4294967296.0 - 0.5);
+        add_ragdoll(scene, {0.6 * (i % across + 0.5) + shift, 1.1 + 1.9 * (i / across)}, 0, -1 - i, {});
+    }
+    if (torque > 0)
+        for (Joint& joint : scene.joints) {
+            auto& hinge = std::get<RevoluteJoint>(joint.kind);
+            hinge.motor_speed = 0, hinge.max_motor_torque = torque;
+        }
+    return scene;
+}
+
+}  // namespace
+
+TEST_SUITE("hard cases: joints") {
+    TEST_CASE("a ragdoll that falls on a floor gets no energy of its joints") {
+        double joints = 0, energy = 0;
+        for (const bool has_boxes : {false, true})
+            for (const bool has_limits : {false, true})
+                for (const double friction : {0.0, 0.5})
+                    for (const double rate : {30.0, 60.0, 120.0, 240.0})
+                        for (int way = 0; way < scaled(8, 2); ++way) {
+                            CAPTURE(has_boxes);
+                            CAPTURE(has_limits);
+                            CAPTURE(friction);
+                            CAPTURE(rate);
+                            CAPTURE(way);
+                            const Ragdolls how{
+                                .friction = friction, .has_limits = has_limits, .has_boxes = has_boxes};
+                            const Gains gains = gains_of(falling_ragdolls(1, 0.4 * way, how), 1 / rate, 2.5);
+                            joints = std::max(joints, gains.joints), energy = std::max(energy, gains.energy);
+                            CHECK(gains.joints < 3e-3);
+                            CHECK(gains.energy < 1e-5);
+                        }
+        report("ragdolls that fall: joints gain at most ", joints,
+               " of the energy in a step, energy at most ", energy, " above the start");
+    }
+
+    TEST_CASE("a heap of ragdolls with friction in their hinges comes to rest and sleeps") {
+        for (const int count : {12, 40})
+            for (const unsigned seed : {1u, 2u, 3u})
+                for (const double torque : {0.01, 0.05}) {
+                    CAPTURE(count);
+                    CAPTURE(seed);
+                    CAPTURE(torque);
+                    Scene scene = heap_of_ragdolls(count, torque, seed);
+                    scene.effects.sleep = true;
+                    World world(scene);
+                    for (int i = 0; i < 20 * 60; ++i) world.step(kStep);
+                    for (std::uint32_t i = 0; i < scene.bodies.size(); ++i)
+                        CHECK(world.is_asleep(BodyId{i, 0}));
+                    if (count > 12) continue;
+                    scene.effects.sleep = false;
+                    World awake(scene);
+                    const double start = awake.ledger().energy.total();
+                    for (int i = 0; i < 20 * 60; ++i) awake.step(kStep);
+                    double most = 0;
+                    for (int i = 0; i < 300; ++i) {
+                        awake.step(kStep);
+                        const Energy energy = awake.ledger().energy;
+                        most = std::max(most, (energy.kinetic + energy.rotational) / start);
+                    }
+                    CHECK(most < 1e-7);
+                }
+    }
+
+    TEST_CASE("what moves on in a heap of ragdolls without friction in their hinges hangs and swings") {
+        for (const unsigned seed : {1u, 2u, 3u}) {
+            CAPTURE(seed);
+            const Scene scene = heap_of_ragdolls(12, 0, seed);
+            World world(scene);
+            const double start = world.ledger().energy.total();
+            for (int i = 0; i < 20 * 60; ++i) world.step(kStep);
+            struct Swing {
+                double energy = 0, low = 1e9, high = -1e9;
+            };
+            std::vector<Swing> swings(scene.bodies.size());
+            for (int i = 0; i < 300; ++i) {
+                world.step(kStep);
+                for (std::uint32_t b = 0; b < swings.size(); ++b) {
+                    const BodyState state = world.state(BodyId{b, 0});
+                    const BodyMass mass = body_mass_of(scene.bodies[b]);
+                    const double energy =
+                        0.5 * mass.mass *
+                            (state.velocity.x * state.velocity.x + state.velocity.y * state.velocity.y) +
+                        0.5 * mass.inertia * state.angular_velocity * state.angular_velocity;
+                    Swing& swing = swings[b];
+                    swing.energy = std::max(swing.energy, energy / start);
+                    swing.low = std::min(swing.low, state.angle);
+                    swing.high = std::max(swing.high, state.angle);
+                }
+            }
+            for (std::uint32_t b = 0; b < swings.size(); ++b) {
+                if (swings[b].energy < 2e-8) continue;
+                CAPTURE(b);
+                // A capsule that hangs is upright in the middle of its swing.
+                CHECK(std::fabs(std::cos(0.5 * (swings[b].low + swings[b].high))) < 0.1);
+            }
+        }
+    }
+}
