@@ -55,10 +55,16 @@ void share_points(const Bodies<Real>& bodies, const BodyRecords<Real>& records,
     lever_a[2] += 0.5 * above / rim_a, lever_b[2] -= 0.5 * above / rim_b;
 }
 
-/// @return whether there was an impact
+/// What becomes of a contact in a substep.
+enum class Outcome : std::uint8_t {
+    none,
+    comes,  ///< fast, but not near enough yet
+    met     ///< there was an impact
+};
+
 template <class Real>
-bool carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, const Bodies<Real>& bodies,
-               BodyRecords<Real>& records, Books& books) {
+Outcome carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, const Bodies<Real>& bodies,
+                  BodyRecords<Real>& records, Books& books) {
     const double rest_speed = kRestFalls * terms.fall_speed(), h = terms.substep_dt;
     const PathLink<Real>& link = contact.link;
     const std::size_t lane = contact.lane;
@@ -80,6 +86,7 @@ bool carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, cons
     };
     std::array<double, 2> v{};
     std::array<bool, 2> meets{};  // what is not met yet has an impact of its own, later
+    bool comes = false, is_free = true;
     for (std::size_t k = 0; k < 2; ++k) {
         v[k] = relative(a.start, a.start_rim, b.start, b.start_rim, k);
         if (k == 1 && !has_two) break;
@@ -87,14 +94,22 @@ bool carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, cons
                            relative(place_of_row(contact.near), turn_of(contact.near),
                                     place_of_row(contact.far), turn_of(contact.far), k);
         const double soon = relative(a.foreseen, a.foreseen_rim, b.foreseen, b.foreseen_rim, k);
-        meets[k] = v[k] < -rest_speed && gap + h * soon < 0;
+        const bool is_fast = v[k] < -rest_speed, touches = gap + h * soon < 0;
+        meets[k] = is_fast && touches, comes = comes || is_fast, is_free = is_free && !touches;
     }
-    if (!meets[0] && !meets[1]) return false;
+    if (!meets[0] && !meets[1]) return comes && is_free ? Outcome::comes : Outcome::none;
     if (a.w > 0 && b.w > 0) {
+        const Levers own_a = lever_a, own_b = lever_b;
+        const std::array<double, 2> own_v = v;
         share_points(bodies, records, contact, n, t, lever_a, lever_b);
         for (std::size_t k = 0; k < 2; ++k) v[k] = relative(a.start, a.start_rim, b.start, b.start_rim, k);
-        meets[0] = meets[0] && v[0] < 0, meets[1] = meets[1] && v[1] < 0;
-        if (!meets[0] && !meets[1]) return false;
+        const std::array<bool, 2> still_meets{meets[0] && v[0] < 0, meets[1] && v[1] < 0};
+        // If the bodies part already about shared points: the paths know those of each alone, and would take
+        // the approach that they see without restitution.
+        if (still_meets[0] || still_meets[1])
+            meets = still_meets;
+        else
+            lever_a = own_a, lever_b = own_b, v = own_v;
     }
     const double w = a.w + b.w;
     const auto mass = [&](std::size_t i, std::size_t k) {
@@ -133,10 +148,10 @@ bool carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, cons
     };
     give(a, -1, lever_a), give(b, 1, lever_b);
     if (contact.partner.is_wall()) books.wall_impulse += sum;
-    if (!books.is_open) return true;
+    if (!books.is_open) return Outcome::met;
     books.restitution += work, books.friction += y * (vt + 0.5 * ktt * y);
     const bool is_far_moved = b.w > 0, is_near_moved = a.w > 0;
-    if (is_far_moved && is_near_moved) return true;
+    if (is_far_moved && is_near_moved) return Outcome::met;
     // What nothing moves: the energy that its own motion gives the other body comes from outside.
     const StruckBody<Real>& still = is_far_moved ? a : b;
     const Levers& lever = is_far_moved ? lever_a : lever_b;
@@ -144,32 +159,42 @@ bool carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, cons
     const double spin = (is_far_moved ? -1 : 1) * (lever[0] * x[0] + lever[1] * x[1] + lever[2] * y);
     books.drive -= dot(on_still, still.start) + still.start_rim * spin;
     (contact.partner.is_wall() ? books.wall_momentum : books.immovable_momentum) -= on_still;
-    return true;
+    return Outcome::met;
 }
 
 }  // namespace
 
 template <class Real>
-std::int64_t carry_out_impacts(const PathSolver<Real>& paths, const SubstepTerms& terms,
-                               const Bodies<Real>& bodies, BodyRecords<Real>& records, Books& books) {
+std::int64_t carry_out_impacts(PathSolver<Real>& paths, const SubstepTerms& terms, const Bodies<Real>& bodies,
+                               BodyRecords<Real>& records, Books& books,
+                               std::vector<std::int32_t>& deflected) {
     std::int64_t impacts = 0;
+    deflected.clear();
     bool goes_on = true;
     for (int round = 0; round < kRounds && goes_on; ++round) {
         goes_on = false;
+        paths.unhide();
         paths.for_each([&](const PathContact<Real>& contact) {
             const bool is_pressed =
                 contact.link.normal1[contact.lane] + contact.link.normal2[contact.lane] > 0;
             if (!(contact.restitution > 0) || is_pressed) return;
-            if (!carry_out(contact, terms, bodies, records, books)) return;
+            const Outcome outcome = carry_out(contact, terms, bodies, records, books);
+            if (outcome == Outcome::comes) paths.hide(contact);
+            if (outcome != Outcome::met) return;
             ++impacts, goes_on = true;
+            for (const std::int32_t row : {contact.near, contact.far})
+                if (static_cast<std::size_t>(row) < bodies.moving() &&
+                    bodies.is_disc(static_cast<std::size_t>(row)))
+                    deflected.push_back(row);
         });
     }
+    if (goes_on) paths.unhide();  // what was seen in the last round no longer holds
     return impacts;
 }
 
-template std::int64_t carry_out_impacts(const PathSolver<float>&, const SubstepTerms&, const Bodies<float>&,
-                                        BodyRecords<float>&, Books&);
-template std::int64_t carry_out_impacts(const PathSolver<double>&, const SubstepTerms&, const Bodies<double>&,
-                                        BodyRecords<double>&, Books&);
+template std::int64_t carry_out_impacts(PathSolver<float>&, const SubstepTerms&, const Bodies<float>&,
+                                        BodyRecords<float>&, Books&, std::vector<std::int32_t>&);
+template std::int64_t carry_out_impacts(PathSolver<double>&, const SubstepTerms&, const Bodies<double>&,
+                                        BodyRecords<double>&, Books&, std::vector<std::int32_t>&);
 
 }  // namespace carom

@@ -68,6 +68,7 @@ template <class Real>
 void PathSolver<Real>::find(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
                             const SubstepTerms& terms, const ContactDistance& near,
                             BodyRecords<Real>& records, const StepLoops<Real>& loops) {
+    unhide();
     const bool is_same = manifolds.find(world, edges, terms, near, loops);
     counters.contacts = static_cast<std::int64_t>(manifolds.live().size());
     if (manifolds.live().empty()) return rolling_.clear();
@@ -358,6 +359,9 @@ void PathSolver<Real>::solve(const SubstepTerms& terms, BodyRecords<Real>& recor
     const PathKernels<Real>& kernels = loops.kernels->convex->paths;
     SolvePaths<Real> k = arguments(terms, records);
     if (may_rest && rolling_.empty()) k.resting_speed = static_cast<Real>(kRestingSpeed * terms.fall_speed());
+    const auto none = static_cast<Real>(kNoPoint);
+    for (const Hidden& h : hidden_)
+        links_[h.link].separation1[h.lane] = links_[h.link].separation2[h.lane] = none;
     for (int pass = 0; pass < passes; ++pass) run(kernels.solve, k, loops);
     solved_ += static_cast<std::int64_t>(cut_.paths()) * passes;
     for (int turn = 0; turn < kTurnsOfRolling && !rolling_.empty(); ++turn) {
@@ -368,6 +372,10 @@ void PathSolver<Real>::solve(const SubstepTerms& terms, BodyRecords<Real>& recor
         run(kernels.solve, k, loops);
     }
     if (sweeps) run(kernels.sweep, k, loops);
+    for (const Hidden& h : hidden_) {
+        links_[h.link].separation1[h.lane] = h.separation1;
+        links_[h.link].separation2[h.lane] = h.separation2;
+    }
 }
 
 template <class Real>
@@ -422,7 +430,8 @@ template <class Real>
 std::size_t PathSolver<Real>::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
     return manifolds.bytes() + rolling_.bytes() + of(row_of_far_) + of(with_kinematic_) + of(contact_links_) +
-           cut_.bytes() + links_.bytes() + heads_.bytes() + restless_.bytes() + scratch_.bytes();
+           cut_.bytes() + links_.bytes() + heads_.bytes() + restless_.bytes() + scratch_.bytes() +
+           of(hidden_);
 }
 
 template class PathSolver<float>;

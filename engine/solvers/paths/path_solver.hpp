@@ -59,6 +59,12 @@ class PathSolver {
     /// @param may_rest  whether to leave out bundles of paths that hardly moved when they were solved last
     void solve(const SubstepTerms& terms, BodyRecords<Real>& records, const StepLoops<Real>& loops,
                int passes, bool sweeps, bool may_rest = false);
+    /// Hides a contact from `solve` until `unhide`: it is to have an impact in a later substep.
+    void hide(const PathContact<Real>& contact) {
+        hidden_.push_back({static_cast<std::size_t>(&contact.link - links_.data()), contact.lane,
+                           contact.link.separation1[contact.lane], contact.link.separation2[contact.lane]});
+    }
+    void unhide() { hidden_.clear(); }
     /// Moves the surfaces of kinematic bodies on by a substep.
     void advance(const SubstepTerms& terms, BodyRecords<Real>& records);
     const PathRolling<Real>& rolling() const { return rolling_; }
@@ -98,6 +104,11 @@ class PathSolver {
 
   private:
     using Pass = typename PathKernels<Real>::Pass;
+    /// A contact that `solve` does not see, and its separations [m].
+    struct Hidden {
+        std::size_t link, lane;
+        Real separation1, separation2;
+    };
 
     template <class Fn>
     void for_each_from(std::size_t first, const Fn& fn) const {
@@ -144,6 +155,7 @@ class PathSolver {
     std::int64_t solved_ = 0;  // paths, in the substeps of the last step
     PathMood mood_ = PathMood::calm, mood_of_cut_ = PathMood::calm;
     Column<PathLink<Real>> links_;
+    std::vector<Hidden> hidden_;
     bool links_hold_ = false;  // they are laid out as the cut says, with what the step before left
     std::vector<std::int32_t> with_kinematic_;  // contacts of two bodies, one of which is kinematic
     Column<std::int32_t> heads_;

@@ -98,7 +98,9 @@ class SoftSolver {
     }
     /// Carries out the impacts of shapes in a substep.
     void carry_out_shape_impacts(const Bodies<Real>& bodies, Books& books) {
-        paths.counters.impacts += carom::carry_out_impacts(paths, terms_, bodies, records_, books);
+        paths.counters.impacts +=
+            carom::carry_out_impacts(paths, terms_, bodies, records_, books, deflected_);
+        impacts.note_deflected(deflected_, records_.velocity);
     }
     /// Solves the contacts of shapes in substep `number`.
     void solve_paths(int number, bool is_last);
@@ -205,7 +207,8 @@ class SoftSolver {
     BodyMasses<Real> masses_;
     bool follows_rows_ = false;  // masses are to be derived, but pairs stay described
     BodyRecords<Real> records_;
-    ContactRows<Real> supports_;  // those of graph.supports that can touch in this step
+    std::vector<std::int32_t> deflected_;  // rows of discs that hit shapes in this substep
+    ContactRows<Real> supports_;           // those of graph.supports that can touch in this step
     PairFinder<Real> pair_finder_;
     SupportFinder<Real> support_finder_;
     WarmStart<Real> warm_start_;

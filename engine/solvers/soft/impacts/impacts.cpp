@@ -438,6 +438,23 @@ bool Impacts<Real>::carry_out(Place place, double time, Books& books, double& gr
 }
 
 template <class Real>
+void Impacts<Real>::note_deflected(const std::vector<std::int32_t>& rows, const Column<Real>& velocity) {
+    if (rows.empty()) return;
+    find_contacts_of_bodies();
+    const auto velocity_of = [&](std::int32_t row) {
+        const Real* record = &velocity[4 * static_cast<std::size_t>(row)];
+        return Vec2{record[0], record[1]};
+    };
+    for (const std::int32_t row : rows) {
+        const Vec2 v = velocity_of(row);
+        for (const auto& entry : of_pairs_.of(static_cast<std::size_t>(row)))
+            hide_from_sweeps({entry.contact & kIndexBits, kPair}, velocity_of(entry.other) - v);
+        for (const auto& entry : of_supports_.of(static_cast<std::size_t>(row)))
+            hide_from_sweeps({entry.contact & kIndexBits, kSupport}, -v);
+    }
+}
+
+template <class Real>
 void Impacts<Real>::carry_out_all(const SubstepBodies<Real>& bodies, Books& books, double& gravity_work,
                                   Interruption& interruption) {
     bodies_ = &bodies;
@@ -458,10 +475,7 @@ void Impacts<Real>::carry_out_all(const SubstepBodies<Real>& bodies, Books& book
         if (paths_.impacts_of(event.a) != event.impacts_a ||
             (!event.place.is_support() && paths_.impacts_of(other.row()) != event.impacts_b))
             continue;
-        if (known_version_ != version_) of_pairs_.find(*pairs_, world_->bodies.moving(), true);
-        known_version_ = version_;
-        if (!are_supports_known_) of_supports_.find(*supports_, world_->bodies.moving(), false);
-        are_supports_known_ = true;
+        find_contacts_of_bodies();
         if (!carry_out(event.place, event.time, books, gravity_work)) continue;
         look_at_all_of(event.a, event.time);
         if (!event.place.is_support()) look_at_all_of(other.row(), event.time);

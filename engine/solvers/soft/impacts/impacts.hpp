@@ -46,6 +46,10 @@ class Impacts {
     /// Tells impacts from contacts among what can touch in this step.
     void mark(const WorldState<Real>& world, const StepView<Real>& step, const Candidates<Real>& neighbours);
 
+    /// Bodies have been deflected by what is none of these contacts: what they may hit now, fast, is an
+    /// impact, too.
+    /// @param rows  of discs  @param velocity  records
+    void note_deflected(const std::vector<std::int32_t>& rows, const Column<Real>& velocity);
     /// Carries out the impacts of a substep.
     /// @param gravity_work  J, gravity's work on velocities, to be booked
     /// @param interruption  of the step: the rest is left if it is to end
@@ -113,6 +117,12 @@ class Impacts {
     template <class Fn>
     void for_each_stranger_of(std::int32_t row, const Fn& fn) const;
     void look_at_all_of(std::int32_t row, double from);
+    void find_contacts_of_bodies() {
+        if (known_version_ != version_) of_pairs_.find(*pairs_, world_->bodies.moving(), true);
+        known_version_ = version_;
+        if (!are_supports_known_) of_supports_.find(*supports_, world_->bodies.moving(), false);
+        are_supports_known_ = true;
+    }
     bool carry_out(Place place, double time, Books& books, double& gravity_work);
     void make_contact(Place place, Vec2 normal, double gap, double time);
 
