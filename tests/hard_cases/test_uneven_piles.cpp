@@ -88,7 +88,7 @@ void in_reverse(std::size_t count, const std::function<void(std::size_t)>& task)
 
 TEST_SUITE("hard cases/uneven piles") {
     TEST_CASE_TEMPLATE("B41: heavy and light discs mixed at random make a pile", Real, float, double) {
-        const int columns = scaled(20, 10);
+        const int columns = scaled(20, 7);
         for (const double ratio : {1e3, 1e4})
             if (ratio > 1e3 || !is_effort_reduced())
                 CHECK(overlap_of_settled<Real>({.columns = columns, .ratio = ratio}, kSteps) < 0.1);
