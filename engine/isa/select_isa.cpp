@@ -47,8 +47,10 @@ std::vector<const KernelTables*> runnable_kernel_tables() {
 #if defined(CAROM_BUILT_SSE2)
     tables.push_back(&kSse2Kernels);  // every x86-64 processor
 #endif
-#if defined(CAROM_BUILT_AVX2)
+#if defined(CAROM_BUILT_AVX2) || defined(CAROM_BUILT_AVX512)
     const bool has_bmi = __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
+#endif
+#if defined(CAROM_BUILT_AVX2)
     if (has_bmi && __builtin_cpu_supports("avx2")) tables.push_back(&kAvx2Kernels);
 #endif
 #if defined(CAROM_BUILT_AVX512)
