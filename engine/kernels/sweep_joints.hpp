@@ -28,12 +28,16 @@ struct Pair2 {
     F x, y;
 };
 
-/// cos f - 1 and sin f - f over h, for what a substep turns; |f| < 1.
+/// Turn in a substep up to which arms bend as they do [rad].
+inline constexpr double kMostBend = 0.3;
+
+/// cos f - 1 and sin f - f over h, for what a substep turns; beyond kMostBend they grow no faster than the
+/// turn: the series would make of a fast spin a bend, and the bend of a faster one, without end.
 template <class Lanes, class F = typename Lanes::Batch>
 Pair2<F> bend_of_turn(F spin, F h) {
     constexpr auto number = constant<Lanes>;
-    const F f = spin * h, q = f * f, c2 = number(-0.5), c4 = number(1.0 / 24), s3 = number(-1.0 / 6),
-            s5 = number(1.0 / 120);
+    const F f = simd::max(simd::min(spin * h, number(kMostBend)), number(-kMostBend)), q = f * f,
+            c2 = number(-0.5), c4 = number(1.0 / 24), s3 = number(-1.0 / 6), s5 = number(1.0 / 120);
     return {spin * f * (c2 + c4 * q), spin * q * (s3 + s5 * q)};
 }
 
