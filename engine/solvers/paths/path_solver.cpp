@@ -392,6 +392,7 @@ void PathSolver<Real>::advance(const SubstepTerms& terms, BodyRecords<Real>& rec
 
 template <class Real>
 void PathSolver<Real>::take_back(const std::vector<std::uint8_t>& is_of, BodyRecords<Real>& records) {
+    if (manifolds.live().empty()) return;  // then the cut is that of an earlier step
     for (const PathCut::Place place : cut_.places()) {
         PathLink<Real>& link = links_[place.link];
         const std::size_t lane = place.lane;
