@@ -1,6 +1,23 @@
 #include "report/measured.hpp"
 
 namespace carom::report {
+namespace {
+
+/// Files of older versions say nothing of threads.
+void add_threads(const Json& json, const std::string& scene, Table& table) {
+    if (!json.contains("scaling")) return;
+    const Json& scaling = json.at("scaling");
+    std::vector<std::string> row{scene, digits(100 * scaling.at("share_on_one_thread").get<double>(), 3)};
+    const bool is_first = table.rows.empty();
+    for (const Json& cores : scaling.at("cores")) {
+        if (is_first) table.headers.push_back(std::to_string(cores.at("cores").get<int>()) + " cores");
+        row.push_back(digits(cores.at("times_at_most").get<double>(), 3));
+    }
+    row.resize(table.headers.size());
+    table.rows.push_back(std::move(row));
+}
+
+}  // namespace
 
 void draw_profile(const std::vector<Result>& results, Page& page) {
     page.set_title("Profile");
@@ -16,6 +33,10 @@ void draw_profile(const std::vector<Result>& results, Page& page) {
                             "share of the roof (%)", "times scalar", "limited by"},
                 .rows = {},
                 .sortable = true};
+    Table threads{.caption = "Share on one thread, and how many times as fast more cores are at most",
+                  .headers = {"scene", "on one thread (%)"},
+                  .rows = {},
+                  .sortable = false};
     for (std::size_t i = 0; i < results.size(); ++i) {
         const Json& json = results[i].json;
         Series series{.name = json.at("scene").get<std::string>() + tag_of(results, i)};
@@ -31,10 +52,12 @@ void draw_profile(const std::vector<Result>& results, Page& page) {
                                   number("roof_share", 100), number("times_scalar", 1),
                                   stage.at("limit").get<std::string>()});
         }
+        add_threads(json, series.name, threads);
         chart.series.push_back(std::move(series));
     }
     page.chart(std::move(chart));
     page.table(table);
+    if (!threads.rows.empty()) page.table(threads);
 }
 
 }  // namespace carom::report

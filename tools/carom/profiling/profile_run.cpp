@@ -10,6 +10,7 @@
 #include "measure/limits.hpp"
 #include "measure/machine.hpp"
 #include "measure/stage_work.hpp"
+#include "profiling/shared_loops.hpp"
 #include "progress_bar.hpp"
 
 namespace carom::tool {
@@ -22,12 +23,14 @@ constexpr std::int64_t kStepsBefore = 5;
 constexpr std::int64_t kStepsOfATurn = 10;
 constexpr double kSecondsOfACeiling = 0.02;
 
-/// The two simulations after the same steps, and their profiles before and after.
+/// The simulations after the same steps, and their profiles before and after.
 struct Turns {
     Profile before, after;                // as asked
     Profile scalar_before, scalar_after;  // with scalar kernels; empty if that is what was asked for
     Plan plan;
-    double seconds = 0;  // of the steps, by the clock on the wall
+    double seconds = 0;           // of the steps, by the clock on the wall
+    SharedLoops::Seconds shared;  // of the loops of the simulation on one thread
+    double alone_seconds = 0;     // of its steps
 };
 
 /// @return seconds of the steps alone
@@ -53,10 +56,17 @@ Turns take_turns(const Scene& scene, const MachineSettings& machine, Trace* trac
     MachineSettings plain = machine;
     plain.isa = "scalar";
     const auto scalar = turns.plan.isa == "scalar" ? nullptr : make_simulation(scene, plain);
+    SharedLoops loops;
+    MachineSettings watched = machine;
+    watched.threads = 0;  // one would be told to share nothing
+    watched.parallel_for = loops.parallel_for();
+    const auto alone = make_simulation(scene, watched);
 
     const std::int64_t steps = scene.step.count, before = std::min(kStepsBefore, steps - 1);
     take_steps(*simulation, scene.step.dt, before, nullptr);
     if (scalar) take_steps(*scalar, scene.step.dt, before, nullptr);
+    take_steps(*alone, scene.step.dt, before, nullptr);
+    const SharedLoops::Seconds first = loops.seconds();
     turns.before = simulation->profile();
     if (scalar) turns.scalar_before = scalar->profile();
     ProgressBar bar(steps, true);
@@ -64,10 +74,12 @@ Turns take_turns(const Scene& scene, const MachineSettings& machine, Trace* trac
         const std::int64_t count = std::min(kStepsOfATurn, steps - done);
         turns.seconds += take_steps(*simulation, scene.step.dt, count, trace);
         if (scalar) take_steps(*scalar, scene.step.dt, count, nullptr);
+        turns.alone_seconds += take_steps(*alone, scene.step.dt, count, nullptr);
         bar.update(done += count);
     }
     turns.after = simulation->profile();
     if (scalar) turns.scalar_after = scalar->profile();
+    turns.shared = loops.seconds() - first;
     return turns;
 }
 
@@ -119,6 +131,29 @@ Json stage_json(std::size_t index, const Turns& turns, const measure::ProfiledSt
     return json;
 }
 
+/// What one thread of a step has to itself, and how much faster than on one thread a step can be at most.
+Json threads_json(const Turns& turns) {
+    const double serial = std::max(0.0, turns.alone_seconds - turns.shared.inside);
+    const double all = serial + turns.shared.tasks;
+    Json json{{"share_on_one_thread", serial / all}, {"cores", Json::array()}};
+    for (std::size_t i = 0; i < SharedLoops::kCores.size(); ++i)
+        json["cores"].push_back({{"cores", SharedLoops::kCores[i]},
+                                 {"times_at_most", all / (serial + turns.shared.on_cores[i])}});
+    return json;
+}
+
+std::string threads_text(const Json& threads) {
+    std::string cores, times;
+    for (const Json& row : threads.at("cores")) {
+        const char* const comma = cores.empty() ? "" : ", ";
+        cores += format("%s%d", comma, row.at("cores").get<int>());
+        times += format("%s%.3g", comma, row.at("times_at_most").get<double>());
+    }
+    return format(
+        "\n  threads: %.3g %% of a step is on one thread; %s cores take it at most %s times as fast\n",
+        100 * threads.at("share_on_one_thread").get<double>(), cores.c_str(), times.c_str());
+}
+
 }  // namespace
 
 Json profile_scene(const Scene& scene, const MachineSettings& machine, Trace* trace) {
@@ -161,6 +196,7 @@ Json profile_scene(const Scene& scene, const MachineSettings& machine, Trace* tr
                         {"residual", last.residual},
                         {"residual_max", last.residual_max},
                         {"bytes", last.bytes}};
+    json["scaling"] = threads_json(turns);
     json["stages"] = Json::array();
     for (std::size_t i = 0; i < turns.after.stages.size(); ++i)
         if (turns.after.stages[i].calls > turns.before.stages[i].calls)
@@ -197,6 +233,7 @@ std::string profile_text(const Json& profile) {
                    number("ns_per_item", 1, 3).c_str(), number("bytes", 1e-3, 4).c_str(), roof.c_str(),
                    number("times_scalar", 1, 3).c_str(), stage.at("limit").get<std::string>().c_str());
     }
+    text += threads_text(profile.at("scaling"));
     std::string items;
     for (const Json& stage : profile.at("stages"))
         if (stage.contains("item"))

@@ -4,15 +4,13 @@
 #include <array>
 #include <cstddef>
 
+#include "scene_file/lower.hpp"
+
 namespace carom::tool {
 namespace {
 
 constexpr std::size_t kLongest = 64;     // letters compared
 constexpr std::size_t kMostListed = 20;  // names in a message
-
-char lower(char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
 
 bool same(char a, char b) {
     return lower(a) == lower(b);

@@ -1,9 +1,10 @@
 #include "scene_file/syntax_hint.hpp"
 
-#include "scene_file/printable.hpp"
-
 #include <algorithm>
 #include <array>
+
+#include "scene_file/lower.hpp"
+#include "scene_file/printable.hpp"
 
 namespace carom::tool {
 namespace {
@@ -13,10 +14,6 @@ constexpr std::size_t kLongestWords = 160;  // bytes quoted from the parser
 
 bool is_space(char c) {
     return c == ' ' || c == '\t' || c == '\n' || c == '\r';
-}
-
-char lower(char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
 bool starts_with_word(std::string_view text, std::string_view word) {

@@ -67,6 +67,7 @@ struct MachineSettings {
     std::string isa = "auto";
     int threads = 0;  // 0: as many as there are
     ShouldStop should_stop{};
+    ParallelFor parallel_for{};  // in place of OpenMP's threads; worlds alone have such loops
 };
 
 /// Makes the simulation the scene asks for.

@@ -90,6 +90,7 @@ std::unique_ptr<Simulation> make_world_simulation(const Scene& scene, const Mach
     options.isa = machine.isa;
     options.threads = machine.threads;
     options.should_stop = machine.should_stop;
+    options.parallel_for = machine.parallel_for;
     if (scene.accuracy.precision == Precision::double_)
         return std::make_unique<WorldSimulation<double>>(scene, options);
     return std::make_unique<WorldSimulation<float>>(scene, options);
