@@ -3,13 +3,13 @@
 namespace carom::report {
 namespace {
 
-/// Files of older versions say nothing of threads.
+/// Adds the row of one profile; files of older versions say nothing of threads.
 void add_threads(const Json& json, const std::string& scene, Table& table) {
-    if (!json.contains("scaling")) return;
-    const Json& scaling = json.at("scaling");
-    std::vector<std::string> row{scene, digits(100 * scaling.at("share_on_one_thread").get<double>(), 3)};
-    const bool is_first = table.rows.empty();
-    for (const Json& cores : scaling.at("cores")) {
+    if (!json.contains("shared_loops")) return;
+    const Json& loops = json.at("shared_loops");
+    std::vector<std::string> row{scene, digits(100 * loops.at("share_on_one_thread").get<double>(), 3)};
+    const bool is_first = table.rows.empty();  // the columns are named by the first profile
+    for (const Json& cores : loops.at("cores")) {
         if (is_first) table.headers.push_back(std::to_string(cores.at("cores").get<int>()) + " cores");
         row.push_back(digits(cores.at("times_at_most").get<double>(), 3));
     }

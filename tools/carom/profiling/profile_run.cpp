@@ -131,8 +131,9 @@ Json stage_json(std::size_t index, const Turns& turns, const measure::ProfiledSt
     return json;
 }
 
-/// What one thread of a step has to itself, and how much faster than on one thread a step can be at most.
-Json threads_json(const Turns& turns) {
+/// The share of a step that is in no loop that threads share, and how many times as fast as on one thread a
+/// step can be at most.
+Json shared_loops_json(const Turns& turns) {
     const double serial = std::max(0.0, turns.alone_seconds - turns.shared.inside);
     const double all = serial + turns.shared.tasks;
     Json json{{"share_on_one_thread", serial / all}, {"cores", Json::array()}};
@@ -142,16 +143,17 @@ Json threads_json(const Turns& turns) {
     return json;
 }
 
-std::string threads_text(const Json& threads) {
+std::string shared_loops_text(const Json& loops) {
     std::string cores, times;
-    for (const Json& row : threads.at("cores")) {
+    for (const Json& row : loops.at("cores")) {
         const char* const comma = cores.empty() ? "" : ", ";
         cores += format("%s%d", comma, row.at("cores").get<int>());
         times += format("%s%.3g", comma, row.at("times_at_most").get<double>());
     }
     return format(
-        "\n  threads: %.3g %% of a step is on one thread; %s cores take it at most %s times as fast\n",
-        100 * threads.at("share_on_one_thread").get<double>(), cores.c_str(), times.c_str());
+        "\n  threads: %.3g %% of a step is in no loop that an embedding program's threads share; "
+        "%s cores take it at most %s times as fast\n",
+        100 * loops.at("share_on_one_thread").get<double>(), cores.c_str(), times.c_str());
 }
 
 }  // namespace
@@ -196,7 +198,7 @@ Json profile_scene(const Scene& scene, const MachineSettings& machine, Trace* tr
                         {"residual", last.residual},
                         {"residual_max", last.residual_max},
                         {"bytes", last.bytes}};
-    json["scaling"] = threads_json(turns);
+    json["shared_loops"] = shared_loops_json(turns);
     json["stages"] = Json::array();
     for (std::size_t i = 0; i < turns.after.stages.size(); ++i)
         if (turns.after.stages[i].calls > turns.before.stages[i].calls)
@@ -233,7 +235,7 @@ std::string profile_text(const Json& profile) {
                    number("ns_per_item", 1, 3).c_str(), number("bytes", 1e-3, 4).c_str(), roof.c_str(),
                    number("times_scalar", 1, 3).c_str(), stage.at("limit").get<std::string>().c_str());
     }
-    text += threads_text(profile.at("scaling"));
+    text += shared_loops_text(profile.at("shared_loops"));
     std::string items;
     for (const Json& stage : profile.at("stages"))
         if (stage.contains("item"))

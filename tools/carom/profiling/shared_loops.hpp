@@ -14,17 +14,18 @@ namespace carom::tool {
 /// hold on a machine of one core, too, and no other program's use of a second core is in them.
 class SharedLoops {
   public:
+    /// Numbers of cores that `on_cores` is found for.
     static constexpr std::array<std::size_t, 3> kCores{4, 16, 64};
 
-    /// For WorldOptions::parallel_for; refers to this object.
+    /// @return what WorldOptions::parallel_for is to be; it refers to this object
     ParallelFor parallel_for();
 
-    /// Of all loops until now [s].
+    /// Times of all loops until now, together [s].
     struct Seconds {
         double inside = 0;  ///< from the start of each loop to its end, with what measuring took
         double tasks = 0;   ///< of the tasks alone
-        /// Of the tasks if so many threads took equal numbers of neighbouring ones, as those of a world do,
-        /// each loop as long as the thread that had most to do. Starting threads costs nothing in it.
+        /// The loops last so long on each of kCores: each thread takes as many neighbouring tasks, and a loop
+        /// ends with the thread that has most to do. Starting threads costs nothing in it.
         std::array<double, kCores.size()> on_cores{};
 
         Seconds operator-(const Seconds& other) const;
