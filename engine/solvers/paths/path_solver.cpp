@@ -61,6 +61,8 @@ constexpr int kTurnsOfRolling = 3;
 // ns on one thread, for the executor.
 constexpr double kNanosecondsToFill = 10, kNanosecondsToSolve = 10;
 constexpr std::size_t kBundlesPerTask = 4, kContactsPerTask = 256;
+/// Each has room of its own in `scratch`.
+constexpr std::size_t kMostTasksOfColour = 16;
 
 }  // namespace
 
@@ -167,7 +169,7 @@ void PathSolver<Real>::name_rows(const WorldState<Real>& world, const BodyRecord
         heads_[lane] =
             first >= 0 ? head_row(first) : static_cast<std::int32_t>(first_still_row_ + lane / kPathLanes);
     }
-    scratch_.resize(path_scratch_bytes(cut_.longest()) * std::size_t{16});
+    scratch_.resize(path_scratch_bytes(cut_.longest()) * kMostTasksOfColour);
 }
 
 template <class Real>
@@ -327,17 +329,22 @@ template <class Real>
 void PathSolver<Real>::run(Pass pass, SolvePaths<Real> arguments, const StepLoops<Real>& loops) {
     const std::size_t bytes = path_scratch_bytes(cut_.longest());
     for (std::size_t colour = 0; colour < cut_.colours(); ++colour) {
-        const std::size_t first = cut_.first_bundle()[colour],
-                          count = cut_.first_bundle()[colour + 1] - first;
-        const std::size_t tasks = std::min<std::size_t>(16, (count + kBundlesPerTask - 1) / kBundlesPerTask);
-        const std::size_t links = cut_.first_link()[first + count] - cut_.first_link()[first];
-        std::array<std::size_t, 16> unsettled{};
+        const std::size_t first = cut_.first_bundle()[colour], last = cut_.first_bundle()[colour + 1];
+        const std::span<const std::size_t> starts = cut_.first_link().subspan(first, last - first);
+        const std::size_t links = cut_.first_link()[last] - starts.front();
+        const std::size_t tasks = std::min(kMostTasksOfColour, last - first);
+        // Bundles come in order of their length: tasks have as many links as each other, not bundles.
+        const auto first_of = [&](std::size_t task) {
+            const std::size_t link = starts.front() + task * links / tasks;
+            return first + static_cast<std::size_t>(std::lower_bound(starts.begin(), starts.end(), link) -
+                                                    starts.begin());
+        };
+        std::array<std::size_t, kMostTasksOfColour> unsettled{};
         loops.executor->for_each_task(
             tasks, kNanosecondsToSolve * kPathLanes * static_cast<double>(links), [&](std::size_t task) {
                 SolvePaths<Real> k = arguments;
                 k.scratch = scratch_.data() + task * bytes;
-                unsettled[task] =
-                    pass(k, first + task * count / tasks, first + (task + 1) * count / tasks).unsettled;
+                unsettled[task] = pass(k, first_of(task), first_of(task + 1)).unsettled;
             });
         for (const std::size_t more : unsettled) counters.unsettled += static_cast<std::int64_t>(more);
     }
@@ -425,6 +432,12 @@ void PathSolver<Real>::end() {
         memory.tangent = link.tangent[lane];
         memory.separation1 = link.separation1[lane], memory.separation2 = link.separation2[lane];
     }
+}
+
+template <class Real>
+bool PathSolver<Real>::has_long_loops() const {
+    return kNanosecondsToSolve * static_cast<double>(manifolds.live().size()) >
+           PathCut::kColours * kShortestParallelLoop;
 }
 
 template <class Real>

@@ -93,6 +93,9 @@ class PathSolver {
     /// Keeps the impulses for the next step.
     void end();
 
+    /// Whether the loops over the contacts of the last step are long enough for more than one thread.
+    bool has_long_loops() const;
+
     std::size_t bytes() const;
 
     template <class Self, class Archive>

@@ -20,7 +20,7 @@ class SoftSimulation : public Simulation<Real> {
     /// Whether contacts are looked for: under `rattle` never.
     bool can_touch() const { return !soft.joints.is_rattle && this->can_meet(); }
     bool has_long_loops() const override {
-        return soft.graph.groups.chunks > 1 || soft.joints.has_long_loops();
+        return soft.graph.groups.chunks > 1 || soft.paths.has_long_loops() || soft.joints.has_long_loops();
     }
     void forget_derived_state() override;
     void remove(std::size_t row) override;
