@@ -16,6 +16,11 @@ constexpr double kLoopSoftness = 1e-9;
 constexpr double kSoft = 1. / 3;
 /// they are replaced by those that move the rows alike by way of this softness, which has none of them.
 constexpr double kFilter = 1e-5;
+/// A loop is taut if a push of its last joint along some direction moves that by less than this share of what
+/// it would if the joint's two bodies were alone: a chain between two points as far apart as it is long.
+constexpr double kTaut = 1e-3;
+/// Softness of a taut loop in the unit of that: a spring of 1 / (softness (substep)²) times the reduced mass.
+constexpr double kSoftnessOfTaut = 3e-3;
 
 }  // namespace
 
@@ -41,7 +46,12 @@ void JointSystem::list_extras() {
             if (row.value > 2 * h_ * speed + 0.02 * range) continue;
             extras_.push_back({static_cast<std::int32_t>(j), k, 0, kUnbounded});
         }
+}
+
+/// The matrix of the extra rows by way of the tree, as it is factored now.
+void JointSystem::couple_extras() {
     const std::size_t count = extras_.size();
+    taut_.clear();
     if (count == 0) return;
     extra_rhs_.assign(count, 0), low_.assign(count, 0), high_.assign(count, 0);
     state_.assign(count, End::none);
@@ -65,6 +75,41 @@ void JointSystem::list_extras() {
             alone_[i] = alone;
         else
             matrix_[i * count + i] = 1;
+    }
+    if (!is_rigid_) soften_taut_loops();
+}
+
+/// A chain that is held straight between two points could carry no weight but by a pull without bound: its
+/// bodies would fall, be drawn back by corrections, and gain energy by that. So a loop is a stiff spring
+/// along the direction in which it is taut, as far as it is taut there.
+void JointSystem::soften_taut_loops() {
+    const std::size_t count = extras_.size();
+    std::size_t first = 0;
+    for (const std::int32_t joint : loops_) {
+        const JointRows& rows = rows_[static_cast<std::size_t>(joint)];
+        const auto firm = static_cast<std::size_t>(rows.firm);
+        std::size_t of_points = 0;  // rows that hold points: they come before those of angles
+        while (of_points < firm && rows.row[of_points].law == RowLaw::hold && rows.row[of_points].n != Vec2{})
+            ++of_points;
+        TautLoop loop{first, std::min<std::size_t>(of_points, 2), {1, 0}, 0, 0};
+        first += firm;
+        if (of_points == 0 || joints[static_cast<std::size_t>(joint)].gear >= 0) continue;
+        double* block = &matrix_[loop.first * count + loop.first];
+        double least = block[0], alone = alone_[loop.first];
+        if (loop.rows == 2) {  // the smaller of the two eigenvalues, and its direction
+            const double xx = block[0], xy = block[1], yy = block[count + 1];
+            least = 0.5 * (xx + yy) - std::hypot(0.5 * (xx - yy), xy);
+            const double of_larger = 0.5 * std::atan2(2 * xy, xx - yy);
+            loop.direction = {-std::sin(of_larger), std::cos(of_larger)};
+            alone = std::fmax(alone, alone_[loop.first + 1]);
+        }
+        loop.share = 1 - std::fmax(least, 0) / (kTaut * alone);
+        if (!(loop.share > 0)) continue;
+        loop.softness = loop.share * kSoftnessOfTaut * alone;
+        for (std::size_t i = 0; i < loop.rows; ++i)
+            for (std::size_t k = 0; k < loop.rows; ++k)
+                block[i * count + k] += loop.softness * loop.direction[i] * loop.direction[k];
+        taut_.push_back(loop);
     }
 }
 

@@ -84,6 +84,15 @@ void JointSystem::find_right_sides(bool is_curved) {
             extra_rhs_[e] = -speed - per_h * std::fmax(row.value, 0);
         }
     }
+    // What a taut loop pulls more than in the substep before is by how much longer it has become: implicit,
+    // so that no substep is too long.
+    const double part = part_ == Part::half ? 0.5 : 1;
+    for (const TautLoop& loop : taut_) {
+        const double more =
+            along(loop, [&](std::size_t e) { return extras_[e].impulse - part * pulled_of(extras_[e]); });
+        for (std::size_t k = 0; k < loop.rows; ++k)
+            extra_rhs_[loop.first + k] -= loop.softness * more * loop.direction[k];
+    }
 }
 
 void JointSystem::take_velocities() {
@@ -161,10 +170,13 @@ void JointSystem::take_back_gain(double before) {
     const double work = driven_work();
     if (!(kinetic_energy() - work > kMostGain * before + kOffWork * std::fabs(work))) return;
     restore_velocities();
-    for (SystemBody& body : bodies) body.seen_inverse_inertia = body.inverse_inertia;
-    factor_tree();
-    list_extras();
-    recall_extras();
+    if (taut_.empty()) {
+        for (SystemBody& body : bodies) body.seen_inverse_inertia = body.inverse_inertia;
+        factor_tree();
+        list_extras();
+        couple_extras();
+        recall_extras();
+    }
     follow_tangents();
 }
 
@@ -192,6 +204,11 @@ void JointSystem::list_driven(std::vector<std::array<double, 2>>& driven) const 
         for (int k = 0; k < rows_[j].firm; ++k)
             if (rows_[j].row[static_cast<std::size_t>(k)].law == RowLaw::spring)
                 driven.push_back({joints[j].impulse[static_cast<std::size_t>(k)], row_velocity(j, k)});
+    for (const TautLoop& loop : taut_)
+        driven.push_back(
+            {along(loop, [&](std::size_t e) { return extras_[e].impulse; }), along(loop, [&](std::size_t e) {
+                 return row_velocity(static_cast<std::size_t>(extras_[e].joint), extras_[e].row);
+             })});
     for (const Extra& extra : extras_)
         if (extra.low < 0 && extra.low > -kUnbounded)
             driven.push_back({extra.impulse, row_velocity(static_cast<std::size_t>(extra.joint), extra.row)});

@@ -84,9 +84,10 @@ class JointSystem {
     /// Gives bodies the impulses that joints have.
     void give_impulses();
     /// Displaces bodies so that what is held is where it should be, as far as the rows of `prepare` tell.
-    /// @param least, most  m: errors below the one are left; no joint is corrected by more than the other
+    /// @param least  m: errors below it are left
+    /// @param length  m, of the system: joints are corrected by a tenth of it at most
     /// @return whether anything moved
-    bool correct_positions(double least, double most);
+    bool correct_positions(double least, double length);
     /// Draws bodies to targets.
     void pull();
     /// Velocities that end on what is held after h; adds to the impulses.
@@ -103,7 +104,8 @@ class JointSystem {
     /// Largest error of what is held, by the rows of `prepare` [m]: an angle counts with the larger arm.
     double largest_error() const { return largest_error_; }
     /// Impulses and shares of a step before are those of whole substeps: for the first `prepare` of a step.
-    void begin_step() { part_ = Part::whole; }
+    /// @param is_rigid  whether taut loops are held as others are
+    void begin_step(bool is_rigid = false) { part_ = Part::whole, is_rigid_ = is_rigid; }
     Part part() const { return part_; }
     std::size_t bytes() const;
 
@@ -152,6 +154,7 @@ class JointSystem {
     /// always. Added always it would pump energy.
     void stiffen(double share);
     void measure_rows();
+    void factor() { factor_tree(), couple_extras(); }
     void factor_tree();
     void factor_link(Link& link);
     void add_to_parent(const Link& link);
@@ -176,7 +179,38 @@ class JointSystem {
     void solve_all();
     static constexpr double kUnbounded = 1e301;  // bound of an impulse: none
 
+    void find_displacements(double share);
+    double find_small_displacements(double share, double most, double length);
+    double displacement_of(const Link& link, double length) const;
+
+    /// A loop that is taut in one direction among the rows of its last joint, and how far.
+    struct TautLoop {
+        std::size_t first, rows;  // of extras_, at most two
+        std::array<double, 2> direction;
+        double share;     // of it that is a spring: 1 where it is straight, 0 where it is not taut
+        double softness;  // 1/kg, of the spring
+    };
+    void soften_taut_loops();
+    /// Calls fn(extra row) and sums along the direction of a taut loop.
+    template <class Fn>
+    static double along(const TautLoop& loop, const Fn& fn) {
+        double sum = 0;
+        for (std::size_t k = 0; k < loop.rows; ++k) sum += loop.direction[k] * fn(loop.first + k);
+        return sum;
+    }
+    /// What a row of a loop gave in the whole substep before [N s].
+    double pulled_of(const Extra& extra) const {
+        const auto j = static_cast<std::size_t>(extra.joint);
+        return pulled_[j][rows_[j].row[static_cast<std::size_t>(extra.row)].slot];
+    }
+    double value_of(std::size_t extra) const {
+        return rows_[static_cast<std::size_t>(extras_[extra].joint)]
+            .row[static_cast<std::size_t>(extras_[extra].row)]
+            .value;
+    }
+
     void list_extras();
+    void couple_extras();
     void add_column(std::size_t extra);
     void push_row(const Extra& extra, double impulse);
     /// Calls fn(body, its part of a row): for both bodies of a joint, up to four of a gear.
@@ -212,7 +246,10 @@ class JointSystem {
     bool has_springs_ = false;
     double h_ = 0;  // s
     Part part_ = Part::whole;
+    bool is_rigid_ = false;
     double largest_error_ = 0;
+    std::vector<TautLoop> taut_;
+    std::vector<Vector> pulled_;  // N s, by joint and slot, of loops: in the whole substep before
 
     std::vector<JointRows> rows_;                                 // by joint
     std::vector<std::array<double, JointRows::kMost>> softness_;  // by joint and row: S, and alpha C m
@@ -231,6 +268,8 @@ class JointSystem {
     std::vector<double> matrix_, factor_, solution_, residual_, by_softness_;
     std::vector<End> state_;         // by extra row
     std::vector<double> stiffness_;  // by body: sum of arm · impulse, m N s
+    std::vector<double> weight_;     // by body: how many times as heavy it counts; 1 but in corrections
+    bool is_weighted_ = false;       // whether it is factored so
     std::vector<std::size_t> free_;
 };
 

@@ -71,7 +71,9 @@ void JointSystem::factor_tree() {
         const double mass = 1 / body.inverse_mass, inertia = body.seen_inverse_inertia > 0
                                                                  ? 1 / body.seen_inverse_inertia
                                                                  : kNeverTurns * mass;
-        inertia_[static_cast<std::size_t>(link.body)] = {mass, 0, 0, mass, 0, inertia};
+        const double weight = weight_[static_cast<std::size_t>(link.body)];
+        inertia_[static_cast<std::size_t>(link.body)] = {weight * mass, 0, 0,
+                                                         weight * mass, 0, weight * inertia};
     }
     for (std::size_t i = links_.size(); i-- > 0;) {
         Link& link = links_[i];

@@ -11,8 +11,6 @@ namespace {
 constexpr int kRounds = 2;
 /// As many as it can take to round-off, at most.
 constexpr int kMostRounds = 20;
-/// Largest correction of a joint in a substep, in lengths of the group's joints.
-constexpr double kLargestCorrection = 0.1;
 
 }  // namespace
 
@@ -56,7 +54,7 @@ DirectJoints<Real>::DirectJoints(const WorldState<Real>& world, const std::vecto
         if (const StoredJoint& joint = world.joints[slots_[j]]; joint.type == JointType::gear)
             system_.add_gear(j, number_in_system(joint.first), number_in_system(joint.second));
     for (const double rim : rim_) longest = std::max(longest, rim);
-    most_error_ = kLargestCorrection * longest;
+    length_ = longest;
     system_.plan();
     given_.resize(rows_.size()), last_impulse_.resize(slots_.size());
 }
@@ -67,7 +65,7 @@ void DirectJoints<Real>::begin_step(const JointStep<Real>& step, bool touches, b
     touches_ = touches, is_beside_ = is_beside, converges_ = converges;
     const Bodies<Real>& bodies = step.world.bodies;
     system_.set_substep(step.terms.substep_dt);
-    system_.begin_step();
+    system_.begin_step(converges);
     double farthest = 0;
     for (std::size_t i = 1; i < rows_.size(); ++i) {
         const auto row = static_cast<std::size_t>(rows_[i]);
@@ -132,7 +130,7 @@ void DirectJoints<Real>::read_poses(const JointStep<Real>& step) {
 /// Displaces bodies so that what is held is where it should be.
 template <class Real>
 void DirectJoints<Real>::correct(const JointStep<Real>& step) {
-    if (!system_.correct_positions(least_error_, most_error_)) return;
+    if (!system_.correct_positions(least_error_, length_)) return;
     write_poses(step);
 }
 

@@ -65,7 +65,7 @@ class DirectJoints {
     std::vector<Change> given_;                        // by body: what its joints gave it in this substep
     std::vector<SystemBody> before_;                   // that were read
     std::vector<std::array<double, 3>> last_impulse_;  // N s, by joint: of the last substep of a step
-    double least_error_ = 0, most_error_ = 0;          // m
+    double least_error_ = 0, length_ = 0;              // m
     bool touches_ = false, was_free_ = true;           // in this step; in the last one
     bool is_beside_ = false, converges_ = false;
 };
