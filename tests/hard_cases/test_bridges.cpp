@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kStep = 1.0 / 60;
 constexpr int kPlanks = 24;
-constexpr double kPlank = 0.8;  // m, length of a plank
+constexpr double kPlank = 0.8;        // m, length of a plank
 constexpr double kLargestRise = 0.2;  // J, a thousandth of what the planks' weight does on 1 m
 constexpr Material kWood{.friction = 0.5};
 

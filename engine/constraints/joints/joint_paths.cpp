@@ -165,7 +165,8 @@ void JointSystem::solve_flat() {
 
 /// What is held gives no energy. Bends of paths may, and so may bodies that are stiffened: to the system
 /// their spins have an energy that they have not. Where there is more than `before` [J], velocities become
-/// those along the tangents, of bodies that are not stiffened: a projection, which only takes.
+/// those along the tangents, of bodies that are not stiffened: a projection, which only takes. Taut loops
+/// need their stiffness: without it they would let go of what they pull.
 void JointSystem::take_back_gain(double before) {
     const double work = driven_work();
     if (!(kinetic_energy() - work > kMostGain * before + kOffWork * std::fabs(work))) return;
