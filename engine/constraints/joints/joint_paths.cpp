@@ -153,6 +153,7 @@ void JointSystem::solve_curved(int rounds, double least) {
         follow_tangents();
     }
     take_back_gain(energy);
+    stored_ = energy_of_taut_loops();
 }
 
 void JointSystem::solve_flat() {
@@ -161,23 +162,31 @@ void JointSystem::solve_flat() {
     list_driven(driven_before_);
     follow_tangents();
     take_back_gain(energy);
+    stored_ = energy_of_taut_loops();
 }
 
 /// What is held gives no energy. Bends of paths may, and so may bodies that are stiffened: to the system
 /// their spins have an energy that they have not. Where there is more than `before` [J], velocities become
 /// those along the tangents, of bodies that are not stiffened: a projection, which only takes. Taut loops
-/// need their stiffness: without it they would let go of what they pull.
+/// keep their stiffness where tangents alone take enough: without it they let go of what they pull.
 void JointSystem::take_back_gain(double before) {
-    const double work = driven_work();
-    if (!(kinetic_energy() - work > kMostGain * before + kOffWork * std::fabs(work))) return;
+    const auto gains = [&] {
+        const double work = driven_work();
+        return kinetic_energy() + energy_of_taut_loops() - work >
+               kMostGain * (before + stored_) + kOffWork * std::fabs(work);
+    };
+    if (!gains()) return;
     restore_velocities();
-    if (taut_.empty()) {
-        for (SystemBody& body : bodies) body.seen_inverse_inertia = body.inverse_inertia;
-        factor_tree();
-        list_extras();
-        couple_extras();
-        recall_extras();
+    if (!taut_.empty()) {
+        follow_tangents();
+        if (!gains()) return;
+        restore_velocities();
     }
+    for (SystemBody& body : bodies) body.seen_inverse_inertia = body.inverse_inertia;
+    factor_tree();
+    list_extras();
+    couple_extras();
+    recall_extras();
     follow_tangents();
 }
 
@@ -205,11 +214,6 @@ void JointSystem::list_driven(std::vector<std::array<double, 2>>& driven) const 
         for (int k = 0; k < rows_[j].firm; ++k)
             if (rows_[j].row[static_cast<std::size_t>(k)].law == RowLaw::spring)
                 driven.push_back({joints[j].impulse[static_cast<std::size_t>(k)], row_velocity(j, k)});
-    for (const TautLoop& loop : taut_)
-        driven.push_back(
-            {along(loop, [&](std::size_t e) { return extras_[e].impulse; }), along(loop, [&](std::size_t e) {
-                 return row_velocity(static_cast<std::size_t>(extras_[e].joint), extras_[e].row);
-             })});
     for (const Extra& extra : extras_)
         if (extra.low < 0 && extra.low > -kUnbounded)
             driven.push_back({extra.impulse, row_velocity(static_cast<std::size_t>(extra.joint), extra.row)});
@@ -231,6 +235,17 @@ double JointSystem::kinetic_energy() const {
         if (!(body.inverse_mass > 0)) continue;
         sum += 0.5 * length_squared(body.velocity) / body.inverse_mass;
         if (body.inverse_inertia > 0) sum += 0.5 * body.spin * body.spin / body.inverse_inertia;
+    }
+    return sum;
+}
+
+/// What the springs of taut loops hold [J]: a spring of the softness S per substep that has given l in one.
+double JointSystem::energy_of_taut_loops() const {
+    const double part = part_ == Part::half ? 0.5 : 1;
+    double sum = 0;
+    for (const TautLoop& loop : taut_) {
+        const double impulse = along(loop, [&](std::size_t e) { return extras_[e].impulse; }) / part;
+        sum += 0.5 * loop.softness * impulse * impulse;
     }
     return sum;
 }

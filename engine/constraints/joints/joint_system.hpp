@@ -228,6 +228,7 @@ class JointSystem {
     void list_driven(std::vector<std::array<double, 2>>& driven) const;
     double driven_work();
     double kinetic_energy() const;
+    double energy_of_taut_loops() const;
     void solve_free();
     bool factor_free(double softness);
     void substitute_free();
@@ -249,6 +250,7 @@ class JointSystem {
     bool is_rigid_ = false;
     double largest_error_ = 0;
     std::vector<TautLoop> taut_;
+    double stored_ = 0;           // J, of their springs before a solve
     std::vector<Vector> pulled_;  // N s, by joint and slot, of loops: in the whole substep before
 
     std::vector<JointRows> rows_;                                 // by joint
