@@ -110,8 +110,10 @@ void draw_steps(WorldTraits& traits, double wildness, Random& random) {
 std::string shapes_in_words(const WorldTraits& traits) {
     constexpr std::array kNames{"disc", "box", "capsule", "polygon", "compound"};  // as in ShapeKind
     std::string text;
-    for (const ShapeKind kind : traits.shapes)
-        text += (text.empty() ? "" : "+") + std::string(kNames[static_cast<std::size_t>(kind)]);
+    for (const ShapeKind kind : traits.shapes) {
+        if (!text.empty()) text += '+';
+        text += kNames[static_cast<std::size_t>(kind)];
+    }
     return text;
 }
 
