@@ -33,12 +33,6 @@ class JointStiffness {
         const double rim = rim_of(bodies, row), inertia = 0.5 * rim * rim / bodies.inverse_mass(row);
         return least > inertia ? inertia / least : 1;
     }
-    /// The same of the bodies of joints. @param rows  by joint  @param shares  out, by joint
-    template <class Real>
-    void see(const Bodies<Real>& bodies, double h, const Column<std::int32_t>& rows,
-             Column<Real>& shares) const {
-        for (std::size_t i = 0; i < rows.size(); ++i) shares[i] = static_cast<Real>(seen(bodies, rows[i], h));
-    }
     std::size_t bytes() const { return sum_.capacity() * sizeof(double); }
 
   private:

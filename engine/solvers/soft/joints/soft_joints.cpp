@@ -265,7 +265,7 @@ bool SoftJoints<Real>::end_step(const JointStep<Real>& step, const StepView<Real
         }
         group.store(joints, dt);
     }
-    if (!swept_.empty()) swept_.store(joints, step.terms.substep_dt);
+    if (!swept_.empty()) swept_.store(joints, step.terms.substep_dt, *contacts.loops.executor);
     const std::size_t before = joints.broken.size();
     for (const std::size_t slot : breakable_) {
         const StoredJoint& joint = joints[slot];

@@ -47,7 +47,7 @@ class SweptJoints {
     /// The work of the joints in this substep, and what they gave to what nothing moves.
     void book(const JointStep<Real>& step, Books& books) const;
     /// What the store keeps of a step.
-    void store(JointStore& joints, double substep_dt) const;
+    void store(JointStore& joints, double substep_dt, const Executor& executor) const;
 
     /// Calls fn(row) for every row that has such a joint.
     template <class Fn>
@@ -89,10 +89,23 @@ class SweptJoints {
     static bool has_angle_part(const StoredJoint& joint);
     Real* turn_of(BodyRecords<Real>& records);
     void load(const WorldState<Real>& world);
+    void begin_joint(const JointStep<Real>& step, Kind& own, std::size_t kind, std::size_t i);
     void begin_drive(Kind& own, std::size_t i, std::size_t kind, const StoredJoint& joint, double h);
+    void add_stiffness(const Kind& own);
+    static void store_joint(StoredJoint& joint, const Kind& own, std::size_t kind, std::size_t i,
+                            double substep_dt);
     /// The impulse of a spring, a rope or an angle: along the length [N s] or about the angle [N m s].
-    static double sum_of_impulses(const Kind& own, std::size_t i);
-    static Vec2 impulse_on_b(const Kind& own, std::size_t i, std::size_t kind);
+    static double sum_of_impulses(const Kind& own, std::size_t i) {
+        return static_cast<double>(own.impulse_x[i]) + static_cast<double>(own.impulse_y[i]) +
+               static_cast<double>(own.impulse_z[i]) + static_cast<double>(own.impulse_w[i]);
+    }
+    /// The impulse on b of the part of a joint that is about points [N s].
+    static Vec2 impulse_on_b(const Kind& own, std::size_t i, std::size_t kind) {
+        if (kind == kHinges) return {own.impulse_x[i], own.impulse_y[i]};
+        const double along =
+            kind == kSprings ? sum_of_impulses(own, i) : static_cast<double>(own.impulse_x[i]);
+        return along * Vec2{own.normal_x[i], own.normal_y[i]};
+    }
 
     std::array<Kind, kKinds> kinds_;
     TaskGroups groups_;
@@ -101,6 +114,11 @@ class SweptJoints {
     bool is_loaded_ = false;         // whether columns have what the store keeps
     double longest_ = 0;             // m, arm of hinges
     JointStiffness stiffness_;
+    /// How far joints turn their bodies back: arm times impulse of a substep [N s m].
+    struct Moments {
+        double of_a, of_b;
+    };
+    std::vector<Moments> moments_;              // of the present kind, by place
     Column<Real> no_turn_;                      // in place of turns in worlds where nothing turns
     std::vector<SweepJoints<Real>> arguments_;  // by kind
     const KernelTable<Real>* kernels_ = nullptr;

@@ -1,0 +1,206 @@
+#include <algorithm>
+#include <cmath>
+
+#include "constraints/joints/spring_law.hpp"
+#include "solvers/soft/joints/swept_joints.hpp"
+
+// What swept joints are at the start of a step, and what they leave at its end.
+
+namespace carom {
+namespace {
+
+/// Share of an error that a substep takes away, by displacement.
+constexpr double kRecovery = 0.4;
+/// Largest such correction: in lengths of a rod, in arms of a hinge.
+constexpr double kLargestCorrection = 1;
+/// Likewise of an angle [rad].
+constexpr double kLargestTurn = 0.5;
+/// In place of an end that there is not: its impulse stays 0, and what is computed with it finite.
+constexpr double kNoEnd = 1e30;
+
+// For the executor: places of a task, and ns a joint on one thread.
+constexpr std::size_t kPlacesPerTask = 1024;
+constexpr double kNanosecondsToBegin = 5, kNanosecondsToStore = 8;
+
+}  // namespace
+
+template <class Real>
+void SweptJoints<Real>::begin_step(const JointStep<Real>& step, const StepLoops<Real>& loops) {
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    const auto for_each_place = [&](const Kind& own, const auto& fn) {
+        loops.executor->for_each_chunk(own.slot.size(), kPlacesPerTask, kNanosecondsToBegin,
+                                       [&](std::size_t, std::size_t first, std::size_t last) {
+                                           for (std::size_t i = first; i < last; ++i) fn(i);
+                                       });
+    };
+    kernels_ = loops.kernels;
+    if (!is_loaded_) load(step.world);
+    arguments_.assign(kKinds, {});
+    stiffness_.begin(static_cast<std::size_t>(first_beyond_));
+    const double h = step.terms.substep_dt;
+    for (std::size_t kind = 0; kind < kKinds; ++kind) {
+        Kind& own = kinds_[kind];
+        moments_.resize(std::max(moments_.size(), own.slot.size()));
+        for_each_place(own, [&](std::size_t i) {
+            if (own.slot[i] >= 0) begin_joint(step, own, kind, i);
+        });
+        if ((needs_of(kind) & kArms) != 0) add_stiffness(own);
+        SweepJoints<Real>& k = arguments_[kind];
+        k.joints = own.columns();
+        k.velocity = step.records.velocity.data(), k.displacement = step.records.displacement.data();
+        k.turn = turn_of(step.records);
+        k.h = real(h), k.half_h = real(h / 2), k.per_h = real(1 / h);
+        k.recovery = real(kRecovery);
+        k.most = real(kind == kHinges   ? kLargestCorrection * longest_
+                      : kind == kAngles ? kLargestTurn
+                                        : kLargestCorrection);
+    }
+    for (Kind& own : kinds_) {
+        if (own.seen_a.empty()) continue;
+        const auto seen = [&](std::int32_t row) { return real(stiffness_.seen(step.world.bodies, row, h)); };
+        for_each_place(
+            own, [&](std::size_t i) { own.seen_a[i] = seen(own.a[i]), own.seen_b[i] = seen(own.b[i]); });
+    }
+}
+
+/// Where a joint is, and how it turns its bodies.
+template <class Real>
+void SweptJoints<Real>::begin_joint(const JointStep<Real>& step, Kind& own, std::size_t kind, std::size_t i) {
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    const Bodies<Real>& bodies = step.world.bodies;
+    struct End {
+        Vec2 place, arm;
+        double per_rim, angle;
+    };
+    const auto end_of = [&](std::int32_t number, std::int32_t of, Vec2 anchor) -> End {
+        if (of < 0) return {anchor, {}, 0, 0};
+        const auto row = static_cast<std::size_t>(of);
+        End end{{bodies.position_x[row], bodies.position_y[row]}, {}, 0, 0};
+        if (anchor == Vec2{} && (kind == kRods || kind == kRodsOfAnchors)) return end;
+        end.angle = bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0;
+        end.arm = rotate(rotation_by(end.angle), anchor);
+        end.per_rim = 1 / rim_of(bodies, row);
+        if (number >= first_beyond_) end.place += end.arm, end.arm = {}, end.per_rim = 0;
+        return end;
+    };
+    const typename Kind::Source& source = own.sources[i];
+    const End a = end_of(own.a[i], source.row_a, source.anchor_a),
+              b = end_of(own.b[i], source.row_b, source.anchor_b);
+    if (!own.alpha.empty())
+        begin_drive(own, i, kind, step.world.joints[static_cast<std::size_t>(own.slot[i])],
+                    step.terms.substep_dt);
+    if (kind == kAngles) {
+        own.start_x[i] = real(b.angle - a.angle - source.angle);
+        own.per_rim_a[i] = real(a.per_rim), own.per_rim_b[i] = real(b.per_rim);
+        return;
+    }
+    own.start_x[i] = real(b.place.x - a.place.x), own.start_y[i] = real(b.place.y - a.place.y);
+    if (kind == kRods) return;
+    own.start_arm_a_x[i] = real(a.arm.x), own.start_arm_a_y[i] = real(a.arm.y);
+    own.start_arm_b_x[i] = real(b.arm.x), own.start_arm_b_y[i] = real(b.arm.y);
+    own.per_rim_a[i] = real(a.per_rim), own.per_rim_b[i] = real(b.per_rim);
+    Vec2 pull{own.impulse_x[i], own.impulse_y[i]};  // N s, on b
+    if (kind != kHinges) {
+        const Vec2 d = (b.place + b.arm) - (a.place + a.arm);
+        const double distance = std::sqrt(length_squared(d));
+        const double along = kind == kSprings ? sum_of_impulses(own, i) : pull.x;
+        pull = distance > 0 ? (along / distance) * d : Vec2{};
+    }
+    moments_[i] = {-dot(a.arm, pull), dot(b.arm, pull)};
+}
+
+/// Adds up how joints with arms turn their bodies, in the order of their places, and notes the longest arm.
+template <class Real>
+void SweptJoints<Real>::add_stiffness(const Kind& own) {
+    for (std::size_t i = 0; i < own.slot.size(); ++i) {
+        if (own.slot[i] < 0) continue;
+        stiffness_.add(own.a[i], moments_[i].of_a), stiffness_.add(own.b[i], moments_[i].of_b);
+        for (const Column<Real>* arm :
+             {&own.start_arm_a_x, &own.start_arm_a_y, &own.start_arm_b_x, &own.start_arm_b_y})
+            longest_ = std::max(longest_, static_cast<double>(std::fabs((*arm)[i])));
+    }
+}
+
+/// What does not change from step to step, and the impulses of the last one.
+template <class Real>
+void SweptJoints<Real>::load(const WorldState<Real>& world) {
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    const auto row_of = [&](BodyId id) {
+        return id == BodyId{} ? -1 : static_cast<std::int32_t>(world.handles.row_of_slot(id.index));
+    };
+    is_loaded_ = true;
+    for (std::size_t kind = 0; kind < kKinds; ++kind) {
+        Kind& own = kinds_[kind];
+        own.sources.resize(own.slot.size());
+        for (std::size_t i = 0; i < own.slot.size(); ++i) {
+            if (own.slot[i] < 0) continue;
+            const StoredJoint& joint = world.joints[static_cast<std::size_t>(own.slot[i])];
+            own.sources[i] = {row_of(joint.a), row_of(joint.b), joint.anchor_a, joint.anchor_b, joint.angle};
+            if ((needs_of(kind) & kPoints) != 0) own.length[i] = real(joint.length);
+            if ((needs_of(kind) & kDrives) == 0)
+                own.impulse_x[i] = real(joint.impulse[0]), own.impulse_y[i] = real(joint.impulse[1]);
+        }
+    }
+}
+
+/// What springs, drives and bounds a length or an angle. Of its impulses the store keeps the sum: a motor has
+/// as much of it as it can, the rest is of the end that pushes that way.
+template <class Real>
+void SweptJoints<Real>::begin_drive(Kind& own, std::size_t i, std::size_t kind, const StoredJoint& joint,
+                                    double h) {
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    constexpr double kTwoPi = 6.28318530717958647693;
+    // A spring that is too stiff for the substep holds as a rod does: as a spring it would close its gap by
+    // velocities, and sweeps that have not converged make energy of that.
+    const bool is_stiff = joint.is_spring() && kTwoPi * joint.frequency * h > 1;
+    const bool is_held = is_stiff || (joint.type == JointType::weld && !joint.is_spring());
+    const double rest_at = kind == kAngles ? 0 : joint.length;
+    own.lower[i] = real(is_held ? rest_at : joint.has_lower ? joint.lower : -kNoEnd);
+    own.upper[i] = real(is_held ? rest_at : joint.has_upper ? joint.upper : kNoEnd);
+    const bool springs = joint.is_spring() && !is_stiff;
+    const SpringTerms terms = springs ? spring_terms(joint.frequency, joint.damping_ratio, h) : SpringTerms{};
+    own.alpha[i] = real(terms.alpha), own.gamma[i] = real(terms.gamma);
+    const double most = joint.has_motor ? joint.max_motor * h : 0;
+    own.speed[i] = real(joint.motor_speed), own.most[i] = real(most);
+    double rest = joint.impulse[kind == kAngles ? 2 : 0];
+    own.impulse_x[i] = real(springs ? rest : 0);
+    if (springs) rest = 0;
+    const double of_motor = std::clamp(rest, -most, most);
+    rest -= of_motor;
+    own.impulse_y[i] = real(of_motor);
+    own.impulse_z[i] = real(std::fmax(rest, 0)), own.impulse_w[i] = real(std::fmin(rest, 0));
+}
+
+/// Joints lie apart in memory, each in one place of a kind: but for its angle, which comes after its points.
+template <class Real>
+void SweptJoints<Real>::store(JointStore& joints, double substep_dt, const Executor& executor) const {
+    for (std::size_t kind = 0; kind < kKinds; ++kind) {
+        const Kind& own = kinds_[kind];
+        executor.for_each_chunk(own.slot.size(), kPlacesPerTask, kNanosecondsToStore,
+                                [&](std::size_t, std::size_t first, std::size_t last) {
+                                    for (std::size_t i = first; i < last; ++i)
+                                        if (own.slot[i] >= 0)
+                                            store_joint(joints[static_cast<std::size_t>(own.slot[i])], own,
+                                                        kind, i, substep_dt);
+                                });
+    }
+}
+
+template <class Real>
+void SweptJoints<Real>::store_joint(StoredJoint& joint, const Kind& own, std::size_t kind, std::size_t i,
+                                    double substep_dt) {
+    if (kind == kAngles) {
+        joint.impulse[2] = sum_of_impulses(own, i);
+        joint.torque = joint.impulse[2] / substep_dt;
+        return;
+    }
+    joint.impulse = {kind == kSprings ? sum_of_impulses(own, i) : static_cast<double>(own.impulse_x[i]),
+                     own.impulse_y[i], 0};
+    joint.force = (1 / substep_dt) * impulse_on_b(own, i, kind);
+    joint.torque = 0;
+}
+
+template class SweptJoints<float>;
+template class SweptJoints<double>;
+
+}  // namespace carom
