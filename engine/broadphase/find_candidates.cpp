@@ -7,6 +7,7 @@ namespace carom {
 namespace {
 
 constexpr std::size_t kPlacesPerChunk = kRowsPerChunk;  // whole blocks of the kernel
+constexpr double kNanosecondsToCopy = 0.3;              // a pair, on one thread, for the executor
 
 void make_room(CandidatePairs& pairs, std::size_t wanted) {
     if (pairs.a.size() >= wanted) return;
@@ -60,13 +61,17 @@ void UniformGrid<Real>::find_in_level(const GridLevel<Real>& level, const Execut
                                 chunk_pairs_[c].count = 0;
                                 append_pairs(*kernels_, level, first, last, chunk_pairs_[c]);
                             });
-    for (std::size_t c = 0; c < chunks; ++c) {
-        const CandidatePairs& found = chunk_pairs_[c];
-        make_room(pairs_, pairs_.count + found.count);
-        std::copy_n(found.a.data(), found.count, pairs_.a.data() + pairs_.count);
-        std::copy_n(found.b.data(), found.count, pairs_.b.data() + pairs_.count);
-        pairs_.count += found.count;
-    }
+    std::size_t count = pairs_.count;
+    for (std::size_t c = 0; c < chunks; ++c) count += chunk_pairs_[c].count;
+    make_room(pairs_, count);
+    executor.for_each_task(chunks, kNanosecondsToCopy * static_cast<double>(count), [&](std::size_t chunk) {
+        std::size_t begin = pairs_.count;
+        for (std::size_t c = 0; c < chunk; ++c) begin += chunk_pairs_[c].count;
+        const CandidatePairs& found = chunk_pairs_[chunk];
+        std::copy_n(found.a.data(), found.count, pairs_.a.data() + begin);
+        std::copy_n(found.b.data(), found.count, pairs_.b.data() + begin);
+    });
+    pairs_.count = count;
 }
 
 /// Pairs of a coarse body, a, and a fine one, b. Each body of one level looks around itself in the other: of

@@ -8,6 +8,7 @@
 #include <exception>
 #include <utility>
 
+#include "parallel/shared_tasks.hpp"
 #include "parallel/waiting.hpp"
 
 namespace carom {
@@ -116,9 +117,9 @@ void Executor::run(std::size_t chunks, Call call) const {
         for (std::size_t c = 0; c < chunks; ++c) call.invoke(call.function, c);
         return;
     }
-    const auto share = [call, chunks](std::size_t thread, std::size_t threads) {
-        for (std::size_t c = thread * chunks / threads; c < (thread + 1) * chunks / threads; ++c)
-            call.invoke(call.function, c);
+    SharedTasks tasks(static_cast<std::size_t>(threads_), chunks);
+    const auto share = [&](std::size_t thread, std::size_t) {
+        tasks.work(thread, [&](std::size_t chunk) { call.invoke(call.function, chunk); });
     };
     const double start = seconds_now();
     const double waited = run_on_threads(threads_, team_call(share));

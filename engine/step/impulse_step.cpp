@@ -21,7 +21,7 @@ class ImpulseStep final : public ImpulseSimulation<Real> {
         {"sort_rows",
          [](Sim& sim) {
              sort_rows_by_place(
-                 sim, [&](auto) { sim.impulse.flights.accelerations.clear(), sim.knows_standing = false; });
+                 sim, [&](auto) { sim.impulse.columns.accelerations.clear(), sim.knows_standing = false; });
          },
          can_meet, KernelChoice::none, "position", "rows of all columns"},
         {"begin_flight", [](Sim& sim) { begin_flight(sim); }, always, KernelChoice::radius,
@@ -32,8 +32,9 @@ class ImpulseStep final : public ImpulseSimulation<Real> {
          "motion, candidate pairs", "meetings"},
         {"settle_contacts", [](Sim& sim) { sim.impulse.settle_contacts(sim.meetings, sim.world.handles); },
          can_meet, KernelChoice::none, "meetings, motion", "motion, accelerations, impact queue"},
-        {"resolve_impacts", [](Sim& sim) { sim.impulse.resolve_impacts(); }, can_meet, KernelChoice::none,
-         "impact queue, motion, candidate pairs, angle, angular velocity", "motion, angle, angular velocity"},
+        {"resolve_impacts", [](Sim& sim) { sim.impulse.resolve_impacts(sim.executor); }, can_meet,
+         KernelChoice::none, "impact queue, motion, candidate pairs, angle, angular velocity",
+         "motion, angle, angular velocity"},
         {"keep_books", [](Sim& sim) { keep_books(sim); }, has_ledger, KernelChoice::none,
          "motion, angular velocity", "books"},
         {"advance_rotation", [](Sim& sim) { advance_rotation(sim); }, has_rotation, KernelChoice::isa,

@@ -18,16 +18,19 @@ void set_accelerations(ImpulseSimulation<Real>& sim) {
     Flights<Real>& flights = sim.impulse.flights;
     flights.common_acceleration = world.gravity;
     const bool can_differ = world.effects.gravity || (world.effects.drag && !world.immovable_rows.empty());
-    if (!can_differ || flights.accelerations.size() == world.bodies.count) return;
-    flights.accelerations.resize(world.bodies.count);
-    for (Vec2& a : flights.accelerations) a = world.gravity;
+    Column<Vec2>& accelerations = sim.impulse.columns.accelerations;
+    if (!can_differ || accelerations.size() == world.bodies.count)
+        return flights.look_at(sim.impulse.columns);
+    accelerations.resize(world.bodies.count);
+    for (Vec2& a : accelerations) a = world.gravity;
     for (const std::int32_t row : world.immovable_rows) {
         const auto i = static_cast<std::size_t>(row);
         const Vec2 v{world.bodies.velocity_x[i], world.bodies.velocity_y[i]};
         // x = V t = V s + k V q: steady motion is an acceleration by k V on the clock of things that drag
         // slows.
-        flights.accelerations[i] = world.drag.linear * v;
+        accelerations[i] = world.drag.linear * v;
     }
+    flights.look_at(sim.impulse.columns);
 }
 
 template <class Real>
@@ -59,7 +62,7 @@ void begin_flight(ImpulseSimulation<Real>& sim) {
     flights.walls = world.walls ? &*world.walls : nullptr;
     flights.has_friction = world.effects.friction;
     flights.angular_drag = world.effects.friction ? world.drag.angular : 0;
-    flights.motion.resize(4 * padded(count));
+    sim.impulse.columns.motion.resize(4 * padded(count));
     set_accelerations(sim);
     sim.candidates.prepare(count);
     sim.candidates.move_places(world.bodies, sim.flight_dt, sim.executor);
@@ -77,7 +80,7 @@ void begin_flight(ImpulseSimulation<Real>& sim) {
         [&](const FlightCounts<Real>& counts, std::size_t chunk) {
             sim.wall_rows.set_count(chunk, counts.wall);
         });
-    quarantine_lost(sim, flights.motion);
+    quarantine_lost(sim, sim.impulse.columns.motion);
     set_accelerations(sim);  // those of bodies that were taken out just now
     sim.keep_start_of_substep();
 }

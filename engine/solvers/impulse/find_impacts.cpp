@@ -30,6 +30,7 @@ double near_of(const ImpulseSimulation<Real>& sim) {
 template <class Real>
 void list_wall_meetings(ImpulseSimulation<Real>& sim, double near) {
     const Flights<Real>& flights = sim.impulse.flights;
+    std::vector<FoundMeeting>& meetings = sim.meetings.lists[sim.meetings.count - 1];
     sim.wall_rows.for_each_below(sim.world.bodies.moving(), [&](std::int32_t row) {
         if (flights.is_immovable(row)) return;
         const Flight f = flights.flight(row);
@@ -40,7 +41,7 @@ void list_wall_meetings(ImpulseSimulation<Real>& sim, double near) {
             const double nearest = std::fmin(wall_clearance(*flights.walls, side, f.position),
                                              wall_clearance(*flights.walls, side, end));
             if (nearest - fall - near < flights.radius(row))
-                sim.meetings.push_back(sim.impulse.examine({row, side}));
+                meetings.push_back(sim.impulse.examine({row, side}));
         }
     });
 }
@@ -81,17 +82,13 @@ void list_pair_meetings(ImpulseSimulation<Real>& sim, const FindImpacts<Real>& a
     const std::size_t pairs = sim.candidates.pair_count();
     const bool is_parallel = sim.executor.is_parallel(pairs);
     const std::size_t chunks = (pairs + kRowsPerChunk - 1) / kRowsPerChunk;
-    if (is_parallel && sim.chunk_meetings.size() < chunks) sim.chunk_meetings.resize(chunks);
+    sim.meetings.count = is_parallel ? chunks : 1;
+    if (sim.meetings.lists.size() < sim.meetings.count) sim.meetings.lists.resize(sim.meetings.count);
+    for (std::size_t list = 0; list < sim.meetings.count; ++list) sim.meetings.lists[list].clear();
     sim.executor.for_each_chunk(
         pairs, kRowsPerChunk, [&](std::size_t chunk, std::size_t first, std::size_t last) {
-            std::vector<FoundMeeting>& meetings = is_parallel ? sim.chunk_meetings[chunk] : sim.meetings;
-            if (is_parallel) meetings.clear();
-            append_meetings(sim, all, first, last, meetings);
+            append_meetings(sim, all, first, last, sim.meetings.lists[is_parallel ? chunk : 0]);
         });
-    for (std::size_t chunk = 0; is_parallel && chunk < chunks; ++chunk) {
-        const std::vector<FoundMeeting>& found = sim.chunk_meetings[chunk];
-        sim.meetings.insert(sim.meetings.end(), found.begin(), found.end());
-    }
 }
 
 }  // namespace
@@ -108,7 +105,6 @@ void find_impacts(ImpulseSimulation<Real>& sim) {
     all.s = static_cast<Real>(sim.impulse.flights.end.s);
     all.slack = static_cast<Real>(slack);
     all.near = static_cast<Real>(near);
-    sim.meetings.clear();
     list_pair_meetings(sim, all);
     if (sim.world.walls) list_wall_meetings(sim, std::fmax(near, 0));
 }

@@ -4,7 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
-#include <vector>
+#include <span>
 
 #include "effects/flight.hpp"
 #include "effects/friction.hpp"
@@ -52,23 +52,39 @@ struct ImpactImpulses {
     double normal, tangent;
 };
 
+/// What flights are kept in.
+template <class Real>
+struct FlightColumns {
+    Column<Real> motion;         // [padded(rows)][4], m and m/s
+    Column<Vec2> accelerations;  // m/s², only if bodies' accelerations can differ
+
+    std::size_t bytes() const { return motion.bytes() + accelerations.bytes(); }
+};
+
+/// A view: several may be of the same columns, each with books of its own.
 template <class Real>
 class Flights {
   public:
     /// One body's packed record (x0, y0, vx0, vy0): one load a body in the kernels.
     static constexpr std::size_t kMotionWidth = 4;
 
-    Column<Real> motion;         // [padded(rows)][4], m and m/s
-    Column<Vec2> accelerations;  // m/s², only if bodies' accelerations can differ
-    Vec2 common_acceleration;    // m/s²
-    FlightClock end;             // the clock at the end of the substep
-    double rest_speed = 0;       // m/s, approaches slower than this do not bounce
-    bool has_friction = false;   // impacts turn bodies: their angles and spins are read and written
-    double angular_drag = 0;     // 1/s, only with friction
+    std::span<Real> motion;         // of FlightColumns
+    std::span<Vec2> accelerations;  // of FlightColumns
+    Vec2 common_acceleration;       // m/s²
+    FlightClock end;                // the clock at the end of the substep
+    double rest_speed = 0;          // m/s, approaches slower than this do not bounce
+    bool has_friction = false;      // impacts turn bodies: their angles and spins are read and written
+    double angular_drag = 0;        // 1/s, only with friction
     const Walls* walls = nullptr;
     Bodies<Real>* bodies = nullptr;
     Books* books = nullptr;
     Interruption* interruption = nullptr;  // of the step; null: none can be
+
+    /// To be called when the columns have got other rows, or have come or gone.
+    void look_at(FlightColumns<Real>& columns) {
+        motion = {columns.motion.data(), columns.motion.size()};
+        accelerations = {columns.accelerations.data(), columns.accelerations.size()};
+    }
 
     /// Whether the step is to end here, after so much more work. Loops that may be long ask.
     bool is_interrupted_after(std::size_t work) const {

@@ -9,7 +9,7 @@ template <class Real>
 void ImpulseSimulation<Real>::forget_derived_state() {
     this->candidates.invalidate();
     impulse.forget_contacts();
-    impulse.flights.accelerations.clear();
+    impulse.columns.accelerations.clear();
     knows_standing = false;
 }
 
@@ -46,10 +46,9 @@ void ImpulseSimulation<Real>::report(Profile& profile) const {
 template <class Real>
 std::size_t ImpulseSimulation<Real>::bytes() const {
     std::size_t bytes = Simulation<Real>::bytes() + sizeof(*this) + impulse.bytes() + wall_rows.bytes() +
-                        meetings.capacity() * sizeof(FoundMeeting) +
                         immovable_turns.capacity() * sizeof(Turn) +
                         (start_.angle.capacity() + start_.spin.capacity()) * sizeof(Real);
-    for (const auto& of_chunk : chunk_meetings) bytes += of_chunk.capacity() * sizeof(FoundMeeting);
+    for (const auto& of_chunk : meetings.lists) bytes += of_chunk.capacity() * sizeof(FoundMeeting);
     return bytes;
 }
 

@@ -38,9 +38,8 @@ class ImpulseSimulation : public Simulation<Real> {
     bool knows_standing = false;
     // The lists below are those of the present substep.
     ChunkedList wall_rows;
-    std::vector<FoundMeeting> meetings;                     ///< that the solver has to look at
-    std::vector<std::vector<FoundMeeting>> chunk_meetings;  ///< where chunks run on several threads
-    std::vector<Turn> immovable_turns;                      ///< kept over the turn of all others
+    FoundMeetings meetings;             ///< that the solver has to look at
+    std::vector<Turn> immovable_turns;  ///< kept over the turn of all others
 
   private:
     /// What holds at the start of the present substep; nothing if no substep has come that far.

@@ -28,58 +28,74 @@ constexpr std::size_t kMostImpactsPerBody = 64;
 // there.
 constexpr std::size_t kRoomAtStart = 256;
 
-// Meetings are looked at in the order of the plane, which memory follows if told a little ahead.
-constexpr std::size_t kMeetingsAhead = 8;
-
 }  // namespace
 
 template <class Real>
 ImpulseSolver<Real>::ImpulseSolver() {
     for (auto* list : {&held_, &moved_}) list->reserve(kRoomAtStart);
-    overlaps_.reserve(kRoomAtStart), separation_targets_.reserve(kRoomAtStart),
-        at_rest_.reserve(kRoomAtStart);
-    persisting_.reserve(kRoomAtStart), simultaneous_.reserve(kRoomAtStart);
-    together_.reserve(kRoomAtStart), resting_.reserve(kRoomAtStart), queue_.reserve(kRoomAtStart);
+    overlaps_.reserve(kRoomAtStart), separation_targets_.reserve(kRoomAtStart);
+    at_rest_.reserve(kRoomAtStart), resting_.reserve(kRoomAtStart);
+    outcome_.resting.reserve(kRoomAtStart);
 }
 
 template <class Real>
 void ImpulseSolver<Real>::begin_substep(const Candidates<Real>& candidates, double slack,
                                         const KernelTable<Real>& kernels) {
-    candidates_ = &candidates, slack_ = slack, kernels_ = &kernels;
     const double gravity = std::sqrt(length_squared(flights.common_acceleration));
     flights.rest_speed = kRestFraction * gravity * flights.end.s;
-    deflections_.resize(std::max(deflections_.size(), flights.bodies->count));
-    budget_ = kMostImpacts + kMostImpactsPerBody * flights.bodies->count;
-    tiles_ = Tiles(candidates.grid(), flights.bodies->moving());
+    const std::size_t rows = flights.bodies->count;
+    deflections_.resize(std::max(deflections_.size(), rows));
+    place_of_row_.resize(std::max(place_of_row_.size(), rows), -1);
+    tiles_.begin(candidates.grid(), flights.bodies->moving());
+    terms_ = {&candidates, &kernels, &tiles_, deflections_, place_of_row_, slack};
+    outcome_.begin(candidates.overshoot());
+    all_.begin_substep(flights, terms_, outcome_, *flights.books);
+    all_.budget = kMostImpacts + kMostImpactsPerBody * rows;
 }
 
 template <class Real>
-void ImpulseSolver<Real>::settle_contacts(std::span<const FoundMeeting> found, const Handles& handles) {
+FoundMeeting ImpulseSolver<Real>::examine(Meeting m) const {
+    FoundMeeting found{m};
+    if (flights.rest_speed > 0) return found;
+    const double slop = kSlopFraction * flights.smaller_radius(m);
+    if (m.with_wall()) {
+        found.overlaps = flights.encounter(m, 0).separation < -slop;
+    } else {  // needs no root
+        const Vec2 d = flights.flight(m.b).position - flights.flight(m.a).position;
+        const double overlapping = flights.reach(m) - slop;
+        found.overlaps = length_squared(d) < overlapping * overlapping;
+    }
+    found.impact = all_.impact_time(m, 0);
+    if (found.impact != kNever)
+        found.tile = static_cast<std::uint32_t>(tiles_.tile_of(flights.flight(m.a).position));
+    return found;
+}
+
+template <class Real>
+void ImpulseSolver<Real>::settle_contacts(const FoundMeetings& found, const Handles& handles) {
     overlaps_.clear(), held_.clear(), at_rest_.clear();
-    queue_.start(flights.end.s, found.size(), tiles_.count());
-    overshoot_ = candidates_->overshoot();
+    if (tiles_.count() == 1) all_.begin_phase(ImpactResolver<Real>::kAfterAll, {}, found.size());
     if (flights.rest_speed > 0)
         settle_with_rest(found, handles);
     else
         take_examined(found);
     counters.resting_contacts = static_cast<std::int64_t>(at_rest_.size());
-    for (const std::int32_t row : candidates_->strays()) foresee_near(row, 0);
+    for (const std::int32_t row : terms_.candidates->strays()) all_.foresee_near(row, 0);
 }
 
 /// Takes over meetings that were examined when their motion was in the cache, which is done where nothing can
 /// rest.
 template <class Real>
-void ImpulseSolver<Real>::take_examined(std::span<const FoundMeeting> found) {
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        if (i + kMeetingsAhead < found.size()) {
-            const Meeting soon = found[i + kMeetingsAhead].meeting;
-            prefetch(&deflections_[static_cast<std::size_t>(soon.a)]);
-            if (!soon.with_wall()) prefetch(&deflections_[static_cast<std::size_t>(soon.b)]);
+void ImpulseSolver<Real>::take_examined(const FoundMeetings& found) {
+    found.for_each([&](const FoundMeeting& each, const FoundMeeting* soon) {
+        if (soon) {
+            prefetch(&deflections_[static_cast<std::size_t>(soon->meeting.a)]);
+            if (!soon->meeting.with_wall())
+                prefetch(&deflections_[static_cast<std::size_t>(soon->meeting.b)]);
         }
-        const FoundMeeting& each = found[i];
         if (each.overlaps) overlaps_.push_back(each.meeting);
-        if (each.impact != kNever) push(each.meeting, each.impact, each.tile);
-    }
+        if (each.impact != kNever) all_.push(each.meeting, each.impact, each.tile);
+    });
     if (overlaps_.empty()) return;
     separate();
     foresee_pushed();
@@ -96,30 +112,27 @@ void ImpulseSolver<Real>::foresee_pushed() {
     std::sort(moved_.begin(), moved_.end());
     moved_.erase(std::unique(moved_.begin(), moved_.end()), moved_.end());
     for (const std::int32_t row : moved_) ++deflections_[static_cast<std::size_t>(row)];
-    for (const std::int32_t row : moved_) foresee_all_of(row, 0);
+    for (const std::int32_t row : moved_) all_.foresee_all_of(row, 0);
 }
 
 /// Overlaps are pushed apart and contacts at rest held before anything is foreseen.
 template <class Real>
-void ImpulseSolver<Real>::settle_with_rest(std::span<const FoundMeeting> found, const Handles& handles) {
+void ImpulseSolver<Real>::settle_with_rest(const FoundMeetings& found, const Handles& handles) {
     collect_persisting(handles);
-    const auto prefetch_ahead = [&](std::size_t i) {
-        if (i + kMeetingsAhead < found.size()) prefetch_meeting(found[i + kMeetingsAhead].meeting);
-    };
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        prefetch_ahead(i);
-        sort_out(found[i].meeting);
-    }
+    found.for_each([&](const FoundMeeting& each, const FoundMeeting* soon) {
+        if (soon) prefetch_meeting(soon->meeting);
+        sort_out(each.meeting);
+    });
     if (!overlaps_.empty()) separate();
     drop_duplicates_at_rest();
     if (!at_rest_.empty()) {
         resting_.hold(flights, at_rest_, held_);
-        for (const PressedMeeting& p : at_rest_) keep_resting(p.meeting, p.force);
+        for (const PressedMeeting& p : at_rest_) all_.keep_resting(p.meeting, p.force);
     }
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        prefetch_ahead(i);
-        foresee(found[i].meeting, 0);
-    }
+    found.for_each([&](const FoundMeeting& each, const FoundMeeting* soon) {
+        if (soon) prefetch_meeting(soon->meeting);
+        all_.foresee(each.meeting, 0);
+    });
 }
 
 template <class Real>
@@ -150,21 +163,12 @@ double ImpulseSolver<Real>::rest_height(Meeting m) const {
     return std::fmax(0.5 * flights.rest_speed * flights.rest_speed / gravity, noise);
 }
 
-/// A contact to be looked at first in the next substep.
-template <class Real>
-void ImpulseSolver<Real>::keep_resting(Meeting m, double force) {
-    const auto& id = flights.bodies->id;
-    persisting_.push_back({id[static_cast<std::size_t>(m.a)],
-                           m.with_wall() ? BodyId{} : id[static_cast<std::size_t>(m.b)],
-                           m.with_wall() ? m.b : 0, force});
-}
-
 /// Contacts at rest of the last substep that still touch, into the list for this one.
 template <class Real>
 void ImpulseSolver<Real>::collect_persisting(const Handles& handles) {
     const double gravity = std::sqrt(length_squared(flights.common_acceleration));
     const double fastest = kPersistingFraction * gravity * flights.end.s;
-    for (const RestingContact& c : persisting_) {
+    for (const RestingContact& c : outcome_.resting) {
         if (!handles.is_alive(c.a) || (c.wall == 0 && !handles.is_alive(c.b))) continue;
         const auto row = [&](BodyId id) { return static_cast<std::int32_t>(handles.row_of_slot(id.index)); };
         const Meeting m = c.wall != 0 ? Meeting{row(c.a), c.wall}
@@ -176,7 +180,7 @@ void ImpulseSolver<Real>::collect_persisting(const Handles& handles) {
         if (!touches || std::fabs(e.normal_velocity) > fastest) continue;
         at_rest_.push_back({m, c.force});
     }
-    persisting_.clear();
+    outcome_.resting.clear();
 }
 
 /// A contact can be known from the last substep, found again, and have been hit several times: the one that
@@ -194,9 +198,12 @@ void ImpulseSolver<Real>::drop_duplicates_at_rest() {
 template <class Real>
 std::size_t ImpulseSolver<Real>::bytes() const {
     const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-    return queue_.bytes() + resting_.bytes() + of(overlaps_) + of(separation_targets_) + of(at_rest_) +
-           of(persisting_) + of(held_) + of(simultaneous_) + together_.bytes() + of(moved_) + near_.bytes() +
-           of(deflections_) + flights.motion.bytes() + flights.accelerations.bytes();
+    std::size_t bytes = tiles_.bytes() + all_.bytes() + outcome_.bytes() + lists_.bytes() + of(outcomes_) +
+                        resolvers_.bytes() + resting_.bytes() + of(overlaps_) + of(separation_targets_) +
+                        of(at_rest_) + of(held_) + of(moved_) + of(deflections_) + of(place_of_row_) +
+                        columns.bytes();
+    for (const ImpactOutcome& outcome : outcomes_) bytes += outcome.bytes();
+    return bytes;
 }
 
 template <class Real>

@@ -5,11 +5,12 @@
 #include <vector>
 
 #include "broadphase/candidates.hpp"
-#include "narrowphase/impact_time.hpp"
+#include "parallel/executor.hpp"
 #include "solvers/impulse/flights.hpp"
-#include "solvers/impulse/impact_queue.hpp"
+#include "solvers/impulse/impact_lists.hpp"
+#include "solvers/impulse/impact_resolver.hpp"
+#include "solvers/impulse/resolver_pool.hpp"
 #include "solvers/impulse/resting_contacts.hpp"
-#include "solvers/impulse/simultaneous_impacts.hpp"
 #include "solvers/impulse/tiles.hpp"
 #include "state/handles.hpp"
 
@@ -29,9 +30,32 @@ struct ImpulseCounters {
 /// meeting itself is filled in.
 struct FoundMeeting {
     Meeting meeting;
-    std::uint32_t tile = 0;  ///< of the impact queue, where it happens
+    std::uint32_t tile = 0;  ///< where it happens
     bool overlaps = false;   ///< by more than the slop
     double impact = kNever;  ///< s, clock of the impact if nothing deflects one of the bodies before
+};
+
+/// Lists of meetings, one a chunk of pairs where chunks run on several threads, one after the other.
+struct FoundMeetings {
+    std::vector<std::vector<FoundMeeting>> lists;  ///< more than `count` after a larger substep
+    std::size_t count = 0;
+
+    std::size_t size() const {
+        std::size_t sum = 0;
+        for (std::size_t list = 0; list < count; ++list) sum += lists[list].size();
+        return sum;
+    }
+    /// Calls fn(meeting, soon) for each: `soon` comes some places later in its list, or null. Meetings are in
+    /// the order of the plane, which memory follows if told a little ahead.
+    template <class Fn>
+    void for_each(const Fn& fn) const {
+        constexpr std::size_t kAhead = 8;
+        for (std::size_t list = 0; list < count; ++list) {
+            const std::vector<FoundMeeting>& found = lists[list];
+            for (std::size_t i = 0; i < found.size(); ++i)
+                fn(found[i], i + kAhead < found.size() ? &found[i + kAhead] : nullptr);
+        }
+    }
 };
 
 /// Solver `impulse`: every impact of a substep at its own time, in the order of time.
@@ -39,7 +63,11 @@ struct FoundMeeting {
 /// The kernels hand over the few meetings that can touch in this substep. Overlaps left from before are
 /// pushed apart, contacts at rest are held; then the earliest impact is carried out, its two bodies fly on
 /// along new paths, and what they can hit from there is foreseen anew, until nothing is left in the substep.
-/// Impacts at one instant are solved together, so that the result keeps the scene's symmetry.
+/// Impacts at one instant are solved together, so that the result keeps the scene's symmetry. In a large
+/// world that is done tile by tile (tiles.hpp): the bodies of a tile fit into the cache, while impacts in the
+/// order of time alone jump all over memory, and tiles that are not beside each other can be worked on at the
+/// same time. Across the border of two tiles an impact can so be carried out after one that it would have
+/// changed. docs/decisions/0002-impulse-solver.md and 0044-impacts-on-threads.md have the measurements.
 ///
 /// Friction: each impact's surfaces stick, or slide within Coulomb's limit (constraints/contact_law.hpp).
 /// Contacts at rest have none, so that a world with friction must have nothing that rests: no gravity.
@@ -53,7 +81,8 @@ class ImpulseSolver {
   public:
     ImpulseSolver();
 
-    Flights<Real> flights;
+    FlightColumns<Real> columns;
+    Flights<Real> flights;  ///< of these columns
     ImpulseCounters counters;
 
     /// To be called when candidates and flights of a substep are there, before the rest.
@@ -65,74 +94,55 @@ class ImpulseSolver {
 
     /// Sorts the meetings the kernels found into overlaps, contacts at rest and possible impacts, deals with
     /// the first two and foresees the third. Every meeting is listed once.
-    void settle_contacts(std::span<const FoundMeeting> found, const Handles& handles);
+    void settle_contacts(const FoundMeetings& found, const Handles& handles);
 
     /// Carries out every impact until the end of the substep.
-    void resolve_impacts();
+    void resolve_impacts(const Executor& executor);
 
     /// Rows held by contacts at rest this substep, each once: their flight is not the common one.
     const std::vector<std::int32_t>& held_rows() const { return held_; }
 
     /// Forgets contacts at rest, e.g. because bodies were moved or removed from outside.
-    void forget_contacts() { persisting_.clear(); }
+    void forget_contacts() { outcome_.resting.clear(); }
 
     std::size_t bytes() const;
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.counters, self.persisting_);
-        if constexpr (!std::is_const_v<Self>) self.flights.accelerations.clear();
+        archive(self.counters, self.outcome_.resting);
+        if constexpr (!std::is_const_v<Self>) self.columns.accelerations.clear();
     }
 
   private:
     void collect_persisting(const Handles& handles);
     void drop_duplicates_at_rest();
-    void keep_resting(Meeting m, double force);
-    void take_examined(std::span<const FoundMeeting> found);
+    void take_examined(const FoundMeetings& found);
     void foresee_pushed();
-    void settle_with_rest(std::span<const FoundMeeting> found, const Handles& handles);
+    void settle_with_rest(const FoundMeetings& found, const Handles& handles);
     void separate();
     void sort_out(Meeting m);
-    double impact_time(Meeting m, double from) const;
-    void foresee(Meeting meeting, double from);
-    double time_at_wall(std::int32_t row, const Flight& f, std::int32_t side, double from) const;
-    double time_of_pair(Meeting m, const Flight& fa, const Flight& fb, double from) const;
-    void queue(Meeting m, double from, double s);
-    void push(Meeting m, double s, std::size_t tile);
     void prefetch_meeting(Meeting m) const;
-    void prefetch_margins(Meeting m) const;
-    void prefetch_tile(std::size_t tile) const;
-    void foresee_walls(std::int32_t row, double from);
-    std::size_t keep_touchable(std::int32_t row, std::size_t found);
-    void foresee_near(std::int32_t row, double from);
-    void foresee_all_of(std::int32_t row, double from);
-    void take_simultaneous(const Impact& first);
-    void carry_out(const Impact& impact);
-    void carry_out_together();
-    void note_impact(Meeting m, const Encounter& e);
-    double restitution_of(Meeting m, const Encounter& e) const;
-    double approach_noise(Meeting m) const;
     double rest_height(Meeting m) const;
-    bool is_foreseen_rightly(const Impact& impact) const;
+    void resolve_phase(std::size_t phase, const Executor& executor);
+    void work_on_tile(std::size_t phase, std::size_t number);
+    void collect(ImpactOutcome& outcome);
+    void take_left();
 
-    ImpactQueue queue_;
+    Tiles tiles_;
+    ImpactTerms<Real> terms_;              // of this substep
+    ImpactResolver<Real> all_;             // of all of the plane
+    ImpactOutcome outcome_;                // of that, in the end of all
+    ImpactLists lists_;                    // of tiles to come
+    std::vector<ImpactOutcome> outcomes_;  // of the tiles of a phase
+    ResolverPool<Real> resolvers_;         // for them
     RestingContacts<Real> resting_;
     std::vector<Meeting> overlaps_;
     std::vector<double> separation_targets_;
     std::vector<PressedMeeting> at_rest_;
-    std::vector<RestingContact> persisting_;  // contacts that stopped bouncing, for the next substep
     std::vector<std::int32_t> held_;
-    std::vector<Impact> simultaneous_;
-    SimultaneousImpacts<Real> together_;
     std::vector<std::int32_t> moved_;
-    Column<std::int32_t> near_;
-    std::vector<std::uint32_t> deflections_;      // [rows], how often each body was deflected, ever
-    const KernelTable<Real>* kernels_ = nullptr;  // of this substep
-    const Candidates<Real>* candidates_ = nullptr;
-    double slack_ = 0;      // m, see FindImpacts::slack
-    double overshoot_ = 0;  // m, farthest that a path of this substep leaves its margin
-    Tiles tiles_;
-    std::size_t budget_ = 0;  // impacts this substep may still carry out
+    std::vector<std::uint32_t> deflections_;  // [rows], how often each body was deflected, ever
+    std::vector<std::int32_t> place_of_row_;  // [rows], all -1, for those who solve simultaneous impacts
 };
 
 extern template class ImpulseSolver<float>;

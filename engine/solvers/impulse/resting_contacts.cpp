@@ -24,6 +24,8 @@ constexpr double kStopped = 1e-12;
 
 template <class Real>
 void RestingContacts<Real>::stop(Flights<Real>& flights, const std::vector<PressedMeeting>& contacts) {
+    place_of_row_.resize(std::max(place_of_row_.size(), flights.bodies->count), -1);
+    stopped_.begin(place_of_row_);
     stopped_.clear();
     for (const PressedMeeting& contact : contacts) {
         const Encounter e = flights.encounter(contact.meeting, 0);

@@ -35,7 +35,10 @@ class RestingContacts {
     void hold(Flights<Real>& flights, std::vector<PressedMeeting>& contacts, std::vector<std::int32_t>& held);
 
     void reserve(std::size_t count) { solved_.reserve(count), stopped_.reserve(count); }
-    std::size_t bytes() const { return solved_.capacity() * sizeof(Solved) + stopped_.bytes(); }
+    std::size_t bytes() const {
+        return solved_.capacity() * sizeof(Solved) + stopped_.bytes() +
+               place_of_row_.capacity() * sizeof(std::int32_t);
+    }
 
   private:
     struct Solved {
@@ -50,6 +53,7 @@ class RestingContacts {
     void book(Flights<Real>& flights, const std::vector<PressedMeeting>& contacts);
 
     SimultaneousImpacts<Real> stopped_;
+    std::vector<std::int32_t> place_of_row_;  // for these, [rows], all -1
     std::vector<Solved> solved_;
 };
 

@@ -12,11 +12,18 @@ namespace {
 constexpr int kMostSweeps = 1000;
 constexpr double kConverged = 1e-15;
 
+constexpr std::int32_t kNoRow = -1;
+
 }  // namespace
 
-/// Index of a body among those that take part.
+/// Index of a body among those that take part. What nothing moves has one for each impact, as it changes by
+/// none of them.
 template <class Real>
 std::size_t SimultaneousImpacts<Real>::place_of(const Flights<Real>& flights, std::int32_t row) {
+    if (flights.is_immovable(row)) {
+        changes_.push_back({kNoRow, flights.record_at_rest(row)});
+        return changes_.size() - 1;
+    }
     std::int32_t& place = place_of_row_[static_cast<std::size_t>(row)];
     if (place < 0) {
         place = static_cast<std::int32_t>(changes_.size());
@@ -28,7 +35,6 @@ std::size_t SimultaneousImpacts<Real>::place_of(const Flights<Real>& flights, st
 template <class Real>
 void SimultaneousImpacts<Real>::add(const Flights<Real>& flights, Meeting m, const Encounter& e, double s,
                                     double target) {
-    if (place_of_row_.size() < flights.bodies->count) place_of_row_.resize(flights.bodies->count, -1);
     const std::size_t a = place_of(flights, m.a);
     const std::size_t b = m.with_wall() ? a : place_of(flights, m.b);
     impacts_.push_back({m, e, s, target, 0, e.normal_velocity, flights.inverse_mass_sum(m), a, b});
@@ -144,13 +150,13 @@ void SimultaneousImpacts<Real>::carry_out(Flights<Real>& flights, double negligi
         if (i.friction_impulse != 0)
             flights.books->friction += impact_work(i.friction_impulse, i.slip_bounced, slip(i));
     }
-    for (const VelocityChange& change : changes_) place_of_row_[static_cast<std::size_t>(change.row)] = -1;
+    for (const VelocityChange& change : changes_)
+        if (change.row != kNoRow) place_of_row_[static_cast<std::size_t>(change.row)] = -1;
 }
 
 template <class Real>
 std::size_t SimultaneousImpacts<Real>::bytes() const {
-    return impacts_.capacity() * sizeof(Impact) + changes_.capacity() * sizeof(VelocityChange) +
-           place_of_row_.capacity() * sizeof(std::int32_t);
+    return impacts_.capacity() * sizeof(Impact) + changes_.capacity() * sizeof(VelocityChange);
 }
 
 template class SimultaneousImpacts<float>;

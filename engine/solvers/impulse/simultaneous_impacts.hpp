@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "solvers/impulse/flights.hpp"
@@ -33,6 +34,10 @@ class SimultaneousImpacts {
     };
 
     void reserve(std::size_t count) { impacts_.reserve(count), changes_.reserve(count); }
+    /// To be called before the first impact is added, when rows have changed.
+    /// @param place_of_row  [rows], all -1, as they are again after `carry_out`. Others may use it for other
+    /// bodies.
+    void begin(std::span<std::int32_t> place_of_row) { place_of_row_ = place_of_row; }
     void clear() { impacts_.clear(), changes_.clear(), has_friction_ = false; }
 
     void add(const Flights<Real>& flights, Meeting m, const Encounter& e, double s, double target);
@@ -62,8 +67,8 @@ class SimultaneousImpacts {
 
     std::vector<Impact> impacts_;
     bool has_friction_ = false;
-    std::vector<VelocityChange> changes_;     // of every body that takes part
-    std::vector<std::int32_t> place_of_row_;  // [rows], in changes_, or -1
+    std::vector<VelocityChange> changes_;   // of every body that takes part
+    std::span<std::int32_t> place_of_row_;  // [rows], in changes_, or -1
 };
 
 extern template class SimultaneousImpacts<float>;

@@ -20,6 +20,7 @@ struct FlightsBench {
     Bodies<Real> bodies;
     Books books;
     Walls walls{.min = {-100, 0}, .max = {100, 100}, .left = false, .right = false, .top = false};
+    FlightColumns<Real> columns;
     Flights<Real> flights;
     std::vector<Disc> discs;
 
@@ -27,7 +28,8 @@ struct FlightsBench {
         : discs(std::move(of)) {
         const std::size_t count = discs.size();
         bodies.resize(count);
-        flights.motion.resize(4 * count);
+        columns.motion.resize(4 * count), columns.accelerations.resize(count);
+        flights.look_at(columns);
         for (std::size_t row = 0; row < count; ++row) {
             const Disc& disc = discs[row];
             const Real motion[] = {static_cast<Real>(disc.position.x), static_cast<Real>(disc.position.y),
@@ -43,7 +45,6 @@ struct FlightsBench {
         flights.bodies = &bodies, flights.books = &books, flights.walls = &walls;
         flights.end = flight_clock_at(dt, 0);
         flights.common_acceleration = gravity;
-        flights.accelerations.resize(count);
         for (std::size_t row = 0; row < count; ++row)
             flights.accelerations[row] = discs[row].is_immovable ? Vec2{} : gravity;
         flights.rest_speed = 0.02 * std::sqrt(length_squared(gravity)) * flights.end.s;

@@ -59,6 +59,8 @@ TEST_SUITE("solvers/simultaneous impacts") {
                        float, double) {
         constexpr double kRounding = 100 * std::numeric_limits<Real>::epsilon();
         SimultaneousImpacts<Real> together;  // one for all: it must forget
+        std::vector<std::int32_t> places(7, -1);
+        together.begin(places);
         std::size_t pushing = 0, idle = 0;
         for (unsigned seed = 1; seed <= 30; ++seed)
             for (const double restitution : {0.0, 0.6, 1.0}) {
@@ -114,6 +116,8 @@ TEST_SUITE("solvers/simultaneous impacts") {
         const double half = 0.5, side = std::sqrt(0.75);
         FlightsBench<Real> bench({{{0, 10}, {2, 0}}, {{side, 10 + half}, {}}, {{side, 10 - half}, {}}});
         SimultaneousImpacts<Real> together;
+        std::vector<std::int32_t> places(bench.discs.size(), -1);
+        together.begin(places);
         for (const std::int32_t struck : {1, 2}) {
             const Meeting m{0, struck};
             together.add(bench.flights, m, bench.flights.encounter(m, 0), 0, 2 * side);
@@ -135,6 +139,8 @@ TEST_SUITE("solvers/simultaneous impacts") {
         const double s = 0.01;
         FlightsBench<Real> bench({{{0, 10}, {3, 1}, 1}, {{1 + 4 * s, 10}, {-1, 1}, 3}});
         SimultaneousImpacts<Real> together;
+        std::vector<std::int32_t> places(bench.discs.size(), -1);
+        together.begin(places);
         const Meeting m{0, 1};
         together.add(bench.flights, m, bench.flights.encounter(m, s), s, 4);
         together.carry_out(bench.flights);
