@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cstdint>
+#include <limits>
+#include <numbers>
+
 #include "kernels/joint_arguments.hpp"
 #include "simd/forget_loads.hpp"
 #include "simd/lanes.hpp"
@@ -41,11 +45,26 @@ Pair2<F> bend_of_turn(F spin, F h) {
     return {spin * f * (c2 + c4 * q), spin * q * (s3 + s5 * q)};
 }
 
-/// cos and sin of the turn since the start of the step, up to 3 rad: by series of half of it, doubled.
+/// The same direction within half a turn, as far as the precision tells; beyond kMostTurn all are one.
+template <class Lanes, class F = typename Lanes::Batch>
+F within_half_turn(F angle) {
+    constexpr auto number = constant<Lanes>;
+    constexpr double kMostTurn = 1e6, kTurn = 2 * std::numbers::pi;  // rad
+    // 1.5 times the number from which on there are no fractions: what is added to it is rounded.
+    constexpr double kNoFraction =
+        1.5 *
+        static_cast<double>(std::uint64_t{1} << (std::numeric_limits<typename Lanes::Number>::digits - 1));
+    const F f = simd::max(simd::min(angle, number(kMostTurn)), number(-kMostTurn));
+    const F turns = (f * number(1 / kTurn) + number(kNoFraction)) - number(kNoFraction);
+    return f - turns * number(kTurn);
+}
+
+/// cos and sin of the turn since the start of the step: by series of half of it, doubled, which are exact to
+/// 1e-6 up to half a turn. Beyond that they would make arms longer, by any factor.
 template <class Lanes, class F = typename Lanes::Batch>
 Pair2<F> rotation_of(F angle) {
     constexpr auto number = constant<Lanes>;
-    const F f = angle * number(0.5), q = f * f, one(1);
+    const F f = within_half_turn<Lanes>(angle) * number(0.5), q = f * f, one(1);
     const F c = one - q * number(0.5) *
                           (one - q * number(1.0 / 12) *
                                      (one - q * number(1.0 / 30) *

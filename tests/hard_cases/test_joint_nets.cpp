@@ -203,6 +203,36 @@ TEST_SUITE("hard cases: nets of joints") {
         }
     }
 
+    TEST_CASE_TEMPLATE("a disc that turns about a hinge of a net by many turns in a step stays on it", Real,
+                       float, double) {
+        constexpr int kSide = 14;
+        constexpr double kArm = 0.15;  // m
+        for (const double spin : {300.0, 2e3, 2e4}) {
+            CAPTURE(spin);
+            Scene scene = hanging_net(kSide);
+            scene.gravity = {};
+            const BodyId disc = scene.add({.shape = Disc{0.2},
+                                           .position = {kSide / 2 + kArm, kSide / 2},
+                                           .velocity = {0, spin * kArm},
+                                           .angular_velocity = spin,
+                                           .mass = 0.1});
+            scene.add(Joint{.a = BodyId{kSide * (kSide / 2) + kSide / 2, 0},
+                            .b = disc,
+                            .kind = RevoluteJoint{.anchor = Vec2{kSide / 2, kSide / 2}}});
+            check_swept(scene);
+            BasicWorld<Real> world(scene);
+            const double start = world.ledger().energy.total();
+            double most = 0;
+            for (int i = 0; i < 120; ++i) {
+                world.step(kStep);
+                most = std::max(most, world.ledger().energy.total() / start);
+            }
+            CAPTURE(most);
+            CHECK(most < 1.001);
+            CHECK(world.profile().quarantined == 0);
+        }
+    }
+
     TEST_CASE_TEMPLATE("nets of all that lanes know give the same bits for every instruction set and thread",
                        Real, float, double) {
         Scene mixed = hanging_net(10);
