@@ -10,6 +10,7 @@ template <class Real>
 struct PathKernels {
     using Pass = PathCounts (*)(const SolvePaths<Real>&, std::size_t first, std::size_t last);
     Pass carry, warm_start, solve, sweep;
+    Pass watch, settle;  // of contacts beside the paths
 };
 
 /// The kernels of convex shapes of one instruction set in one precision. They are compiled in files of their

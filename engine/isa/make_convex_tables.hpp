@@ -3,7 +3,9 @@
 #include "isa/convex_kernels.hpp"
 #include "kernels/find_manifolds.hpp"
 #include "kernels/paths/solve_paths.hpp"
+#include "kernels/paths/sweep_paths.hpp"
 #include "kernels/paths/warm_start_paths.hpp"
+#include "kernels/paths/watch_paths.hpp"
 #include "simd/lanes.hpp"
 
 namespace carom {
@@ -14,7 +16,7 @@ constexpr ConvexKernels<Real> make_convex_kernels() {
     return {.find_manifolds = &find_manifolds<Real, Isa>,
             .find_box_manifolds = &find_box_manifolds<Real, Isa>,
             .paths = {&carry_paths<Real, Isa>, &warm_start_paths<Real, Isa>, &solve_paths<Real, Isa>,
-                      &sweep_all_paths<Real, Isa>}};
+                      &sweep_all_paths<Real, Isa>, &watch_paths<Real, Isa>, &settle_watched<Real>}};
 }
 
 /// The kernels of convex shapes, instantiated for each instruction set by its file.

@@ -70,6 +70,7 @@ struct SolvePaths {
     int most_of_slender;      // likewise, of bundles that are slender
     bool tries_pieces;        // whether paths that do not settle as a whole are solved in pieces
     int sweeps_of_unsettled;  // over paths that do not settle so either
+    std::uint32_t* closing;   // [bundles]: of contacts beside the paths, a bit for each lane that closes
     void* scratch;            // of path_scratch_bytes(longest bundle) bytes, aligned to 64
 };
 

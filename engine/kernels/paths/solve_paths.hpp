@@ -4,6 +4,7 @@
 
 #include "kernels/paths/part_paths.hpp"
 #include "kernels/paths/path_lanes.hpp"
+#include "kernels/paths/sweep_paths.hpp"
 
 // Contacts of convex shapes along paths, 16 paths side by side. A contact has two normal rows and one row of
 // friction; along a path it couples with the contact before it and the one behind it through the body between
@@ -59,50 +60,6 @@ void store_changed(typename Lanes::Number* velocity, const std::int32_t* rows, t
     record[0] += simd::select(where, s.dvx, F(0)), record[1] += simd::select(where, s.dvy, F(0));
     record[2] += simd::select(where, s.du, F(0));
     Lanes::store_rows4(velocity, rows, record);
-}
-
-/// One Gauss-Seidel sweep along the paths, of the lanes in `where` alone.
-/// @return the largest change of an impulse, in m/s
-template <class Lanes, class Real>
-void sweep_paths(const PathBatch<Real>& p, bool is_forward, typename Lanes::Mask where) {
-    using F = typename Lanes::Batch;
-    const SolvePaths<Real>& k = p.k;
-    const F zero(0);
-    for (std::size_t step = 0; step < p.length; ++step) {
-        const std::size_t i = is_forward ? step : p.length - 1 - step;
-        PathLink<Real>& link = p.link[i];
-        const std::int32_t *near = p.near_rows(i), *far = p.far_rows(i);
-        const LinkLanes<Lanes, Real> l(link, p.lane);
-        PathBody<Lanes> a{Lanes::load_rows4(k.velocity, near)}, b{Lanes::load_rows4(k.velocity, far)};
-        const LinkMass<F> mass(l, a.inverse_mass(), a.inverse_rim_mass(), b.inverse_mass(),
-                               b.inverse_rim_mass());
-        F v1, v2, vt;
-        l.relative(b.record[0] - a.record[0], b.record[1] - a.record[1], a.record[2], b.record[2], v1, v2,
-                   vt);
-        const F old1 = Lanes::load(link.normal1 + p.lane), old2 = Lanes::load(link.normal2 + p.lane),
-                old_t = Lanes::load(link.tangent + p.lane);
-        F new1, new2;
-        solve_two_normals(mass.k11, mass.k12, mass.k22,
-                          v1 - Lanes::load(link.floor1 + p.lane) - mass.k11 * old1 - mass.k12 * old2,
-                          v2 - Lanes::load(link.floor2 + p.lane) - mass.k12 * old1 - mass.k22 * old2, new1,
-                          new2);
-        // Lanes of shorter paths have no mass: what is no number there must not be kept.
-        const auto moves = where & (mass.k11 > zero);
-        new1 = simd::select(moves, new1, old1), new2 = simd::select(moves, new2, old2);
-        const F add1 = new1 - old1, add2 = new2 - old2;
-        const F vt_now = vt + mass.k1t * add1 + mass.k2t * add2;
-        const F limit = Lanes::load(link.friction + p.lane) * (new1 + new2);
-        const F new_t =
-            simd::select(moves, simd::min(simd::max(old_t - vt_now / mass.ktt, -limit), limit), old_t);
-        const F add_t = new_t - old_t;
-        F jx, jy;
-        l.impulse(add1 + add2, add_t, jx, jy);
-        a.apply(F(-1), jx, jy, l.near1 * add1 + l.near2 * add2 + l.near_t * add_t);
-        b.apply(F(1), jx, jy, l.far1 * add1 + l.far2 * add2 + l.far_t * add_t);
-        Lanes::store_rows4(k.velocity, near, a.record), Lanes::store_rows4(k.velocity, far, b.record);
-        Lanes::store(link.normal1 + p.lane, new1), Lanes::store(link.normal2 + p.lane, new2);
-        Lanes::store(link.tangent + p.lane, new_t);
-    }
 }
 
 /// Relative velocities of the links and a first guess of the active set.
@@ -461,17 +418,6 @@ PathCounts solve_paths(const SolvePaths<Real>& arguments, std::size_t first, std
         for (int i = 0; i < k.sweeps_of_unsettled; ++i) sweep_paths<Lanes>(p, i % 2 == 0, bad);
     });
     return counts;
-}
-
-/// The last pass of a substep: a sweep over all links.
-template <class Real, class Isa>
-PathCounts sweep_all_paths(const SolvePaths<Real>& arguments, std::size_t first, std::size_t last) {
-    using Lanes = simd::Lanes<Real, Isa>;
-    using F = typename Lanes::Batch;
-    const SolvePaths<Real> k = arguments;  // a copy: no store can change it
-    for_each_path_batch<Lanes>(k, first, last,
-                               [&](const PathBatch<Real>& p) { sweep_paths<Lanes>(p, true, F(0) <= F(0)); });
-    return {};
 }
 
 }  // namespace

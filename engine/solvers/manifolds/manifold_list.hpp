@@ -15,19 +15,28 @@ namespace carom {
 /// A contact whose normal turns by no more than this keeps its impulses: cosine of 25 degrees.
 inline constexpr double kSameNormal = 0.9;
 
+/// Bits of ManifoldMemory::slot_kind: the path goes from b to a; nothing moved b.
+inline constexpr std::int32_t kTurnedSlot = 1, kStillSlot = 2;
+
 /// What lasts of a contact of convex shapes from step to step.
 template <class Real>
 struct ManifoldMemory {
     Real normal_x = 0, normal_y = 0;             // of the step that the impulses are of
     Real normal1 = 0, normal2 = 0, tangent = 0;  // N s, of a substep
     Real separation1 = 0, separation2 = 0;       // m, at the start of the step, of a contact carried on
+    // Where the last cut has put the contact, while paths are wild: PathCut::Slot.
+    std::int32_t slot = -1, slot_kind = 0;
 
     bool is_loaded() const { return normal1 + normal2 > 0; }
+    /// Forgets all but its slot.
+    void forget_impulses() { *this = {.slot = slot, .slot_kind = slot_kind}; }
     void rescale(Real factor) { normal1 *= factor, normal2 *= factor, tangent *= factor; }
     /// The same contact seen from its other body: the normal turns round, and with it the order of the
     /// points.
     ManifoldMemory reversed() const {
-        return {-normal_x, -normal_y, normal2, normal1, tangent, separation2, separation1};
+        return {-normal_x,   -normal_y, normal2,
+                normal1,     tangent,   separation2,
+                separation1, slot,      slot_kind ^ kTurnedSlot};
     }
 };
 

@@ -64,7 +64,7 @@ void Manifolds<Real>::renew(const WorldState<Real>& world, const Candidates<Real
     if (world.bodies.asleep != asleep_then_)
         for (const KeptManifold<Real>& kept : asleep_) {
             ManifoldList<Real>& list = kept.is_surface ? surfaces_ : old_;
-            list.add(0, 0, kept.name), list.memory.back() = kept.memory;
+            list.add(0, 0, kept.name), list.memory.back() = kept.memory, list.memory.back().slot = -1;
         }
     items_.list(world);
     for (std::size_t p = 0; p < candidates.pair_count(); ++p)
@@ -152,7 +152,7 @@ void Manifolds<Real>::add(const WorldState<Real>& world, const Candidates<Real>&
     for (const auto& pair : candidates.new_pairs()) list_pair(world, pair.a, pair.b);
 }
 
-/// Files the contacts that carry something by their body a.
+/// Files the contacts that carry something, or have a place along a path, by their body a.
 template <class Real>
 void Manifolds<Real>::file_by_slot(const ManifoldList<Real>& old) {
     std::uint32_t slots = 0;
@@ -160,7 +160,7 @@ void Manifolds<Real>::file_by_slot(const ManifoldList<Real>& old) {
     first_of_slot_.assign(slots, -1);
     next_of_slot_.resize(old.count());
     for (std::size_t i = 0; i < old.count(); ++i) {
-        if (!old.memory[i].is_loaded()) continue;
+        if (!old.memory[i].is_loaded() && old.memory[i].slot < 0) continue;
         std::int32_t& first = first_of_slot_[old.names[i].a.index];
         next_of_slot_[i] = first, first = static_cast<std::int32_t>(i);
     }

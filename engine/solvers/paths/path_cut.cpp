@@ -8,8 +8,6 @@
 #include <limits>
 #include <utility>
 
-#include "kernels/paths/path_arguments.hpp"
-
 namespace carom {
 namespace {
 
@@ -82,7 +80,8 @@ void PathCut::list_contacts_of_bodies(std::span<const ContactLink> contacts, std
     const auto for_each_side = [&](const auto& fn) {
         for (std::size_t i = 0; i < contacts.size(); ++i)
             for (const std::int32_t row : {contacts[i].a, contacts[i].b})
-                if (row != ContactLink::kNothing) fn(static_cast<std::size_t>(row), i);
+                if (row != ContactLink::kNothing && !contacts[i].is_watched)
+                    fn(static_cast<std::size_t>(row), i);
     };
     for_each_side([&](std::size_t row, std::size_t) { ++first_at_[row + 2]; });
     for (std::size_t row = 2; row < first_at_.size(); ++row) first_at_[row] += first_at_[row - 1];
@@ -162,7 +161,8 @@ void PathCut::join_at(std::span<const ContactLink> contacts, std::int32_t row) {
 }
 
 void PathCut::walk(std::span<const ContactLink> contacts, std::size_t rows, std::size_t longest) {
-    is_seen_.assign(contacts.size(), 0);
+    is_seen_.resize(contacts.size());
+    for (std::size_t i = 0; i < contacts.size(); ++i) is_seen_[i] = contacts[i].is_watched;
     piece_of_row_.assign(rows, 0);
     sequence_.clear(), pieces_.clear();
     for (const bool is_loop : {false, true})
@@ -280,6 +280,61 @@ void PathCut::lay_out(std::span<const ContactLink> contacts) {
         lay_out_colour(contacts, first, last);
         first_bundle_.push_back(bundles());
     }
+    watched_.clear();
+    for (std::uint32_t i = 0; i < contacts.size(); ++i)
+        if (contacts[i].is_watched) watched_.push_back(i);
+    lay_out_watched();
+}
+
+/// Bundles of one link for the contacts beside the paths, in their order.
+void PathCut::lay_out_watched() {
+    for (std::size_t k = 0; k < watched_.size(); ++k) {
+        const auto lane = static_cast<std::uint8_t>(k % kPathLanes);
+        if (lane == 0) {
+            first_contacts_.resize(first_contacts_.size() + kPathLanes, -1), is_slender_.push_back(0);
+            first_link_.push_back(first_link_.back() + 1);
+        }
+        const std::size_t bundle = is_slender_.size() - 1;
+        places_[watched_[k]] = {static_cast<std::uint32_t>(first_link_[bundle]),
+                                static_cast<std::uint32_t>(bundle), lane, false};
+        first_contacts_[kPathLanes * bundle + lane] = static_cast<std::int32_t>(watched_[k]);
+    }
+    if (!watched_.empty()) longest_ = std::max<std::size_t>(longest_, 1);
+}
+
+void PathCut::keep(std::span<const Slot> slots) {
+    const std::size_t kept = first_watched();
+    first_link_.resize(kept + 1), is_slender_.resize(kept), first_contacts_.resize(kPathLanes * kept);
+    bundle_of_link_.resize(links());
+    for (std::uint32_t bundle = 0; bundle < kept; ++bundle)
+        for (std::size_t link = first_link_[bundle]; link < first_link_[bundle + 1]; ++link)
+            bundle_of_link_[link] = bundle;
+    contact_of_slot_.assign(kPathLanes * links(), -1);
+    places_.resize(slots.size()), watched_.clear();
+    for (std::uint32_t i = 0; i < slots.size(); ++i) {
+        const auto slot = static_cast<std::uint32_t>(slots[i].number);
+        if (slots[i].number < 0 || contact_of_slot_[slot] >= 0) {  // none, or another's
+            watched_.push_back(i);
+            continue;
+        }
+        const std::uint32_t link = slot / kPathLanes;
+        places_[i] = {link, bundle_of_link_[link], static_cast<std::uint8_t>(slot % kPathLanes),
+                      slots[i].is_reversed};
+        contact_of_slot_[slot] = static_cast<std::int32_t>(i);
+    }
+    jumps_.clear();
+    for (std::size_t bundle = 0; bundle < kept; ++bundle) {
+        const std::size_t first = kPathLanes * first_link_[bundle],
+                          last = kPathLanes * first_link_[bundle + 1];
+        std::copy_n(&contact_of_slot_[first], kPathLanes, &first_contacts_[kPathLanes * bundle]);
+        for (std::size_t slot = first; slot + kPathLanes < last; ++slot) {
+            const std::int32_t next = contact_of_slot_[slot + kPathLanes];
+            if (contact_of_slot_[slot] < 0 && next >= 0)
+                jumps_.push_back({static_cast<std::uint32_t>(slot / kPathLanes),
+                                  static_cast<std::uint8_t>(slot % kPathLanes), next});
+        }
+    }
+    lay_out_watched();
 }
 
 /// Bundles of the pieces order_[first] ... order_[last], which are in order of their length. Each begins with
@@ -353,7 +408,8 @@ std::size_t PathCut::bytes() const {
     return of(first_at_) + of(contact_at_) + of(joined_) + of(is_seen_) + of(piece_of_row_) + of(sequence_) +
            of(pieces_) + of(coloured_) + of(used_) + of(loaded_count_) + of(order_) + of(count_) +
            of(places_) + of(first_link_) + of(first_bundle_) + of(first_contacts_) + of(jumps_) +
-           of(is_slender_) + of(next_of_length_) + of(end_of_length_);
+           of(is_slender_) + of(watched_) + of(contact_of_slot_) + of(bundle_of_link_) + of(next_of_length_) +
+           of(end_of_length_);
 }
 
 }  // namespace carom

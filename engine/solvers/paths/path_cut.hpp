@@ -4,14 +4,17 @@
 #include <span>
 #include <vector>
 
+#include "kernels/paths/path_arguments.hpp"
+
 namespace carom {
 
 /// A contact as the cut into paths sees it: a link between two bodies.
 struct ContactLink {
-    std::int32_t a, b;       ///< rows; kNothing where nothing moves the body. Not both of them
-    float arm_a_x, arm_a_y;  ///< m, from the centre of mass of a to where the contact pushes
-    float arm_b_x, arm_b_y;  ///< m, from that of b
-    bool is_loaded;          ///< pushes at present
+    std::int32_t a, b;        ///< rows; kNothing where nothing moves the body. Not both of them
+    float arm_a_x, arm_a_y;   ///< m, from the centre of mass of a to where the contact pushes
+    float arm_b_x, arm_b_y;   ///< m, from that of b
+    bool is_loaded;           ///< pushes at present
+    bool is_watched = false;  ///< stands beside the paths
 
     static constexpr std::int32_t kNothing = -1;
 };
@@ -23,6 +26,10 @@ struct ContactLink {
 /// colour share no body that moves; kPathLanes paths of a colour, about as long as each other, are a bundle.
 /// Shorter paths stand behind those that end before their bundle does, after a link without a contact, so
 /// that few places are empty. What finds no colour is alone in a bundle of a colour of its own.
+///
+/// Contacts that are expected to carry nothing stand beside the paths, behind them: kPathLanes are a bundle
+/// of one link, in no colour. Where contacts come and go, a cut is kept for some steps: those that come stand
+/// beside it, those that go leave a link without a contact.
 ///
 /// Cost: about 100 ns a contact, on one thread. docs/decisions/0027-paths-of-contacts.md.
 class PathCut {
@@ -39,7 +46,13 @@ class PathCut {
         bool is_reversed;  ///< the path goes from b to a
     };
 
-    /// A link without a contact between two paths of a lane: it leads to where the second begins.
+    /// A place along a path, in the bundles of colours, that does not depend on the order of contacts.
+    struct Slot {
+        std::int32_t number;  ///< kPathLanes times the link, plus the lane; negative: none
+        bool is_reversed;
+    };
+
+    /// A link without a contact before one that has one: it leads to where that begins.
     struct Jump {
         std::uint32_t link;
         std::uint8_t lane;
@@ -50,7 +63,17 @@ class PathCut {
     /// @param longest  contacts in a path, >= 1; those that are not slender have at most 64
     void cut(std::span<const ContactLink> contacts, std::size_t rows, std::size_t longest);
 
-    /// The place of each contact, in the order of `cut`.
+    /// Keeps the paths for contacts of which some are others than in `cut`, and in another order.
+    /// @param slots  of contacts, as `slot_of` gave them; those without stand beside the paths
+    /// Cost: about 3 ns a link and lane.
+    void keep(std::span<const Slot> slots);
+    Slot slot_of(std::size_t contact) const {
+        const Place& place = places_[contact];
+        if (place.bundle >= first_watched()) return {-1, false};
+        return {static_cast<std::int32_t>(place.link * kPathLanes + place.lane), place.is_reversed};
+    }
+
+    /// The place of each contact, in the order of `cut` or `keep`.
     std::span<const Place> places() const { return places_; }
     std::size_t bundles() const { return first_link_.size() - 1; }
     std::size_t links() const { return first_link_.back(); }
@@ -59,7 +82,11 @@ class PathCut {
     std::span<const std::size_t> first_link() const { return first_link_; }
     /// Bundles of colour c: first_bundle()[c] ... first_bundle()[c + 1].
     std::span<const std::size_t> first_bundle() const { return first_bundle_; }
-    /// The contact where the first path of each lane of each bundle begins; -1: there is no path.
+    /// The first bundle of contacts beside the paths.
+    std::size_t first_watched() const { return first_bundle_.back(); }
+    /// The contacts beside the paths, in their order.
+    std::span<const std::uint32_t> watched() const { return watched_; }
+    /// The contact in the first link of each lane of each bundle; -1: there is none.
     std::span<const std::int32_t> first_contacts() const { return first_contacts_; }
     std::span<const Jump> jumps() const { return jumps_; }
     /// A bundle has 1 if one of its paths is slender, as a tower is, else 0: no load leads to more than
@@ -74,7 +101,7 @@ class PathCut {
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
         archive(self.places_, self.first_link_, self.first_bundle_, self.first_contacts_, self.jumps_,
-                self.is_slender_, self.longest_, self.paths_);
+                self.is_slender_, self.watched_, self.longest_, self.paths_);
     }
 
   private:
@@ -105,6 +132,7 @@ class PathCut {
     void colour(std::span<const ContactLink> contacts, std::size_t rows);
     void lay_out(std::span<const ContactLink> contacts);
     void lay_out_colour(std::span<const ContactLink> contacts, std::size_t first, std::size_t last);
+    void lay_out_watched();
     void put(std::span<const ContactLink> contacts, const Piece& piece, std::uint8_t lane, std::size_t link);
     bool is_slender(std::span<const ContactLink> contacts, const Piece& piece) const;
     bool colours_share_no_body(std::span<const ContactLink> contacts, std::size_t rows) const;
@@ -124,6 +152,9 @@ class PathCut {
     std::vector<std::int32_t> first_contacts_;
     std::vector<Jump> jumps_;
     std::vector<std::uint8_t> is_slender_;
+    std::vector<std::uint32_t> watched_;         // contacts beside the paths
+    std::vector<std::int32_t> contact_of_slot_;  // -1: none
+    std::vector<std::uint32_t> bundle_of_link_;
     std::vector<std::size_t> next_of_length_,
         end_of_length_;  // in order_: pieces of a colour not laid out yet
     std::size_t longest_ = 0, paths_ = 0;

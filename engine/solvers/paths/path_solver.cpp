@@ -19,30 +19,20 @@ constexpr double kRecovery = 0.1;
 constexpr double kSlop = 0.015, kSlowShare = 0.1;
 /// Largest displacement of that kind, in thicknesses a second.
 constexpr double kPushThicknesses = 6;
-/// How paths are solved: contacts in a path, since what is longer is cut; iterations of the active set, at
-/// most, of paths that alone hold their bodies and of others; and whether those that do not settle are solved
-/// in pieces.
+/// How paths are solved: iterations of the active set, at most, of paths that alone hold their bodies and of
+/// others; and whether those that do not settle are solved in pieces.
 struct PathPlan {
-    std::size_t longest;
     int most_of_slender, most;
     bool tries_pieces;
 };
-/// By PathMood. While many paths do not settle they are kept short: a long one that fails has done more in
-/// vain. Where contacts come and go, exact solutions are soon out of date.
+/// By PathMood. Where contacts come and go, exact solutions are soon out of date.
 /// docs/decisions/0042-contacts-that-cannot-close.md has the measurements of the last.
-constexpr PathPlan kPlans[] = {{128, 40, 10, true}, {16, 8, 8, true}, {12, 4, 4, false}};
-const PathPlan& plan_of(PathMood mood) {
-    return kPlans[static_cast<std::size_t>(mood)];
-}
-/// Share of paths that do not settle, below which paths are calm and above which they are restless.
-constexpr double kCalm = 0.001, kRestless = 0.01;
-/// Share of contacts that come or go in a step, above which paths are wild and below which no longer.
-constexpr double kWild = 0.005, kTame = 0.002;
-/// Fewer contacts have long paths from the start; more begin with short ones, as heaps do that still settle.
-constexpr std::size_t kFewContacts = 1024;
+constexpr PathPlan kPlans[] = {{40, 10, true}, {8, 8, true}, {4, 4, false}};
 /// Iterations of the active set that change all of its rows that are wrong; Gauss-Seidel sweeps over paths
 /// that do not settle.
 constexpr int kBoldIterations = 4, kSweepsOfUnsettled = 4;
+/// Gauss-Seidel sweeps over contacts beside the paths, behind each solve of the paths.
+constexpr int kSweepsOfWatched = 2;
 /// By which a contact may miss its law, in shares of what gravity adds to a speed in a substep.
 constexpr double kTolerance = 2e-3;
 /// Paths whose contacts all were slower than this may rest for a substep, in shares of the same,
@@ -51,8 +41,6 @@ constexpr double kRestingSpeed = 0.25;
 constexpr double kRestingShare = 1e-4;
 /// Two points whose rows are alike by more than this are solved as one: det K / (k11 k22).
 constexpr double kLeastDeterminant = 1e-3;
-/// Paths are cut anew after so many steps, since loads have changed.
-constexpr int kStepsOfCut = 30;
 
 /// Turns of rolling resistance and contacts in a substep, where there is any: a disc that rolls without slip
 /// loses a third of what is wrong in each.
@@ -60,7 +48,7 @@ constexpr int kTurnsOfRolling = 3;
 
 // ns on one thread, for the executor.
 constexpr double kNanosecondsToFill = 10, kNanosecondsToSolve = 10;
-constexpr std::size_t kBundlesPerTask = 4, kContactsPerTask = 256;
+constexpr std::size_t kBundlesPerTask = 4, kContactsPerTask = 256, kWatchedPerTask = 64;
 /// Each has room of its own in `scratch`.
 constexpr std::size_t kMostTasksOfColour = 16;
 
@@ -74,54 +62,9 @@ void PathSolver<Real>::find(const WorldState<Real>& world, const EdgeCandidates<
     const bool is_same = manifolds.find(world, edges, terms, near, loops);
     counters.contacts = static_cast<std::int64_t>(manifolds.live().size());
     if (manifolds.live().empty()) return rolling_.clear();
-    judge_mood();
-    if (!is_same || ++since_cut_ >= kStepsOfCut || mood_of_cut_ != mood_) cut_paths(world);
+    choose_paths(world, terms.dt, is_same);
     lay_out(world, edges, terms, records, loops);
     if (world.effects.rolling_resistance) rolling_.find(world, manifolds, row_of_far_);
-}
-
-/// Judges by the last step whether paths settle, and by this one whether contacts come and go.
-template <class Real>
-void PathSolver<Real>::judge_mood() {
-    const double share =
-        solved_ > 0 ? static_cast<double>(counters.unsettled) / static_cast<double>(solved_) : 0;
-    const bool was_solved = std::exchange(solved_, 0) > 0;
-    const double changed = manifolds.changed_share();
-    if (changed > (mood_ == PathMood::wild ? kTame : kWild) || (changed < 0 && mood_ == PathMood::wild))
-        mood_ = PathMood::wild;
-    else if (!was_solved)
-        mood_ = manifolds.live().size() < kFewContacts ? PathMood::calm : PathMood::restless;
-    else
-        mood_ = share < (mood_ == PathMood::calm ? kRestless : kCalm) ? PathMood::calm : PathMood::restless;
-}
-
-template <class Real>
-void PathSolver<Real>::cut_paths(const WorldState<Real>& world) {
-    const Bodies<Real>& bodies = world.bodies;
-    contact_links_.clear();
-    for (const std::int32_t contact : manifolds.live()) {
-        const ManifoldList<Real>& list = manifolds.list_of(contact);
-        const std::size_t i = Manifolds<Real>::place_of(contact);
-        const ManifoldMemory<Real>& memory = list.memory[i];
-        const Real sum = memory.normal1 + memory.normal2;
-        const bool has_two = list.separation2[i] < static_cast<Real>(kNoPoint);
-        const Real share = sum > 0 ? memory.normal2 / sum : has_two ? Real(0.5) : Real(0);
-        const auto arm = [&](Real lever1, Real lever2, Real lever_t, float& x, float& y) {
-            const Real lever = lever1 + share * (lever2 - lever1);  // r x n = -(r . t)
-            x = static_cast<float>(lever_t * list.normal_x[i] + lever * list.normal_y[i]);
-            y = static_cast<float>(lever_t * list.normal_y[i] - lever * list.normal_x[i]);
-        };
-        ContactLink link{list.a[i], list.b[i], 0, 0, 0, 0, sum > 0};
-        const auto b = static_cast<std::size_t>(link.b);
-        if (link.b < 0 || b >= bodies.count || bodies.is_immovable(b)) link.b = ContactLink::kNothing;
-        arm(list.lever_a1[i], list.lever_a2[i], list.lever_a_t[i], link.arm_a_x, link.arm_a_y);
-        arm(list.lever_b1[i], list.lever_b2[i], list.lever_b_t[i], link.arm_b_x, link.arm_b_y);
-        contact_links_.push_back(link);
-    }
-    mood_of_cut_ = mood_;
-    cut_.cut(contact_links_, bodies.moving(), plan_of(mood_).longest);
-    since_cut_ = 0, ++counters.cuts;
-    links_hold_ = false;
 }
 
 /// The links of all contacts: of those that are carried on, moved by what their bodies have come, and of
@@ -169,6 +112,7 @@ void PathSolver<Real>::name_rows(const WorldState<Real>& world, const BodyRecord
         heads_[lane] =
             first >= 0 ? head_row(first) : static_cast<std::int32_t>(first_still_row_ + lane / kPathLanes);
     }
+    closing_.resize(cut_.bundles());
     scratch_.resize(path_scratch_bytes(cut_.longest()) * kMostTasksOfColour);
 }
 
@@ -221,6 +165,7 @@ void PathSolver<Real>::carry_links(const SubstepTerms& terms, BodyRecords<Real>&
     SolvePaths<Real> k = arguments(terms, records);
     k.come = manifolds.poses().come(records.rows()), k.turned = manifolds.poses().turned();
     run(loops.kernels->convex->paths.carry, k, loops);
+    loops.kernels->convex->paths.carry(k, cut_.first_watched(), cut_.bundles());
 }
 
 /// Velocities of kinematic bodies where they touch.
@@ -266,7 +211,7 @@ void PathSolver<Real>::fill_link(const WorldState<Real>& world, const BodyRecord
          s2 = found ? list.separation2[i] : memory.separation2;
     if (!(memory.normal_x * list.normal_x[i] + memory.normal_y * list.normal_y[i] >
           static_cast<Real>(kSameNormal)))
-        memory = {};
+        memory.forget_impulses();
     memory.normal_x = list.normal_x[i], memory.normal_y = list.normal_y[i];
     // Two points that no impulse can tell apart are one: the deeper.
     const auto mass = [&](std::size_t row, Real& w, Real& w2) {
@@ -314,10 +259,11 @@ SolvePaths<Real> PathSolver<Real>::arguments(const SubstepTerms& terms, BodyReco
     k.recovery = static_cast<Real>(kRecovery), k.push = static_cast<Real>(kPushThicknesses);
     k.slop = static_cast<Real>(kSlop), k.slow = static_cast<Real>(kSlowShare * terms.fall_speed());
     k.velocity_tolerance = static_cast<Real>(kTolerance * terms.fall_speed());
+    k.closing = closing_.data();
     k.restless = restless_.data(), k.is_slender = cut_.is_slender().data(), k.resting_speed = 0;
     k.resting_thickness =
         static_cast<Real>(kRestingSpeed * terms.fall_speed() * terms.substep_dt / kRestingShare);
-    const PathPlan& plan = plan_of(mood_of_cut_);
+    const PathPlan& plan = kPlans[static_cast<std::size_t>(mood_of_cut_)];
     k.bold_iterations = kBoldIterations;
     k.most_iterations = plan.most, k.most_of_slender = plan.most_of_slender;
     k.tries_pieces = plan.tries_pieces, k.sweeps_of_unsettled = kSweepsOfUnsettled;
@@ -350,12 +296,34 @@ void PathSolver<Real>::run(Pass pass, SolvePaths<Real> arguments, const StepLoop
     }
 }
 
+/// Contacts beside the paths: all are looked at, those that close are solved one by one.
+template <class Real>
+void PathSolver<Real>::solve_watched(const SolvePaths<Real>& arguments, const StepLoops<Real>& loops) {
+    const std::size_t begin = cut_.first_watched(), end = cut_.bundles();
+    const PathKernels<Real>& kernels = loops.kernels->convex->paths;
+    for (int sweep = 0; sweep < kSweepsOfWatched && begin < end; ++sweep) {
+        loops.executor->for_each_chunk(end - begin, kWatchedPerTask, kNanosecondsToSolve * kPathLanes,
+                                       [&](std::size_t, std::size_t first, std::size_t last) {
+                                           kernels.watch(arguments, begin + first, begin + last);
+                                       });
+        kernels.settle(arguments, begin, end);
+    }
+}
+
 template <class Real>
 void PathSolver<Real>::warm_start(const SubstepTerms& terms, BodyRecords<Real>& records,
                                   const StepLoops<Real>& loops) {
     counters.unsettled = 0;
-    if (!manifolds.live().empty())
+    if (!manifolds.live().empty()) {
         run(loops.kernels->convex->paths.warm_start, arguments(terms, records), loops);
+        for (const std::uint32_t n : cut_.watched()) {
+            const PathCut::Place place = cut_.places()[n];
+            const PathLink<Real>& link = links_[place.link];
+            if (link.normal1[place.lane] + link.normal2[place.lane] > 0)
+                give(link, place.lane, static_cast<std::size_t>(near_row(place)),
+                     static_cast<std::size_t>(link.body[place.lane]), 1, records);
+        }
+    }
     rolling_.warm_start(records);
 }
 
@@ -370,6 +338,7 @@ void PathSolver<Real>::solve(const SubstepTerms& terms, BodyRecords<Real>& recor
     for (const Hidden& h : hidden_)
         links_[h.link].separation1[h.lane] = links_[h.link].separation2[h.lane] = none;
     for (int pass = 0; pass < passes; ++pass) run(kernels.solve, k, loops);
+    solve_watched(k, loops);
     solved_ += static_cast<std::int64_t>(cut_.paths()) * passes;
     for (int turn = 0; turn < kTurnsOfRolling && !rolling_.empty(); ++turn) {
         rolling_.solve(records, [&](std::size_t n) {
@@ -378,7 +347,10 @@ void PathSolver<Real>::solve(const SubstepTerms& terms, BodyRecords<Real>& recor
         });
         run(kernels.solve, k, loops);
     }
-    if (sweeps) run(kernels.sweep, k, loops);
+    if (sweeps) {
+        run(kernels.sweep, k, loops);
+        solve_watched(k, loops);
+    }
     for (const Hidden& h : hidden_) {
         links_[h.link].separation1[h.lane] = h.separation1;
         links_[h.link].separation2[h.lane] = h.separation2;
@@ -397,6 +369,23 @@ void PathSolver<Real>::advance(const SubstepTerms& terms, BodyRecords<Real>& rec
     }
 }
 
+/// Gives the bodies of a contact its impulses.
+template <class Real>
+void PathSolver<Real>::give(const PathLink<Real>& link, std::size_t lane, std::size_t near, std::size_t far,
+                            Real sign, BodyRecords<Real>& records) {
+    const Real normal1 = sign * link.normal1[lane], normal2 = sign * link.normal2[lane],
+               tangent = sign * link.tangent[lane], normal = normal1 + normal2;
+    const Real jx = normal * link.normal_x[lane] - tangent * link.normal_y[lane],
+               jy = normal * link.normal_y[lane] + tangent * link.normal_x[lane];
+    const auto change = [&](std::size_t row, Real side, Real spin) {
+        Real* record = &records.velocity[4 * row];
+        const Real w = side * std::fabs(record[3]), w2 = 2 * side * std::max(record[3], Real(0));
+        record[0] += w * jx, record[1] += w * jy, record[2] += w2 * spin;
+    };
+    change(near, -1, link.near1[lane] * normal1 + link.near2[lane] * normal2 + link.near_t[lane] * tangent);
+    change(far, 1, link.far1[lane] * normal1 + link.far2[lane] * normal2 + link.far_t[lane] * tangent);
+}
+
 template <class Real>
 void PathSolver<Real>::take_back(const std::vector<std::uint8_t>& is_of, BodyRecords<Real>& records) {
     if (manifolds.live().empty()) return;  // then the cut is that of an earlier step
@@ -406,18 +395,8 @@ void PathSolver<Real>::take_back(const std::vector<std::uint8_t>& is_of, BodyRec
         const auto near = static_cast<std::size_t>(near_row(place)),
                    far = static_cast<std::size_t>(link.body[lane]);
         if ((is_of[near] | is_of[far]) == 0) continue;
-        const Real taken1 = std::exchange(link.normal1[lane], Real(0)),
-                   taken2 = std::exchange(link.normal2[lane], Real(0)),
-                   taken_t = std::exchange(link.tangent[lane], Real(0)), normal = taken1 + taken2;
-        const Real jx = normal * link.normal_x[lane] - taken_t * link.normal_y[lane],
-                   jy = normal * link.normal_y[lane] + taken_t * link.normal_x[lane];
-        const auto give = [&](std::size_t row, Real sign, Real spin) {
-            Real* record = &records.velocity[4 * row];
-            const Real w = sign * std::fabs(record[3]), w2 = 2 * sign * std::max(record[3], Real(0));
-            record[0] += w * jx, record[1] += w * jy, record[2] += w2 * spin;
-        };
-        give(near, 1, link.near1[lane] * taken1 + link.near2[lane] * taken2 + link.near_t[lane] * taken_t);
-        give(far, -1, link.far1[lane] * taken1 + link.far2[lane] * taken2 + link.far_t[lane] * taken_t);
+        give(link, lane, near, far, -1, records);
+        link.normal1[lane] = link.normal2[lane] = link.tangent[lane] = 0;
     }
 }
 
@@ -444,8 +423,8 @@ template <class Real>
 std::size_t PathSolver<Real>::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
     return manifolds.bytes() + rolling_.bytes() + of(row_of_far_) + of(with_kinematic_) + of(contact_links_) +
-           cut_.bytes() + links_.bytes() + heads_.bytes() + restless_.bytes() + scratch_.bytes() +
-           of(hidden_);
+           of(slots_) + closing_.bytes() + cut_.bytes() + links_.bytes() + heads_.bytes() +
+           restless_.bytes() + scratch_.bytes() + of(hidden_);
 }
 
 template class PathSolver<float>;

@@ -65,6 +65,8 @@ class PathSolver {
                            contact.link.separation1[contact.lane], contact.link.separation2[contact.lane]});
     }
     void unhide() { hidden_.clear(); }
+    /// To be called when bodies may have become others, that move or do not: paths are cut anew.
+    void forget_cut() { is_cut_forgotten_ = true; }
     /// Moves the surfaces of kinematic bodies on by a substep.
     void advance(const SubstepTerms& terms, BodyRecords<Real>& records);
     const PathRolling<Real>& rolling() const { return rolling_; }
@@ -101,7 +103,7 @@ class PathSolver {
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
         archive(self.counters, self.manifolds, self.rolling_, self.cut_, self.since_cut_, self.solved_,
-                self.mood_, self.mood_of_cut_);
+                self.mood_, self.mood_of_cut_, self.is_cut_forgotten_);
         if constexpr (!std::is_const_v<Self>) self.links_hold_ = false;
     }
 
@@ -128,6 +130,7 @@ class PathSolver {
 
     SolvePaths<Real> arguments(const SubstepTerms& terms, BodyRecords<Real>& records);
     void run(Pass pass, SolvePaths<Real> arguments, const StepLoops<Real>& loops);
+    void choose_paths(const WorldState<Real>& world, double dt, bool is_same);
     void judge_mood();
     /// Row of the body where a link begins.
     std::int32_t near_row(PathCut::Place place) const {
@@ -135,7 +138,12 @@ class PathSolver {
         return is_first ? heads_[kPathLanes * place.bundle + place.lane]
                         : links_[place.link - 1].body[place.lane];
     }
-    void cut_paths(const WorldState<Real>& world);
+    void cut_paths(const WorldState<Real>& world, double dt);
+    void keep_paths(const WorldState<Real>& world);
+    bool stays_apart(const WorldState<Real>& world, std::int32_t contact, double dt) const;
+    static void give(const PathLink<Real>& link, std::size_t lane, std::size_t near, std::size_t far,
+                     Real sign, BodyRecords<Real>& records);
+    void solve_watched(const SolvePaths<Real>& arguments, const StepLoops<Real>& loops);
     void lay_out(const WorldState<Real>& world, const EdgeCandidates<Real>& edges, const SubstepTerms& terms,
                  BodyRecords<Real>& records, const StepLoops<Real>& loops);
     void name_rows(const WorldState<Real>& world, const BodyRecords<Real>& records);
@@ -153,9 +161,12 @@ class PathSolver {
     PathRolling<Real> rolling_;
     std::vector<std::int32_t> row_of_far_;  // of each contact: the row of b in the records
     std::vector<ContactLink> contact_links_;
+    std::vector<PathCut::Slot> slots_;
+    Column<std::uint32_t> closing_;  // kernels/paths/path_arguments.hpp
     PathCut cut_;
-    int since_cut_ = 0;        // steps
-    std::int64_t solved_ = 0;  // paths, in the substeps of the last step
+    int since_cut_ = 0;              // steps
+    bool is_cut_forgotten_ = false;  // by the next step it is made anew
+    std::int64_t solved_ = 0;        // paths, in the substeps of the last step
     PathMood mood_ = PathMood::calm, mood_of_cut_ = PathMood::calm;
     Column<PathLink<Real>> links_;
     std::vector<Hidden> hidden_;

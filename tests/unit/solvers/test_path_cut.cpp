@@ -120,6 +120,91 @@ TEST_SUITE("solvers/paths/path_cut") {
                 }
         }
     }
+    TEST_CASE("contacts beside the paths have places of their own, and no path leads over them") {
+        Random random(11);
+        for (int trial = 0; trial < 40; ++trial) {
+            const auto bodies = static_cast<std::size_t>(2 + below(random, 100));
+            auto contacts = random_contacts(random, bodies, static_cast<std::size_t>(below(random, 300)));
+            std::vector<ContactLink> on_paths;
+            for (ContactLink& contact : contacts) {
+                contact.is_watched = !contact.is_loaded && below(random, 3) > 0;
+                if (!contact.is_watched) on_paths.push_back(contact);
+            }
+            PathCut cut, without;
+            cut.cut(contacts, bodies, 16), without.cut(on_paths, bodies, 16);
+            // The paths are those of the others alone.
+            CHECK(cut.first_watched() == without.bundles());
+            std::set<std::pair<std::uint32_t, std::uint8_t>> places;
+            for (std::size_t i = 0, other = 0; i < contacts.size(); ++i) {
+                const PathCut::Place place = cut.places()[i];
+                places.insert({place.link, place.lane});
+                CHECK((place.bundle >= cut.first_watched()) == contacts[i].is_watched);
+                if (contacts[i].is_watched) continue;
+                CHECK(place.link == without.places()[other].link);
+                CHECK(place.lane == without.places()[other++].lane);
+            }
+            CHECK(places.size() == contacts.size());
+            CHECK(walk(cut, contacts).hangs_together);
+        }
+    }
+    TEST_CASE("a cut is kept while contacts come, go and change their order") {
+        Random random(13);
+        for (int trial = 0; trial < 40; ++trial) {
+            const auto bodies = static_cast<std::size_t>(2 + below(random, 100));
+            const auto before =
+                random_contacts(random, bodies, static_cast<std::size_t>(1 + below(random, 300)));
+            PathCut cut;
+            cut.cut(before, bodies, 16);
+            const auto places_before = std::vector(cut.places().begin(), cut.places().end());
+            std::vector<ContactLink> now;
+            std::vector<PathCut::Slot> slots;
+            std::vector<std::size_t> was;  // number before, or before.size()
+            for (std::size_t i = before.size(); i-- > 0;) {
+                if (below(random, 4) == 0) continue;
+                now.push_back(before[i]), slots.push_back(cut.slot_of(i)), was.push_back(i);
+                if (below(random, 8) > 0) continue;
+                now.push_back({0, 1, 1, 0, -1, 0, false}), slots.push_back({-1, false});
+                was.push_back(before.size());
+            }
+            const std::size_t on_paths = cut.first_watched();
+            cut.keep(slots);
+            CHECK(cut.first_watched() == on_paths);
+            std::set<std::pair<std::uint32_t, std::uint8_t>> places;
+            for (std::size_t i = 0; i < now.size(); ++i) {
+                const PathCut::Place place = cut.places()[i];
+                places.insert({place.link, place.lane});
+                CHECK((place.bundle >= on_paths) == (was[i] == before.size()));
+                if (was[i] == before.size()) continue;
+                CHECK(place.link == places_before[was[i]].link);
+                CHECK(place.lane == places_before[was[i]].lane);
+                CHECK(place.bundle == places_before[was[i]].bundle);
+                CHECK(place.is_reversed == places_before[was[i]].is_reversed);
+            }
+            CHECK(places.size() == now.size());
+            // Each contact begins where the link before it ends: at the same body or by a jump.
+            std::map<std::pair<std::size_t, std::size_t>, std::size_t> contact_at, jumps;
+            for (std::size_t i = 0; i < now.size(); ++i)
+                contact_at[{cut.places()[i].link, cut.places()[i].lane}] = i;
+            for (const PathCut::Jump& jump : cut.jumps())
+                jumps[{jump.link, jump.lane}] = static_cast<std::size_t>(jump.contact);
+            for (std::size_t i = 0; i < now.size(); ++i) {
+                const PathCut::Place place = cut.places()[i];
+                const std::int32_t head = head_of(now[i], place.is_reversed);
+                if (place.link == cut.first_link()[place.bundle]) {
+                    CHECK(cut.first_contacts()[place.bundle * kPathLanes + place.lane] ==
+                          static_cast<std::int32_t>(i));
+                    continue;
+                }
+                const std::pair<std::size_t, std::size_t> at{place.link - 1, place.lane};
+                const auto previous = contact_at.find(at);
+                if (previous != contact_at.end())
+                    CHECK(head_of(now[previous->second], !cut.places()[previous->second].is_reversed) ==
+                          head);
+                else
+                    CHECK(jumps.at(at) == i);
+            }
+        }
+    }
     TEST_CASE("short paths stand behind each other where a long one goes on") {
         // A column of 21 contacts, and 60 pairs of bodies apart: all have the first colour.
         std::vector<ContactLink> contacts;

@@ -1,0 +1,154 @@
+// Which contacts of a step are in paths and which stand beside them, and when contacts are cut into paths
+// anew.
+#include <cstdint>
+#include <utility>
+
+#include "solvers/paths/path_solver.hpp"
+
+namespace carom {
+namespace {
+
+/// Contacts in a path, by PathMood; what is longer is cut. While many paths do not settle they are kept
+/// short: a long one that fails has done more in vain.
+constexpr std::size_t kLongest[] = {128, 16, 12};
+/// Share of paths that do not settle, below which paths are calm and above which they are restless.
+constexpr double kCalm = 0.001, kRestless = 0.01;
+/// Share of contacts that come or go in a step, above which paths are wild and below which no longer.
+constexpr double kWild = 0.005, kTame = 0.002;
+/// Fewer contacts have long paths from the start; more begin with short ones, as heaps do that still settle,
+/// and only of more stand some beside the paths: one that comes in a row of dominoes would change a small
+/// world.
+constexpr std::size_t kFewContacts = 1024;
+/// Paths are cut anew after so many steps, since loads have changed.
+constexpr int kStepsOfCut = 30;
+/// Wild ones of many contacts are kept for so many, whatever contacts come and go: what comes stands beside
+/// them. docs/decisions/0043-contacts-beside-paths.md has the measurements.
+constexpr int kStepsOfWildCut = 4;
+
+template <class Real>
+bool is_nothing(const Bodies<Real>& bodies, std::int32_t b) {
+    const auto row = static_cast<std::size_t>(b);
+    return b < 0 || row >= bodies.count || bodies.is_immovable(row);
+}
+
+}  // namespace
+
+/// @param is_same  whether the contacts are those of the step before
+template <class Real>
+void PathSolver<Real>::choose_paths(const WorldState<Real>& world, double dt, bool is_same) {
+    judge_mood();
+    ++since_cut_;
+    const bool is_wild_crowd = mood_ == PathMood::wild && manifolds.live().size() >= kFewContacts;
+    if (is_wild_crowd && mood_of_cut_ == mood_ && since_cut_ < kStepsOfWildCut && !is_cut_forgotten_)
+        keep_paths(world);
+    else if (!is_same || is_wild_crowd || since_cut_ >= kStepsOfCut || mood_of_cut_ != mood_)
+        cut_paths(world, dt);
+}
+
+/// Judges by the last step whether paths settle, and by this one whether contacts come and go.
+template <class Real>
+void PathSolver<Real>::judge_mood() {
+    const double share =
+        solved_ > 0 ? static_cast<double>(counters.unsettled) / static_cast<double>(solved_) : 0;
+    const bool was_solved = std::exchange(solved_, 0) > 0;
+    const double changed = manifolds.changed_share();
+    if (changed > (mood_ == PathMood::wild ? kTame : kWild) || (changed < 0 && mood_ == PathMood::wild))
+        mood_ = PathMood::wild;
+    else if (!was_solved)
+        mood_ = manifolds.live().size() < kFewContacts ? PathMood::calm : PathMood::restless;
+    else
+        mood_ = share < (mood_ == PathMood::calm ? kRestless : kCalm) ? PathMood::calm : PathMood::restless;
+}
+
+/// Whether a contact of two bodies carries nothing and, if both go on as they fly, does not close in the
+/// step.
+template <class Real>
+bool PathSolver<Real>::stays_apart(const WorldState<Real>& world, std::int32_t contact, double dt) const {
+    const Bodies<Real>& bodies = world.bodies;
+    if (contact < 0) return false;
+    const ManifoldList<Real>& list = manifolds.list_of(contact);
+    const std::size_t i = Manifolds<Real>::place_of(contact);
+    const ManifoldMemory<Real>& memory = list.memory[i];
+    if (memory.is_loaded()) return false;
+    const auto a = static_cast<std::size_t>(list.a[i]), b = static_cast<std::size_t>(list.b[i]);
+    const auto spin = [&](std::size_t row) {
+        return bodies.has_rotation ? bodies.angular_velocity[row] : Real(0);
+    };
+    const Real vn = (bodies.velocity_x[b] - bodies.velocity_x[a]) * list.normal_x[i] +
+                    (bodies.velocity_y[b] - bodies.velocity_y[a]) * list.normal_y[i];
+    const bool is_found = manifolds.is_found(contact);
+    const auto is_far = [&](Real found, Real carried, Real lever_a, Real lever_b) {
+        const Real separation = is_found ? found : carried;
+        return separation > 0 &&
+               separation + static_cast<Real>(dt) * (vn + spin(b) * lever_b - spin(a) * lever_a) > 0;
+    };
+    return is_far(list.separation1[i], memory.separation1, list.lever_a1[i], list.lever_b1[i]) &&
+           is_far(list.separation2[i], memory.separation2, list.lever_a2[i], list.lever_b2[i]);
+}
+
+template <class Real>
+void PathSolver<Real>::cut_paths(const WorldState<Real>& world, double dt) {
+    const bool is_wild_crowd = mood_ == PathMood::wild && manifolds.live().size() >= kFewContacts;
+    const Bodies<Real>& bodies = world.bodies;
+    contact_links_.clear();
+    for (const std::int32_t contact : manifolds.live()) {
+        const ManifoldList<Real>& list = manifolds.list_of(contact);
+        const std::size_t i = Manifolds<Real>::place_of(contact);
+        const ManifoldMemory<Real>& memory = list.memory[i];
+        const Real sum = memory.normal1 + memory.normal2;
+        const bool has_two = list.separation2[i] < static_cast<Real>(kNoPoint);
+        const Real share = sum > 0 ? memory.normal2 / sum : has_two ? Real(0.5) : Real(0);
+        const auto arm = [&](Real lever1, Real lever2, Real lever_t, float& x, float& y) {
+            const Real lever = lever1 + share * (lever2 - lever1);  // r x n = -(r . t)
+            x = static_cast<float>(lever_t * list.normal_x[i] + lever * list.normal_y[i]);
+            y = static_cast<float>(lever_t * list.normal_y[i] - lever * list.normal_x[i]);
+        };
+        ContactLink link{list.a[i], list.b[i], 0, 0, 0, 0, sum > 0};
+        if (is_nothing(bodies, link.b)) link.b = ContactLink::kNothing;
+        arm(list.lever_a1[i], list.lever_a2[i], list.lever_a_t[i], link.arm_a_x, link.arm_a_y);
+        arm(list.lever_b1[i], list.lever_b2[i], list.lever_b_t[i], link.arm_b_x, link.arm_b_y);
+        link.is_watched = is_wild_crowd && stays_apart(world, contact, dt);
+        contact_links_.push_back(link);
+    }
+    mood_of_cut_ = mood_;
+    cut_.cut(contact_links_, bodies.moving(), kLongest[static_cast<std::size_t>(mood_)]);
+    since_cut_ = 0, ++counters.cuts;
+    links_hold_ = false;
+    is_cut_forgotten_ = !is_wild_crowd;  // no contact knows its place
+    if (!is_wild_crowd) return;
+    for (std::size_t n = 0; n < contact_links_.size(); ++n) {
+        const PathCut::Slot slot = cut_.slot_of(n);
+        ManifoldMemory<Real>& memory = manifolds.memory_of(manifolds.live()[n]);
+        memory.slot = slot.number;
+        memory.slot_kind = (slot.is_reversed ? kTurnedSlot : 0) |
+                           (contact_links_[n].b == ContactLink::kNothing ? kStillSlot : 0);
+    }
+}
+
+/// Contacts stay where the last cut has put them. Those that have come, and those with a body that has begun
+/// to move or to stand since, so that it may be in two paths of a colour, stand beside the paths.
+template <class Real>
+void PathSolver<Real>::keep_paths(const WorldState<Real>& world) {
+    slots_.clear();
+    for (const std::int32_t contact : manifolds.live()) {
+        ManifoldMemory<Real>& memory = manifolds.memory_of(contact);
+        const std::int32_t b = manifolds.list_of(contact).b[Manifolds<Real>::place_of(contact)];
+        if (is_nothing(world.bodies, b) != ((memory.slot_kind & kStillSlot) != 0)) memory.slot = -1;
+        slots_.push_back({memory.slot, (memory.slot_kind & kTurnedSlot) != 0});
+    }
+    cut_.keep(slots_);
+    links_hold_ = false;
+}
+
+template void PathSolver<float>::choose_paths(const WorldState<float>&, double, bool);
+template void PathSolver<float>::judge_mood();
+template bool PathSolver<float>::stays_apart(const WorldState<float>&, std::int32_t, double) const;
+template void PathSolver<float>::cut_paths(const WorldState<float>&, double);
+template void PathSolver<float>::keep_paths(const WorldState<float>&);
+template void PathSolver<double>::choose_paths(const WorldState<double>&, double, bool);
+template void PathSolver<double>::judge_mood();
+template bool PathSolver<double>::stays_apart(const WorldState<double>&, std::int32_t, double) const;
+template void PathSolver<double>::cut_paths(const WorldState<double>&, double);
+template void PathSolver<double>::keep_paths(const WorldState<double>&);
+
+}  // namespace carom
