@@ -3,12 +3,18 @@
 #include <carom/carom.hpp>
 #include <carom/generators.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "support/report.hpp"
+
+#include <doctest/doctest.h>
+
 // Small scenes that together call for every effect and solver that `auto` takes; test_same_bits.cpp keeps
-// their hashes.
+// their hashes, test_joints.cpp those of scenes with joints.
 
 namespace carom::test {
 
@@ -228,10 +234,61 @@ inline Scene mixed_shapes() {
     return scene;
 }
 
+/// Compounds that fall into one that nothing moves: rings of capsules around a disc, and L-shapes.
+inline Scene falling_compounds() {
+    Scene scene;
+    scene.name = "falling compounds";
+    scene.gravity = {0, -10};
+    scene.add({.type = BodyType::static_body,
+               .shape = Compound{{{.shape = Box{12, 1}, .position = {0, -0.5}},
+                                  {.shape = Box{1, 20}, .position = {-6, 9}},
+                                  {.shape = Box{1, 20}, .position = {6, 9}}}},
+               .material = {.friction = 0.4}});
+    for (int i = 0; i < 40; ++i) {
+        Compound shape{{{.shape = Box{0.9, 0.3}}, {.shape = Box{0.3, 0.9}, .position = {-0.3, 0.3}}}};
+        if (i % 3 == 0) {
+            shape.pieces = {{.shape = Disc{0.3}}};
+            for (int spoke = 0; spoke < 5; ++spoke)
+                shape.pieces.push_back({.shape = Capsule{0.8, 0.05}, .angle = 0.6 * spoke});
+        }
+        scene.add({.shape = shape,
+                   .position = {-4.5 + 1.2 * (i % 8), 1 + 1.3 * (i / 8)},
+                   .angle = 0.4 * i,
+                   .angular_velocity = i % 5 - 2.0,
+                   .material = {.friction = 0.5, .restitution = i % 4 == 0 ? 0.4 : 0}});
+    }
+    return scene;
+}
+
 inline std::vector<Scene> golden_scenes() {
     return {mixed_shapes(),          bouncing_crowd(), woken_sleepers(),   rolling_sizes(),
             gas(400, {0.5, 0.5}, 1), falling_sizes(),  moving_obstacles(), stack_at_rest(),
-            rough_sizes(),           turning_chain(),  rough_gas()};
+            rough_sizes(),           turning_chain(),  rough_gas(),        falling_compounds()};
+}
+
+/// Hashes of a scene's state after steps of 1/60 s: the same for every compiler, build and instruction set.
+struct Golden {
+    const char* scene;
+    std::uint64_t single_precision, double_precision;
+};
+
+template <class Real>
+std::uint64_t hash_after(const Scene& scene, int steps, const WorldOptions& options) {
+    BasicWorld<Real> world(scene, options);
+    for (int i = 0; i < steps; ++i) world.step(1.0 / 60);
+    return world.state_hash();
+}
+
+inline void check_golden(const Scene& scene, std::span<const Golden> table, int steps) {
+    CAPTURE(scene.name);
+    const std::uint64_t single = hash_after<float>(scene, steps, {.threads = 1});
+    const std::uint64_t twice = hash_after<double>(scene, steps, {.threads = 1});
+    report(std::hex, "{\"", scene.name, "\", 0x", single, ", 0x", twice, "},");
+    const auto golden = std::find_if(table.begin(), table.end(),
+                                     [&](const Golden& line) { return line.scene == scene.name; });
+    REQUIRE(golden != table.end());
+    CHECK(single == golden->single_precision);
+    CHECK(twice == golden->double_precision);
 }
 
 }  // namespace carom::test

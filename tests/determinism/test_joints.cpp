@@ -1,5 +1,6 @@
-// B28 of docs/hard-cases.md for joints: the same bits for every instruction set, any number of threads, and
-// after a snapshot.
+// B28 of docs/hard-cases.md for joints: the same bits in every build, for every instruction set, any number
+// of threads, and after a snapshot. New hashes are printed as those of test_same_bits.cpp are.
+#include "determinism/golden_scenes.hpp"
 #include "support/joints.hpp"
 
 #include <string>
@@ -13,20 +14,25 @@ namespace {
 
 constexpr double kStep = 1.0 / 60;
 
-template <class Real>
-std::uint64_t hash_after(const Scene& scene, int steps, const WorldOptions& options) {
-    BasicWorld<Real> world(scene, options);
-    for (int i = 0; i < steps; ++i) world.step(kStep);
-    return world.state_hash();
-}
+constexpr int kSteps = 60;
 
 std::vector<Scene> scenes_with_joints() {
-    Scene grid = hanging_net(12);
+    Scene every = every_joint(), chain = weighted_chain(10, 100, {1, 0}), net = hanging_net(12);
+    Scene grid = net, hinges = net;
+    every.name = "every joint", chain.name = "weighted chain", net.name = "net of rods";
+    grid.name = "net of rods beside centres", hinges.name = "net of hinges";
     for (Joint& joint : grid.joints) std::get<DistanceJoint>(joint.kind).anchor_b = {0.05, 0.02};
-    Scene hinges = hanging_net(12);
     for (Joint& joint : hinges.joints) joint.kind = RevoluteJoint{};
-    return {every_joint(), weighted_chain(10, 100, {1, 0}), hanging_net(12), grid, hinges};
+    return {every, chain, net, grid, hinges};
 }
+
+constexpr Golden kGolden[] = {
+    {"every joint", 0xe57e225739b682ee, 0xb6222e19f4ae1869},
+    {"weighted chain", 0xe7a214c17be4a80c, 0x949dfc6291b5ce2b},
+    {"net of rods", 0xc9766baaa9013493, 0xcc473225a7d37df},
+    {"net of rods beside centres", 0xaf184cf7d115621, 0x20acc8a1a91d08aa},
+    {"net of hinges", 0xb085cbbfb070441c, 0x5748400fa6290ac},
+};
 
 }  // namespace
 
@@ -34,16 +40,20 @@ TEST_SUITE("determinism: joints") {
     TEST_CASE_TEMPLATE("joints give the same bits for every instruction set and number of threads", Real,
                        float, double) {
         for (const Scene& scene : scenes_with_joints()) {
-            const std::uint64_t expected = hash_after<Real>(scene, 60, {.isa = "scalar", .threads = 1});
+            const std::uint64_t expected = hash_after<Real>(scene, kSteps, {.isa = "scalar", .threads = 1});
             for (const std::string& isa : runnable_instruction_sets()) {
                 CAPTURE(isa);
-                CHECK(hash_after<Real>(scene, 60, {.isa = isa, .threads = 2}) == expected);
+                CHECK(hash_after<Real>(scene, kSteps, {.isa = isa, .threads = 2}) == expected);
             }
             for (const int threads : {3, 7}) {
                 CAPTURE(threads);
-                CHECK(hash_after<Real>(scene, 60, {.threads = threads}) == expected);
+                CHECK(hash_after<Real>(scene, kSteps, {.threads = threads}) == expected);
             }
         }
+    }
+
+    TEST_CASE("the golden hashes of joints hold in every build") {
+        for (const Scene& scene : scenes_with_joints()) check_golden(scene, kGolden, kSteps);
     }
 
     TEST_CASE("a large net gives the same bits on one thread and on three") {

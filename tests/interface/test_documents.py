@@ -91,7 +91,7 @@ class DocumentsTest(ProgramTest):
 
     @unittest.skipUnless(IS_RELEASE, "they run a large scene")
     def test_commands_of_the_pages_on_the_engine_work(self):
-        for document in ("docs/how-a-step-works.md", "docs/architecture.md", "docs/gallery.md", "docs/benchmarks.md"):
+        for document in ("docs/how-a-step-works.md", "docs/architecture.md", "docs/gallery.md", "docs/benchmarks.md", "docs/torture.md"):
             self.run_document(document)
         scalar, best = ((self.folder / "out" / run / "summary.json").read_text() for run in ("scalar", "best"))
         self.assertEqual(*(re.search(r'"state_hash": "\w+"', summary).group() for summary in (scalar, best)))

@@ -19,7 +19,8 @@ ENDLESS = 1_000_000_000
 class InterruptTest(ProgramTest):
     def start(self, scene, *arguments):
         return subprocess.Popen([PROGRAM, "run", self.write_scene(scene), "--out", "out", *arguments],
-                                cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+                                cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_DFL))  # under nohup, too
 
     def wait_until_running(self, program):
         """The ledger has left its first buffer: steps are being taken."""

@@ -2,13 +2,9 @@
 # Works with clang and libomp only: libomp loads its tool archer by itself, which tells the sanitizer about OpenMP's
 # barriers; gcc's libgomp has nothing like it, and every parallel loop looks like a race.
 set(tsan_tests "")
-
-foreach(folder determinism unit/parallel)
-    if(test_sources MATCHES "/tests/${folder}/")
-        string(REPLACE "/" "." name ${folder})
-        carom_add_doctest(${name} */tests/${folder}/* "")
-        list(APPEND tsan_tests ${CAROM_TEST_PREFIX}${name})
-    endif()
+foreach(folder ${CAROM_TEST_FOLDERS})
+    string(REPLACE "/" "." name ${folder})
+    list(APPEND tsan_tests ${CAROM_TEST_PREFIX}${name})
 endforeach()
 
 add_executable(carom_race ${CMAKE_CURRENT_LIST_DIR}/race.cpp)

@@ -17,7 +17,8 @@ inline constexpr std::size_t kBodiesOfOneTile = 16384;
 inline constexpr double kMeanBodiesOfTile = 12000;
 // Lines of the grid's cells in a tile: fewer, and many impacts are at a border; and threads that work on two
 // tiles beside one are to stay out of each other's way.
-inline constexpr std::int64_t kMostLines = 24, kFewestLines = 12;
+inline constexpr std::int64_t kFewestLines = 12;
+inline constexpr std::int64_t kMostLines = 24;
 
 /// The lines of the grid that the work on a tile may touch while others are worked on: its own, and half of
 /// the tiles beside it, but for some lines between it and the reach of the next. Lines are counted around:

@@ -3,6 +3,7 @@
 #include "narrowphase/placed_convex.hpp"
 
 #include "support/convex_pairs.hpp"
+#include "support/effort.hpp"
 
 #include <doctest/doctest.h>
 
@@ -82,7 +83,7 @@ TEST_SUITE("narrowphase/convex") {
 
     TEST_CASE("shapes that move and turn are stopped before they meet, and not earlier than need be") {
         constexpr double kDt = 1.0 / 60, kTarget = 1e-3;
-        constexpr int kSteps = 3000;
+        const int kSteps = scaled(3000, 600);
         for (const ShapeKind of_a : kKinds)
             for (const ShapeKind of_b : {thin, polygon, capsule}) {
                 Draw draw(9);
