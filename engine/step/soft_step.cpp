@@ -42,7 +42,10 @@ class SoftStep final : public SoftSimulation<Real> {
     static constexpr auto has_lost_loads = [](const Sim& sim) { return sim.soft.has_lost_loads(); };
     static constexpr auto may_heave = [](const Sim& sim) {
         return sim.world.effects.gravity &&
-               sim.world.bodies.moving() >= CoarseCorrection<Real>::kFewestLoaded;
+               sim.world.bodies.moving() >= LoadCorrection<Real>::fewest_bodies(is_smooth_heap(sim.world));
+    };
+    static constexpr auto has_chains = [](const Sim& sim) {
+        return sim.can_touch() && sim.soft.has_chains();
     };
     static constexpr auto has_masses = [](const Sim& sim) {
         return sim.can_touch() && (!sim.world.bodies.mass.is_uniform() || sim.world.bodies.has_flags);
@@ -118,6 +121,8 @@ class SoftStep final : public SoftSimulation<Real> {
          "impulses, velocity records, displacements"},
         {"correct_loads", [](Sim& sim) { sim.soft.correct_loads(sim.flight()); }, may_heave,
          KernelChoice::contacts, "motion, contacts, velocity records", "impulses, velocity records"},
+        {"solve_chains", [](Sim& sim) { sim.soft.solve_chains(); }, has_chains, KernelChoice::scalar_f64,
+         "contacts, velocity records", "impulses, velocity records"},
         {"solve_uneven_contacts", [](Sim& sim) { sim.soft.solve_uneven_contacts(); }, has_masses,
          KernelChoice::scalar_f64, "contacts, velocity records", "impulses, velocity records, displacements"},
         {"solve_joints_and_contacts", [](Sim& sim) { sim.soft.solve_joints_and_contacts(sim.world); },

@@ -1,4 +1,5 @@
-// B33 of docs/hard-cases.md: heaps and columns that no friction holds come to rest.
+// B33 of docs/hard-cases.md: heaps that no friction holds come to rest, and columns stand, with and without
+// it.
 #include "support/effort.hpp"
 #include "support/report.hpp"
 #include "support/rms_speed.hpp"
@@ -31,6 +32,23 @@ Scene pile(std::int64_t discs, double smallest, double restitution) {
     gas.count = discs, gas.radius = {smallest, kRadius}, gas.seed = 1;
     gas.body.material = bouncy(restitution);
     add_gas(scene, gas);
+    scene.accuracy.solver = Solver::soft;
+    return scene;
+}
+
+/// Discs that touch, one on another, the lowest so high above the floor.
+Scene bare_column(int discs, double friction, double smallest, double height) {
+    Scene scene;
+    scene.gravity = {0, -kGravity};
+    const Material material{.friction = friction};
+    scene.walls = floor_at(0);
+    scene.walls->material = material;
+    double y = height;
+    for (int i = 0; i < discs; ++i) {
+        const double radius = smallest + (kRadius - smallest) * (i * 7 % 10) / 9.0;
+        scene.add({.shape = Disc{radius}, .position = {0, y + radius}, .material = material});
+        y += 2 * radius;
+    }
     scene.accuracy.solver = Solver::soft;
     return scene;
 }
@@ -84,6 +102,73 @@ TEST_SUITE("hard cases/frictionless heaps") {
             report("shaft ", shaft, " m: rms ", largest, " m/s");
             CHECK(largest < kLargestRms);
         }
+    }
+
+    // Sweeps alone: 0.5 m/s without friction, 1.1 m/s for ever with it.
+    TEST_CASE_TEMPLATE("B33: columns of touching discs stand from the start", Real, float, double) {
+        for (const double friction : {0.0, 0.5})
+            for (const double smallest : {kRadius, 0.6 * kRadius})
+                for (const int discs : {10, 20, 100, 200}) {
+                    CAPTURE(friction);
+                    CAPTURE(smallest);
+                    CAPTURE(discs);
+                    BasicWorld<Real> world(bare_column(discs, friction, smallest, 0), {.threads = 1});
+                    double largest = 0;
+                    for (int i = 0; i < scaled(600, 120); ++i) {
+                        world.step(kStep);
+                        largest = std::fmax(largest, rms_speed(world));
+                    }
+                    report(discs, " discs of ", smallest, " m on, friction ", friction, ": rms ", largest);
+                    CHECK(largest < kLargestRms);
+                    CHECK(world.overlaps().max < 1e-3);
+                }
+    }
+
+    TEST_CASE_TEMPLATE("B33: columns that are dropped stop at once, and gain no energy", Real, float,
+                       double) {
+        for (const double friction : {0.0, 0.5}) {
+            CAPTURE(friction);
+            Scene scene = bare_column(100, friction, 0.7 * kRadius, 5);
+            scene.effects.ledger = true;
+            BasicWorld<Real> world(scene, {.threads = 1});
+            const double start = world.ledger().energy.total();
+            for (int i = 0; i < 180; ++i) {
+                world.step(kStep);
+                CHECK(world.ledger().energy.total() < (1 + 1e-6) * start);
+            }
+            report("friction ", friction, ": rms ", rms_speed(world), " m/s, overlap ", world.overlaps().max);
+            CHECK(rms_speed(world) < kLargestRms);
+            CHECK(world.overlaps().max < 1e-3);
+        }
+    }
+
+    // Without the correction of loads 0.1 to 0.8 m/s.
+    TEST_CASE_TEMPLATE("B33: smooth discs poured into narrow shafts calm down within ten seconds", Real,
+                       float, double) {
+        for (const int width : {2, 3, 5})
+            for (const double smallest : {kRadius, 0.6 * kRadius}) {
+                CAPTURE(width);
+                CAPTURE(smallest);
+                Scene scene;
+                scene.gravity = {0, -kGravity};
+                scene.walls = Walls{.min = {0, 0}, .max = {2.04 * kRadius * width, 1e4}, .top = false};
+                for (int i = 0; i < 100 * width; ++i) {
+                    const double radius = smallest + (kRadius - smallest) * (i * 7 % 10) / 9.0,
+                                 jitter = 0.008 * ((i * 13 % 11) / 10.0 - 0.5);
+                    scene.add(disc(radius, 1,
+                                   {1.01 * kRadius * (2 * (i % width) + 1) + jitter,
+                                    1.01 * kRadius * (2 * (i / width) + 1)}));
+                }
+                scene.accuracy.solver = Solver::soft;
+                BasicWorld<Real> world(scene, {.threads = 1});
+                double late = 0;
+                for (int i = 0; i < 600; ++i) {
+                    world.step(kStep);
+                    if (i >= 540) late = std::fmax(late, rms_speed(world));
+                }
+                report(width, " wide, from ", smallest, " m: rms ", late, " m/s");
+                CHECK(late < 0.05);
+            }
     }
 
     TEST_CASE("a world says how many sweeps its frictionless heaps get, and takes those that are asked for") {

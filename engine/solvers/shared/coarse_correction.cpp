@@ -9,9 +9,13 @@ namespace {
 // docs/decisions/0017-heave.md has the measurements of all of these.
 constexpr double kBodiesOfCell = 192;  // bodies a cell, about: half and four times as many did worse
 constexpr double kSmallestCell = 8;    // largest radii: s is taken to be linear around a body
-constexpr double kLeast = -0.9;        // least s: a contact never pulls, and keeps some load
-constexpr double kMost = 4;            // largest s
-constexpr int kSweeps = 20;            // over the nodes
+/// Fewer than kFewestLoaded bodies are a slender pile if they are as long as so many of the largest are wide;
+/// docs/decisions/0047-columns-of-discs.md.
+constexpr double kFewestRows = 32;
+constexpr double kBodiesOfSmallCell = 24;  // likewise
+constexpr double kLeast = -0.9;            // least s: a contact never pulls, and keeps some load
+constexpr double kMost = 4;                // largest s
+constexpr int kSweeps = 20;                // over the nodes
 // A correction is small if it takes less than either of these; then the pause after it is twice as long.
 /// Share of the energy that gravity gives to the pile in a substep from rest.
 constexpr double kSmallDrop = 0.1;
@@ -35,9 +39,9 @@ constexpr std::array<std::array<std::size_t, 2>, 10> kPairsOfNodes{
 }  // namespace
 
 template <class Real>
-bool CoarseCorrection<Real>::is_due(std::size_t bodies, int substeps) {
+bool CoarseCorrection<Real>::is_due(std::size_t bodies, int substeps, std::size_t fewest) {
     substeps_since_ = std::min(substeps_since_, kLongestPause) + substeps;
-    if (bodies < kFewestLoaded || substeps_since_ < pause_) return false;
+    if (bodies < fewest || substeps_since_ < pause_) return false;
     kept_ = (substeps_since_ > kShortestPause ? kKeptAfterLong : 1.0) / substeps_since_;
     substeps_since_ = 0;
     return true;
@@ -86,15 +90,18 @@ void CoarseCorrection<Real>::lay_out(std::size_t count, const Real* motion, cons
         all.x += part.x, all.y += part.y, all.xx += part.xx, all.yy += part.yy;
     }
     nodes_.clear();
-    if (all.count < static_cast<double>(kFewestLoaded)) return;
-    mass_ = all.mass;
-    energy_ = all.energy - 0.5 * (all.px * all.px + all.py * all.py) / all.mass;
+    if (all.count < static_cast<double>(kFewestOfSlender)) return;
     const double x = all.x / all.count, y = all.y / all.count;
     const double half_x = kHalfWidth * std::sqrt(std::fmax(all.xx / all.count - x * x, 0)),
                  half_y = kHalfWidth * std::sqrt(std::fmax(all.yy / all.count - y * y, 0));
+    mass_ = all.mass;
+    energy_ = all.energy - 0.5 * (all.px * all.px + all.py * all.py) / all.mass;
+    is_small_ = all.count < static_cast<double>(kFewestLoaded);
+    if (is_small_ && std::fmax(half_x, half_y) < kFewestRows * largest_radius) return;
+    const double of_cell = is_small_ ? kBodiesOfSmallCell : kBodiesOfCell;
     const double least =
-        std::fmax(kSmallestCell * largest_radius, std::sqrt(kBodiesOfCell / all.count * 4 * half_x * half_y));
-    const double most = all.count / kBodiesOfCell;  // cells along a heap of no height
+        std::fmax(kSmallestCell * largest_radius, std::sqrt(of_cell / all.count * 4 * half_x * half_y));
+    const double most = all.count / of_cell;  // cells along a heap of no height
     const auto cells_along = [&](double half) {
         return static_cast<std::size_t>(std::clamp(std::ceil(2 * half / least), 1.0, most));
     };
@@ -211,6 +218,8 @@ bool CoarseCorrection<Real>::find_scale(std::size_t count, const Real* motion, c
     solve();
     if (drop() > std::fmax(kSmallDrop * 0.5 * mass_ * length_squared(gain), kSmallShare * energy_))
         pause_ = kShortestPause;
+    else if (is_small_)
+        return false;  // seldom corrected, it would be kept swinging
     const auto interpolate = [&](std::size_t, std::size_t first, std::size_t last) {
         for (std::size_t row = first; row < last; ++row) {
             const At at = at_place(motion + 4 * row);

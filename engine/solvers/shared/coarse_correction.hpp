@@ -38,10 +38,13 @@ template <class Real>
 class CoarseCorrection {
   public:
     static constexpr std::size_t kFewestLoaded = 1024;  // bodies; in smaller piles a wave is soon through
+    /// Likewise of slender piles, as columns in a shaft are: they have as many rows with fewer bodies.
+    static constexpr std::size_t kFewestOfSlender = 64;
 
     /// To be called once a step: whether a correction is to follow. After one that did little pauses grow.
     /// @param substeps  of this step
-    bool is_due(std::size_t bodies, int substeps);
+    /// @param fewest  bodies that are corrected
+    bool is_due(std::size_t bodies, int substeps, std::size_t fewest = kFewestLoaded);
 
     /// Makes room for the sums over contacts (kernels/coarse_correction.hpp) and clears them.
     void begin(std::size_t rows);
@@ -51,7 +54,8 @@ class CoarseCorrection {
     /// @param velocity  [rows][4], inverse masses in the last
     /// @param gain  m/s, what gravity adds in a substep
     /// Cost: O(bodies) and 20 sweeps over the nodes.
-    /// @return false if too few bodies push on others: nothing is to be done then
+    /// @return false if too few bodies push on others, or few that are no slender pile: nothing is to be done
+    /// then
     bool find_scale(std::size_t count, const Real* motion, const Real* velocity, double largest_radius,
                     Vec2 gain, const Executor& executor);
 
@@ -113,6 +117,7 @@ class CoarseCorrection {
 
     int pause_ = kShortestPause, substeps_since_ = 0;
     double kept_ = 1;
+    bool is_small_ = false;  // fewer than kFewestLoaded bodies push
 
     Column<Real> load_, stress_, scale_;
     std::array<Extent, kParts> extents_;

@@ -62,6 +62,7 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const EdgeCa
     if (is_new && masses_.are_uneven()) uneven_.find(graph.pairs, masses_.inverse_column(), records_.count());
     support_finder_.find(view(), world, edges);
     uneven_.begin_step(view(), world, masses_.are_mixed());
+    chains_.begin_step(view());
     counters.contacts = static_cast<std::int64_t>(
         std::accumulate(graph.pairs.live_count.begin(), graph.pairs.live_count.end(), supports_.contacts()));
     counters.colours = static_cast<std::int64_t>(graph.pairs.count.size());
@@ -171,7 +172,7 @@ template <class Real>
 std::size_t SoftSolver<Real>::bytes() const {
     return graph.bytes() + paths.bytes() + impacts.bytes() + joints.bytes() + masses_.bytes() +
            records_.bytes() + supports_.bytes() + support_finder_.bytes() + warm_start_.bytes() +
-           warm_start_limit_.bytes() + sweeps_.bytes() + loads_.bytes() + uneven_.bytes() +
+           warm_start_limit_.bytes() + sweeps_.bytes() + loads_.bytes() + uneven_.bytes() + chains_.bytes() +
            projection_.bytes() + pair_finder_.bytes();
 }
 

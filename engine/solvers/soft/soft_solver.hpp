@@ -11,6 +11,7 @@
 #include "solvers/paths/path_solver.hpp"
 #include "solvers/paths/warm_start_limit.hpp"
 #include "solvers/soft/books.hpp"
+#include "solvers/soft/contacts/contact_chains.hpp"
 #include "solvers/soft/contacts/contact_settings.hpp"
 #include "solvers/soft/contacts/contact_sweeps.hpp"
 #include "solvers/soft/contacts/load_correction.hpp"
@@ -110,6 +111,10 @@ class SoftSolver {
     /// Corrects the loads of large piles between the sweeps of the last substep, if that is due, and sweeps
     /// once more.
     void correct_loads(const StepFlight<Real>& flight) { loads_.correct(view(), flight, sweeps_); }
+    /// Whether some discs stand in columns.
+    bool has_chains() const { return !chains_.empty(); }
+    /// Solves what the sweeps leave in columns of discs.
+    void solve_chains() { chains_.solve(view()); }
     /// Solves what the sweeps leave where masses are uneven; nothing where they are not.
     void solve_uneven_contacts();
     /// What the impulses of this substep did; only the walls' impulses if the ledger is closed.
@@ -186,7 +191,7 @@ class SoftSolver {
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
         archive(self.graph, self.paths, self.counters, self.impacts.counters, self.warm_start_, self.loads_,
-                self.uneven_);
+                self.uneven_, self.chains_);
         if constexpr (!std::is_const_v<Self>)
             self.forget_rows(), self.records_.forget(), self.impacts.forget();
     }
@@ -216,6 +221,7 @@ class SoftSolver {
     ContactSweeps<Real> sweeps_;
     LoadCorrection<Real> loads_;
     UnevenContacts<Real> uneven_;
+    ContactChains<Real> chains_;
     EndProjection<Real> projection_;
     SubstepBooks<Real> books_;
 };
