@@ -2,6 +2,7 @@
 // built of boxes stands where it should and falls where it must.
 #include "support/box_scenes.hpp"
 #include "support/effort.hpp"
+#include "support/hard_case.hpp"
 #include "support/report.hpp"
 
 #include <doctest/doctest.h>
@@ -14,23 +15,11 @@ using namespace carom::test;
 TEST_SUITE("hard cases/boxes") {
     TEST_CASE_TEMPLATE("a tower of 20 boxes, each a little aside, stands for a minute and comes to rest",
                        Real, float, double) {
-        for (const std::uint64_t seed : {1u, 77u}) {
-            BoxRun<Real> run(tower(20, 0.02, seed));
-            run.steps(600);
-            CHECK(run.rms_speed() < 1e-3);
-            run.steps(scaled(3000, 300));
-            CHECK(run.rms_speed() < 1e-3);
-            CHECK(run.farthest_shift() < 0.02);
-            CHECK(run.start(run.last()).y - run.place(run.last()).y < 0.001 * 20);
-        }
+        check_cases<Real>(torture::towers_of_20(extent()));
     }
     TEST_CASE_TEMPLATE("a tower of 40 boxes, each a little aside, stands for a minute and comes to rest",
                        Real, float, double) {
-        BoxRun<Real> run(tower(40, 0.02, 77));
-        run.steps(scaled(3600, 900));
-        CHECK(run.rms_speed() < 1e-3);
-        CHECK(run.farthest_shift() < 0.02);
-        CHECK(run.start(run.last()).y - run.place(run.last()).y < 0.001 * 40);
+        check_cases<Real>(torture::towers_of_40(extent()));
     }
     TEST_CASE_TEMPLATE("towers that stand or collapse make no energy", Real, float, double) {
         // One of a hundred that stands; one of 330 whose boxes fall on each other and buckle.
@@ -52,66 +41,22 @@ TEST_SUITE("hard cases/boxes") {
         }
     }
     TEST_CASE("a tower that stands falls asleep within three seconds") {
-        Scene scene = tower(20, 0.02, 5);
-        scene.effects.sleep = true;
-        BoxRun<float> run(scene);
-        run.steps(180);
-        CHECK(run.world.profile().asleep == 20);
+        check_cases<float>(torture::towers_that_sleep(extent()));
     }
     TEST_CASE_TEMPLATE("a pyramid of 210 boxes comes to rest and keeps its height", Real, float, double) {
-        BoxRun<Real> run(box_pyramid(20));
-        run.steps(60);
-        const double top = run.start(run.last()).y;
-        run.mark();
-        run.steps(540);
-        CHECK(run.rms_speed() < 1e-3);
-        CHECK(run.farthest_shift() < 0.03);
-        CHECK(top - run.place(run.last()).y < 0.001 * 20);
+        check_cases<Real>(torture::small_pyramids(extent()));
     }
     TEST_CASE("a pyramid of 5,050 boxes comes to rest and keeps its height") {
-        const int base = scaled(100, 40);
-        BoxRun<float> run(box_pyramid(base));
-        run.steps(60);
-        const double top = run.start(run.last()).y;
-        run.mark();
-        run.steps(240);
-        CHECK(run.rms_speed() < 1e-3);
-        run.steps(300);
-        CHECK(run.rms_speed() < 1e-3);
-        CHECK(run.farthest_shift() < 0.03);
-        CHECK(top - run.place(run.last()).y < 0.001 * base);
+        check_cases<float>(torture::large_pyramids(extent()));
     }
     TEST_CASE_TEMPLATE("a box carries one that is a million times heavier", Real, float, double) {
-        for (const double ratio : {10.0, 1e2, 1e3, 1e4, 1e6}) {
-            CAPTURE(ratio);
-            Scene scene = box_ground(0.6);
-            scene.add(box_at(0, 0.5, 1, 1, 0.6));
-            Body heavy = box_at(0, 1.5, 1, 1, 0.6);
-            heavy.mass = ratio;
-            scene.add(heavy);
-            BoxRun<Real> run(scene);
-            run.steps(600);
-            CHECK(run.start(2).y - run.place(2).y < 0.01);  // of a side of 1 m
-            CHECK(std::fabs(run.place(2).x) < 0.01);
-        }
+        check_cases<Real>(torture::boxes_under_a_heavy_one(extent()));
     }
     TEST_CASE_TEMPLATE("five boxes carry one of a thousand times their mass", Real, float, double) {
-        Scene scene = tower(5, 0, 0);
-        Body heavy = box_at(0, 5.5, 1, 1, 0.6);
-        heavy.mass = 1000;
-        scene.add(heavy);
-        BoxRun<Real> run(scene);
-        run.steps(600);
-        CHECK(run.start(run.last()).y - run.place(run.last()).y < 0.01);
+        check_cases<Real>(torture::five_boxes_under_a_heavy_one(extent()));
     }
     TEST_CASE_TEMPLATE("overhangs stand at .99 of the harmonic limit and fall at 1.01", Real, float, double) {
-        for (const int blocks : {5, 10, 20}) {
-            CAPTURE(blocks);
-            BoxRun<Real> stands(overhang(blocks, 0.99)), falls(overhang(blocks, 1.01));
-            stands.steps(1200), falls.steps(1200);
-            CHECK(stands.farthest_shift() < 1e-3);
-            CHECK(falls.start(falls.last()).y - falls.place(falls.last()).y > 0.2);
-        }
+        check_cases<Real>(torture::overhangs(extent()));
     }
     TEST_CASE_TEMPLATE("boxes deep in each other part without speed", Real, float, double) {
         for (const double overlap : {0.25, 0.5, 0.9}) {
@@ -148,27 +93,7 @@ TEST_SUITE("hard cases/boxes") {
     TEST_CASE_TEMPLATE(
         "a rod that slides on its tip with friction above 4/3 stays finite and gains no energy", Real, float,
         double) {
-        // Painlevé: rigid bodies with this much friction have no acceleration; velocities always exist.
-        for (const double friction : {1.4, 2.0, 5.0})
-            for (const double angle : {0.4, 0.8, 1.2}) {
-                CAPTURE(friction);
-                CAPTURE(angle);
-                Scene scene = box_ground(friction);
-                const double reach = 0.5 * (std::sin(angle) + 0.02 * std::cos(angle));
-                Body rod = box_at(0, reach, 1, 0.02, friction, angle);
-                rod.velocity = {-5, 0};
-                scene.add(rod);
-                scene.effects.ledger = true;
-                BoxRun<Real> run(scene);
-                const double before = run.world.ledger().energy.total();
-                double most = before;
-                for (int i = 0; i < 180; ++i) {
-                    run.steps(1);
-                    most = std::fmax(most, run.world.ledger().energy.total());
-                }
-                CHECK(std::isfinite(run.place(1).x));
-                CHECK(most <= before + 1e-3 * std::fabs(before) + 1e-4);
-            }
+        check_cases<Real>(torture::rods_on_their_tip(extent()));
     }
     TEST_CASE_TEMPLATE("boxes that do not turn pile up and rest without friction: nothing turns", Real, float,
                        double) {
@@ -211,50 +136,9 @@ TEST_SUITE("hard cases/boxes") {
     }
     TEST_CASE_TEMPLATE("B6: small boxes heap up on and beside one that is a thousand times larger", Real,
                        float, double) {
-        const double small = 0.1, large = 1000 * small, friction = 0.5;
-        Scene scene = box_ground(friction, 20 * large);
-        scene.add(box_at(0, 0.5 * large, large, large, friction));
-        const auto add = [&](double x, double y) {
-            const double angle = 0.3 * jitter_of(scene.bodies.size());
-            scene.add(box_at(x, y, small, small, friction, angle));
-        };
-        for (int i = 0; i < 200; ++i) add(0.15 * (i % 20), large + 0.2 + 0.3 * (i / 20));
-        for (int i = 0; i < 100; ++i) add(0.5 * large + 0.2 + 0.15 * (i % 10), 0.2 + 0.3 * (i / 10));
-        BoxRun<Real> run(scene);
-        run.steps(400);  // some boxes slide down late
-        double lowest_on = large, lowest_beside = large;
-        for (std::size_t i = 2; i <= run.last(); ++i) {
-            const Vec2 at = run.place(i);
-            double& lowest = std::fabs(at.x) < 0.5 * large ? lowest_on : lowest_beside;
-            lowest = std::fmin(lowest, std::fabs(at.x) < 0.5 * large ? at.y - large : at.y);
-        }
-        const OverlapReport overlaps = run.world.overlaps();
-        report("B6: boxes overlap by ", overlaps.max, " at most; lowest ", lowest_on, " m on the large one, ",
-               lowest_beside, " m beside; it moved by ",
-               std::fabs(run.place(1).x) + std::fabs(run.place(1).y - 0.5 * large));
-        CHECK(overlaps.max < 0.1);
-        CHECK(lowest_on > 0.45 * small);
-        CHECK(lowest_beside > 0.45 * small);
-        CHECK(run.rms_speed() < 1e-2);
+        check_cases<Real>(torture::small_boxes_around_a_large_one(extent()));
     }
     TEST_CASE_TEMPLATE("a disc between a heavy box and a post is never expelled", Real, float, double) {
-        Scene scene = box_ground(0.5);
-        scene.add({.type = BodyType::static_body,
-                   .shape = Box{1, 4},
-                   .position = {5.5, 2},
-                   .material = {.friction = 0.5}});
-        scene.add({.shape = Disc{0.25}, .position = {4.7, 0.25}, .material = {.friction = 0.5}});
-        Body heavy = box_at(2, 1, 2, 2, 0.5);
-        heavy.mass = 1000, heavy.velocity = {8, 0};
-        scene.add(heavy);
-        BoxRun<Real> run(scene);
-        double fastest = 0;
-        for (int i = 0; i < 600; ++i) {
-            run.steps(1);
-            fastest = std::fmax(fastest, std::hypot(run.velocity(2).x, run.velocity(2).y));
-        }
-        CHECK(fastest < 1.05 * std::sqrt(8 * 8 + 2 * kBoxGravity * 1));
-        CHECK(run.place(2).x > run.place(3).x);
-        CHECK(run.place(2).x < 5);
+        check_cases<Real>(torture::discs_between_a_box_and_a_post(extent()));
     }
 }

@@ -1,4 +1,5 @@
 // B4 of docs/hard-cases.md, with discs: a heavy disc on a light one.
+#include "support/hard_case.hpp"
 #include "support/passive_run.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"
@@ -13,41 +14,6 @@ using namespace carom::test;
 namespace {
 
 constexpr double kRadius = 0.5, kGravity = 10, kStep = 1.0 / 60;
-
-struct Column {
-    int light = 1;      // discs of 1 kg on each other
-    double ratio = 10;  // mass of the one on top
-    double drop = 0;    // m, from how high above them it starts
-    double friction = 0;
-};
-
-/// How deep a heavy disc on light ones in a shaft ever sinks, in diameters; it must never pass one of them.
-template <class Real>
-double deepest_sink(const Column& column) {
-    Scene scene;
-    scene.gravity = {0, -kGravity};
-    scene.walls = Walls{.min = {-1.001 * kRadius, 0}, .max = {1.001 * kRadius, 100}, .top = false};
-    scene.walls->material.friction = column.friction;
-    scene.accuracy.solver = Solver::soft;
-    const double top = kRadius + 2 * kRadius * column.light;
-    for (int i = 0; i < column.light; ++i) scene.add(disc(kRadius, 1, {0, kRadius + 2 * kRadius * i}));
-    scene.add(disc(kRadius, column.ratio, {0, top + column.drop}));
-    for (Body& body : scene.bodies) body.material.friction = column.friction;
-    PassiveRun<Real> run(scene);
-    double deepest = 0;
-    const auto heavy = static_cast<std::uint32_t>(column.light);
-    for (int i = 0; i < 600; ++i) {
-        run.step(kStep);
-        const double height = run.state(heavy).position.y;
-        deepest = std::fmax(deepest, (top - height) / (2 * kRadius));
-        CHECK(height > run.state(heavy - 1).position.y);
-    }
-    run.check();
-    report(column.light, " light, ratio ", column.ratio, ", dropped by ", column.drop, " m, friction ",
-           column.friction, ": sink ", 100 * deepest, " % of a diameter, at last ",
-           100 * (top - run.state(heavy).position.y) / (2 * kRadius), " %");
-    return deepest;
-}
 
 /// A disc on another of the same size, beside its top by an angle from the vertical. Rolling resistance moves
 /// the normal force in either contact by c times R = r / 2 and r, so that both hold while sin(angle) <= c
@@ -75,23 +41,15 @@ Vec2 on_top_after(double seconds, double ratio, double angle, double rolling_res
 TEST_SUITE("hard cases/heavy on light") {
     TEST_CASE_TEMPLATE("B4: a light disc carries one that is up to a million times heavier", Real, float,
                        double) {
-        CHECK(deepest_sink<Real>({.ratio = 10}) < 0.001);
-        CHECK(deepest_sink<Real>({.ratio = 1e2}) < 0.001);
-        CHECK(deepest_sink<Real>({.ratio = 1e3}) < 0.001);
-        CHECK(deepest_sink<Real>({.ratio = 1e4}) < 0.001);
-        CHECK(deepest_sink<Real>({.ratio = 1e6}) < 0.01);
-        CHECK(deepest_sink<Real>({.ratio = 1e3, .friction = 0.5}) < 0.001);
+        check_cases<Real>(torture::discs_under_a_heavy_one(extent()), Twin::other_order);
     }
 
     TEST_CASE_TEMPLATE("a light disc stops one that falls on it", Real, float, double) {
-        for (const double ratio : {1e2, 1e4, 1e6}) CHECK(deepest_sink<Real>({1, ratio, 1}) < 0.05);
+        check_cases<Real>(torture::discs_hit_by_a_heavy_one(extent()), Twin::other_order);
     }
 
     TEST_CASE_TEMPLATE("columns of light discs carry heavy ones", Real, float, double) {
-        for (const double ratio : {1e2, 1e3, 1e4}) CHECK(deepest_sink<Real>({2, ratio}) < 0.01);
-        for (const double ratio : {1e2, 1e3, 1e4}) CHECK(deepest_sink<Real>({5, ratio}) < 0.01);
-        CHECK(deepest_sink<Real>({5, 1e6}) < 0.5);
-        for (const double ratio : {1e2, 1e3}) CHECK(deepest_sink<Real>({20, ratio}) < 0.1);
+        check_cases<Real>(torture::columns_under_a_heavy_disc(extent()), Twin::other_order);
     }
 
     // What is solved beside the sweeps obeys the same laws.

@@ -1,5 +1,6 @@
 // Hard cases of joints: B5, B13, B14 of docs/hard-cases.md, groups that touch, sleep and change.
 #include "support/effort.hpp"
+#include "support/hard_case.hpp"
 #include "support/joints.hpp"
 #include "support/report.hpp"
 
@@ -57,25 +58,7 @@ TEST_SUITE("hard cases: joints") {
 
     TEST_CASE_TEMPLATE("B5: chains of 20 and 40 links hold 200 to 50,000 times the mass of a link", Real,
                        float, double) {
-        for (const int links : {20, 40})
-            for (const double weight : {200.0, 1e3, 5e4})
-                for (const bool swings : {false, true}) {
-                    CAPTURE(links);
-                    CAPTURE(weight);
-                    CAPTURE(swings);
-                    BasicWorld<Real> world(weighted_chain(links, weight, swings ? Vec2{1, 0} : Vec2{0, -1}));
-                    const double start = world.ledger().energy.total();
-                    double gap = 0, gain = 0;
-                    for (int i = 0; i < scaled(600, 300); ++i) {
-                        world.step(kStep);
-                        gap = std::max(gap, world.joint_errors().max);
-                        gain = std::max(gain, world.ledger().energy.total() - start);
-                    }
-                    report("B5: ", links, " links, ", weight, swings ? " swings" : " hangs", ": gap ", gap,
-                           " of a link, energy up by ", gain / (10 * weight * links), " of the fall");
-                    CHECK(gap < (swings ? 1e-4 : 1e-6));
-                    CHECK(gain < 1e-3 * 10 * weight * links);
-                }
+        check_cases<Real>(torture::chains_with_weights(extent()));
     }
 
     TEST_CASE_TEMPLATE("B13: an over-constrained grid of 25 x 25 hinges stays together for 10,000 steps",
@@ -156,36 +139,7 @@ TEST_SUITE("hard cases: joints") {
 
     TEST_CASE_TEMPLATE("B5: a light link between heavy bodies, one of them thrown, gains no energy", Real,
                        float, double) {
-        // The light one turns by radians a substep at once, where bent paths have no solution near by.
-        for (const double light : {1.0, 1e-3})
-            for (const double speed : {30.0, 300.0, 3000.0})
-                for (const double direction : {0.3, 1.2, 2.5}) {
-                    CAPTURE(light);
-                    CAPTURE(speed);
-                    CAPTURE(direction);
-                    Scene scene;
-                    std::vector<BodyId> links;
-                    for (const double x : {0.0, 1.0, 2.0, 3.0})
-                        links.push_back(scene.add(bar({x, 0}, 1, x == 2 ? light : 1000)));
-                    scene.bodies.back().velocity = {speed * std::cos(direction), speed * std::sin(direction)};
-                    scene.add(
-                        Joint{.a = links[0], .b = links[1], .kind = RevoluteJoint{.anchor = Vec2{0.5, 0}}});
-                    scene.add(
-                        Joint{.a = links[1], .b = links[2], .kind = DistanceJoint{.anchor_b = {0, 0.3}}});
-                    scene.add(
-                        Joint{.a = links[2], .b = links[3], .kind = RevoluteJoint{.anchor = Vec2{2.5, 0}}});
-                    BasicWorld<Real> world(scene);
-                    const double start = world.ledger().energy.total();
-                    double most = 0;
-                    for (int i = 0; i < 60; ++i) {
-                        world.step(kStep);
-                        most = std::fmax(most, world.ledger().energy.total());
-                    }
-                    // Velocities are those of whole times, of a path of second order: off by some share of
-                    // it.
-                    CHECK(most < 1.1 * start);
-                    CHECK(world.quarantined().empty());
-                }
+        check_cases<Real>(torture::light_links_between_heavy_ones(extent()));
     }
 
     TEST_CASE_TEMPLATE("B13: a rigid lattice of parallel bars with a motor or a spring falls without harm",

@@ -1,5 +1,6 @@
 // B6 and B20 of docs/hard-cases.md: very large beside very small.
 #include "support/effort.hpp"
+#include "support/hard_case.hpp"
 #include "support/passive_run.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"
@@ -39,41 +40,7 @@ TEST_SUITE("hard cases/size ratios") {
     // that can still be in each other when a step ends, if another body has thrown them there within it.
     TEST_CASE_TEMPLATE("B6: small discs heap up on and around one that is a thousand times larger", Real,
                        float, double) {
-        constexpr double kLarge = 10, kSmall = 0.01, kGravity = 0.1, kSide = 12;
-        constexpr int kOnTop = 100, kBeside = 100;
-        Scene scene;
-        scene.gravity = {0, -kGravity};
-        const Material rough{.friction = 0.3};
-        scene.walls = Walls{.min = {-kSide, 0}, .max = {kSide, 60}, .material = rough};
-        scene.accuracy.solver = Solver::soft;
-        scene.add({.shape = Disc{kLarge}, .position = {0, kLarge}, .material = rough});
-        const auto add = [&](double x, double y) {
-            scene.add({.shape = Disc{kSmall}, .position = {x, y}, .material = rough});
-        };
-        for (int i = 0; i < kOnTop; ++i) {
-            const double x = -2 + 4.0 * i / kOnTop;
-            add(x, kLarge + std::sqrt((kLarge + kSmall) * (kLarge + kSmall) - x * x) + 0.03 * (i % 3));
-        }
-        for (int i = 0; i < kBeside; ++i)
-            add((i % 2 == 0 ? 1 : -1) * (10.6 + 0.027 * (i / 2)), 0.02 + 0.03 * (i % 5));
-        PassiveRun<Real> run(scene);
-        double deepest = 0, fastest = 0;
-        for (int i = 0; i < scaled(2400, 600); ++i) {
-            run.step(kStep);
-            deepest = std::fmax(deepest, run.world.overlaps().max);
-            const BodyState large = run.state(0);
-            for (std::uint32_t b = 1; b <= kOnTop + kBeside; ++b) {
-                const Vec2 x = run.state(b).position, v = run.state(b).velocity;
-                const double distance = std::hypot(x.x - large.position.x, x.y - large.position.y);
-                deepest = std::fmax(deepest, (kLarge + kSmall - distance) / kSmall);
-                fastest = std::fmax(fastest, std::hypot(v.x, v.y));
-            }
-        }
-        report("overlap ", deepest, " of the small radius, fastest ", fastest * kStep / kSmall,
-               " radii a step");
-        CHECK(deepest < 0.1);
-        if (!is_effort_reduced()) CHECK(fastest * kStep > 2 * kSmall);
-        run.check();
+        check_cases<Real>(torture::small_discs_around_a_large_one(extent()), Twin::other_order);
     }
 
     // Where they hit the large one, the floor and each other they are thrown about by more than their size
@@ -81,45 +48,7 @@ TEST_SUITE("hard cases/size ratios") {
     TEST_CASE_TEMPLATE(
         "B6: a rain of small discs, fifty of their radii a step, on one a thousand times larger", Real, float,
         double) {
-        constexpr double kLarge = 10, kSmall = 0.01, kSide = 12;
-        constexpr int kCount = 300;
-        double deepest = 0, unexplained = 0;
-        for (int start = 0; start < scaled(4, 1); ++start) {
-            Scene scene;
-            scene.gravity = {0, -10};
-            const Material rough{.friction = 0.3};
-            scene.walls = Walls{.min = {-kSide, 0}, .max = {kSide, 60}, .material = rough};
-            scene.accuracy.solver = Solver::soft;
-            scene.add({.shape = Disc{kLarge}, .position = {0, kLarge}, .material = rough});
-            for (int i = 0; i < kCount; ++i)
-                scene.add({.shape = Disc{kSmall},
-                           .position = {-11.5 + 23.0 * i / kCount, 25 + 0.05 * (i % 11)},
-                           .velocity = {0.5 * (i % 5 - 2), -20.0 - 0.1 * start},
-                           .material = rough});
-            PassiveRun<Real> run(scene, {.effects = {.ledger = true}});
-            std::vector<Vec2> places(kCount + 1);
-            for (int i = 0; i < 400; ++i) {
-                run.step(kStep);
-                for (std::uint32_t b = 0; b <= kCount; ++b) places[b] = run.state(b).position;
-                for (std::uint32_t b = 1; b <= kCount; ++b) {
-                    const Vec2 x = places[b];
-                    deepest = std::fmax(deepest, 1 - (kSide - std::fabs(x.x)) / kSmall);
-                    deepest = std::fmax(deepest, 1 - x.y / kSmall);
-                    for (std::uint32_t a = 0; a < b; ++a) {
-                        const double reach = kSmall + (a == 0 ? kLarge : kSmall);
-                        const double distance = std::hypot(x.x - places[a].x, x.y - places[a].y);
-                        deepest = std::fmax(deepest, (reach - distance) / kSmall);
-                    }
-                }
-            }
-            const Ledger books = run.world.ledger();
-            unexplained =
-                std::fmax(unexplained, std::fabs(books.energy_by_cause.unexplained) / books.initial.total());
-            run.check();
-        }
-        report("overlap ", deepest, " of the small radius, unexplained ", unexplained);
-        CHECK(deepest < 0.1);
-        CHECK(unexplained < 1e-4);
+        check_cases<Real>(torture::rains_on_a_large_disc(extent()), Twin::other_order);
     }
 
     TEST_CASE_TEMPLATE("B20: five thousand discs carry one of a hundred times their radius", Real, float,

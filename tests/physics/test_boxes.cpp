@@ -2,6 +2,7 @@
 // and polygons do when they stand, slide, tip and lean, against Newton's and Coulomb's laws.
 #include "support/box_scenes.hpp"
 #include "support/effort.hpp"
+#include "support/hard_case.hpp"
 #include "support/report.hpp"
 
 #include <doctest/doctest.h>
@@ -50,45 +51,6 @@ Scene ladder(double slope, double friction) {
     scene.add(box_at(-0.5 * (kLadderLength * c + kLadderThickness * s),
                      0.5 * (kLadderLength * s + kLadderThickness * c), kLadderLength, kLadderThickness,
                      friction, slope));
-    return scene;
-}
-
-/// Voussoirs of one angle each in a half circle, whose middle line has the radius 5 m.
-Scene arch(double thickness_over_radius, int voussoirs) {
-    const double friction = 1, radius = 5, half = 0.5 * thickness_over_radius * radius;
-    Scene scene = box_ground(friction);
-    for (int i = 0; i < voussoirs; ++i) {
-        Polygon stone;
-        for (const int side : {0, 1})
-            for (const int face : {0, 1}) {
-                const double angle = std::numbers::pi * (i + side) / voussoirs;
-                const double r = radius + (face == side ? -half : half);
-                stone.vertices.push_back({r * std::cos(angle), r * std::sin(angle)});
-            }
-        scene.add({.shape = stone,
-                   .position = mass_properties_of(stone).centroid,
-                   .material = {.friction = friction}});
-    }
-    return scene;
-}
-
-/// Three storeys of pairs of cards 1 m long that lean on each other at `slope` to the ground, a card flat
-/// on each storey but the last.
-Scene card_house(double slope, double friction) {
-    const double thickness = 0.05, apart = 1.02, c = std::cos(slope), s = std::sin(slope);
-    Scene scene = box_ground(friction);
-    double floor = 0;
-    for (int pairs = 3; pairs >= 1; --pairs) {
-        const double middle = floor + 0.5 * (s + thickness * c), aside = 0.5 * (c + thickness * s);
-        for (int i = 0; i < pairs; ++i)
-            for (const double side : {-1.0, 1.0})
-                scene.add(box_at((i - 0.5 * (pairs - 1)) * apart + side * aside, middle, 1, thickness,
-                                 friction, -side * slope));
-        floor += s + thickness * c;
-        if (pairs == 1) break;
-        scene.add(box_at(0, floor + 0.5 * thickness, (pairs - 1) * apart + 0.3, thickness, friction));
-        floor += thickness;
-    }
     return scene;
 }
 
@@ -285,25 +247,11 @@ TEST_SUITE("physics/boxes") {
     }
     TEST_CASE_TEMPLATE("A30: an arch stands at a thickness of .115 of its radius and falls at .100", Real,
                        float, double) {
-        BoxRun<Real> stands(arch(0.115, 31)), falls(arch(0.100, 31));
-        const std::size_t crown = 1 + 31 / 2;
-        stands.steps(1200), falls.steps(1200);
-        report("A30: crown sank by ", stands.start(crown).y - stands.place(crown).y, " and ",
-               falls.start(crown).y - falls.place(crown).y);
-        CHECK(stands.farthest_shift() < 1e-3);
-        CHECK(falls.start(crown).y - falls.place(crown).y > 1);
+        check_cases<Real>(torture::arches(extent()));
     }
     TEST_CASE_TEMPLATE("B15: a card house moves by less than 1 % of a card in ten seconds", Real, float,
                        double) {
-        for (const double slope : {65.0, 70.0, 75.0}) {  // degrees
-            CAPTURE(slope);
-            BoxRun<Real> run(card_house(slope * std::numbers::pi / 180, 0.6));
-            run.steps(600);
-            report("B15: cards at ", slope, " degrees: moved ", run.farthest_shift(), ", rms speed ",
-                   run.rms_speed());
-            CHECK(run.farthest_shift() < 0.01);
-            CHECK(run.rms_speed() < 1e-3);
-        }
+        check_cases<Real>(torture::card_houses(extent()));
     }
     TEST_CASE_TEMPLATE("A33: a wave of dominoes runs at one speed over sqrt(g l) at three sizes", Real, float,
                        double) {

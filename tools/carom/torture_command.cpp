@@ -13,10 +13,14 @@
 #include "interrupt.hpp"
 #include "option_values.hpp"
 #include "progress_bar.hpp"
+#include "report/kinds.hpp"
+#include "results/page_file.hpp"
 #include "results/whole_file.hpp"
 #include "torture/case.hpp"
 #include "torture/results.hpp"
+#include "torture/rows.hpp"
 #include "torture/run_tasks.hpp"
+#include "torture/tables.hpp"
 
 namespace carom::tool {
 namespace {
@@ -56,9 +60,11 @@ void list_torture_cases() {
 std::vector<Row> rows_of(const Torture& asked, const torture::Case& of) {
     const std::vector<torture::Task> tasks = of.tasks(asked.options);
     ProgressBar bar(static_cast<std::int64_t>(tasks.size()), true, "run");
-    return torture::run_tasks(
+    std::vector<Row> rows = torture::run_tasks(
         tasks, static_cast<int>(asked.jobs),
         [&](std::size_t done) { bar.update(static_cast<std::int64_t>(done)); }, is_interrupted);
+    if (!of.is_matrix) std::erase_if(rows, [](const Row& row) { return !row.has_run(); });
+    return rows;
 }
 
 void make_torture_folder(const fs::path& folder) {
@@ -83,11 +89,15 @@ int run_torture(const Torture& asked) {
         rows.insert(rows.end(), found.begin(), found.end());
     }
     const std::string text = torture::to_json(cases, rows, asked.options).dump(1) + '\n';
-    write_whole_file(asked.out / "torture.json", text);
+    const fs::path file = asked.out / "torture.json";
+    write_whole_file(file, text);
+    write_page(asked.out / "report.html", report::page_of({file}));
     if (asked.json) std::fwrite(text.data(), 1, text.size(), stdout);
-    const auto failed = std::count_if(rows.begin(), rows.end(), [](const Row& row) { return !row.passes(); });
+    const auto failed =
+        std::count_if(rows.begin(), rows.end(), [](const Row& row) { return row.has_failed(); });
+    const auto ran = std::count_if(rows.begin(), rows.end(), [](const Row& row) { return row.has_run(); });
     if (!asked.json)
-        std::printf("%zu runs, %td failed. Results in %s: torture.json\n", rows.size(), failed,
+        std::printf("%td runs, %td failed. Results in %s: torture.json report.html\n", ran, failed,
                     asked.out.c_str());
     if (is_interrupted()) std::fprintf(stderr, "Interrupted: what had ended until then is in the result\n");
     return failed > 0 ? kDoubtful : kDone;
@@ -107,6 +117,14 @@ std::vector<Solver> solvers_named(const std::string& text) {
     for (const std::string& name : split_at_commas(text))
         solvers.push_back(*solver_named(known_value("--solver", name, known)));
     return solvers;
+}
+
+std::vector<std::string> rows_named(const std::string& text) {
+    const std::vector<std::string> names = torture::names_of_rows();
+    const std::vector<std::string_view> known(names.begin(), names.end());
+    std::vector<std::string> rows;
+    for (const std::string& name : split_at_commas(text)) rows.push_back(known_value("--rows", name, known));
+    return rows;
 }
 
 void add_numbers(CLI::App& command, const std::shared_ptr<Torture>& asked) {
@@ -138,7 +156,7 @@ void add_torture_command(CLI::App& program, Action& action) {
         program.add_subcommand("torture", "Hard cases under every solver: pass or fail, with the number");
     auto asked = std::make_shared<Torture>();
     command->add_option("cases", asked->cases, "Cases (default: all; --list names them)")->type_name("CASE");
-    command->add_option("--out", asked->out, "Folder of torture.json (default: out/torture)")
+    command->add_option("--out", asked->out, "Folder of torture.json and report.html (default: out/torture)")
         ->type_name("DIR");
     add_numbers(*command, asked);
     command
@@ -160,6 +178,13 @@ void add_torture_command(CLI::App& program, Action& action) {
             "--limit", [asked](const std::string& text) { asked->options.limit = time_limit(text); },
             "Seconds of processor time after which a run is given up (default 20)")
         ->type_name("S");
+    command
+        ->add_option_function<std::string>(
+            "--rows", [asked](const std::string& text) { asked->options.rows = rows_named(text); },
+            "Codes of `hard`, names of `envelopes`, with commas between them (default: all)")
+        ->type_name("NAME");
+    command->add_flag("--quick", asked->options.is_quick,
+                      "`hard` does a part of its long cases, `envelopes` tries their first values alone");
     command->add_flag("--json", asked->json, "Prints torture.json in place of the tables");
     command->add_flag("--list", asked->list, "Lists the cases and ends");
     command->callback([asked, &action] { action = [asked] { return run_torture(*asked); }; });

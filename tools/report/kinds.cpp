@@ -30,6 +30,7 @@ constexpr std::array kKinds{
     Kind{"profile", nullptr, &draw_profile},
     Kind{"prices", nullptr, &draw_prices},
     Kind{"accuracy", &draw_accuracy},
+    Kind{"torture", &draw_torture},
 };
 
 std::string known_kinds() {

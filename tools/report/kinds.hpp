@@ -25,6 +25,7 @@ struct Result {
 /// @throws ResultError
 void draw_run(const Result& result, Page& page);
 void draw_accuracy(const Result& result, Page& page);
+void draw_torture(const Result& result, Page& page);
 
 /// Results of measurements of one kind, at least one: several are compared side by side, in one chart.
 void draw_scaling(const std::vector<Result>& results, Page& page);

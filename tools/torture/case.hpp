@@ -23,6 +23,7 @@ struct Case {
     std::string_view id;
     std::string_view title;
     bool is_summed_up = false;  ///< printed as one line a solver, with the failing rows in full
+    bool is_matrix = false;     ///< a column a solver; what a solver refuses is a cell that says so
     std::vector<Task> (*tasks)(const Options& asked);
 };
 
@@ -31,6 +32,8 @@ Case random_worlds();
 Case drop();
 Case rest();
 Case impacts();
+Case hard();
+Case envelopes();
 
 /// All of them, in order. A new case is a file, a line above and a line in cases.cpp.
 std::span<const Case> all_cases();

@@ -5,7 +5,8 @@
 namespace carom::torture {
 
 std::span<const Case> all_cases() {
-    static const std::vector<Case> cases{passive(), random_worlds(), drop(), rest(), impacts()};
+    static const std::vector<Case> cases{passive(), random_worlds(), drop(),     rest(),
+                                         impacts(), hard(),          envelopes()};
     return cases;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace carom::torture {
@@ -17,6 +18,8 @@ struct Options {
     std::optional<std::int64_t> bodies{};  ///< of a crowd; of random scenes: at most
     std::vector<Solver> solvers{};         ///< empty: those that a case asks for
     std::optional<Precision> precision{};
+    std::vector<std::string> rows{};  ///< codes of `hard`, names of `envelopes`; empty: all
+    bool is_quick = false;            ///< `hard` and `envelopes` do a part
     double limit = 20;  ///< s of processor time: a run that takes longer is given up, and has failed
 };
 

@@ -2,7 +2,6 @@
 
 #include <nlohmann/json.hpp>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "torture/case.hpp"
@@ -17,8 +16,5 @@ Outcome outcome_from(const Json& json);
 
 /// Everything: a row a scene and solver, and how many of each case pass.
 Json to_json(std::span<const Case* const> cases, std::span<const Row> rows, const Options& asked);
-
-/// The rows of one case as tables; a number above its mark has a ! behind it.
-std::string table_of(const Case& of, std::span<const Row> rows);
 
 }  // namespace carom::torture

@@ -1,7 +1,5 @@
 #include "torture/run_tasks.hpp"
 
-#include <carom/errors.hpp>
-
 #include <poll.h>
 #include <sys/mman.h>
 #ifdef __linux__
@@ -60,12 +58,23 @@ struct Running {
 Outcome outcome_of(const Task& task) {
     try {
         return task.run();
-    } catch (const Error& error) {
-        // A solver that was asked for by its name may refuse; `auto` may not.
-        return {.failure = error.what(), .is_skipped = task.solver != name_of(Solver::automatic)};
     } catch (const std::exception& error) {
         return {.failure = error.what()};
     }
+}
+
+int answers = -1;  // of a child: its end of the pipe
+
+/// A line of JSON. @return whether the parent has it
+bool answer(const Outcome& outcome) {
+    const std::string text = to_json(outcome).dump() + '\n';
+    std::size_t written = 0;
+    while (written < text.size()) {
+        const ssize_t part = write(answers, text.data() + written, text.size() - written);
+        if (part <= 0) return false;
+        written += static_cast<std::size_t>(part);
+    }
+    return true;
 }
 
 [[noreturn]] void run_child(const Task& task, int pipe, std::int64_t* step) {
@@ -78,14 +87,8 @@ Outcome outcome_of(const Task& task) {
     const rlimit no_core{0, 0};
     setrlimit(RLIMIT_CORE, &no_core);
     watch_over_steps(step);
-    const std::string text = to_json(outcome_of(task)).dump();
-    std::size_t written = 0;
-    while (written < text.size()) {
-        const ssize_t part = write(pipe, text.data() + written, text.size() - written);
-        if (part <= 0) _exit(1);
-        written += static_cast<std::size_t>(part);
-    }
-    _exit(0);
+    answers = pipe;
+    _exit(answer(outcome_of(task)) ? 0 : 1);
 }
 
 Running start(std::span<const Task> tasks, std::size_t index) {
@@ -120,13 +123,28 @@ bool read_some(Running& running) {
     return count == 0 || (count < 0 && errno != EINTR && errno != EAGAIN);
 }
 
+/// The last whole line of what a child said, if there is one.
+std::optional<Outcome> last_answer(const std::string& text) {
+    const std::size_t end = text.rfind('\n');
+    if (end == std::string::npos) return {};
+    const std::size_t before = end == 0 ? std::string::npos : text.rfind('\n', end - 1);
+    const std::size_t begin = before == std::string::npos ? 0 : before + 1;
+    return outcome_from(Json::parse(text.substr(begin, end - begin)));
+}
+
 Outcome finish(Running& running) {
     close(running.pipe);
     int status = 0;
     while (waitpid(running.process, &status, 0) < 0 && errno == EINTR) {
     }
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return outcome_from(Json::parse(running.text));
-    return {.failure = reason_of(status, *running.step->get())};
+    std::optional<Outcome> last = last_answer(running.text);
+    if (last && WIFEXITED(status) && WEXITSTATUS(status) == 0) return *std::move(last);
+    Outcome outcome = std::move(last).value_or(Outcome{});
+    if (outcome.bracket && WIFSIGNALED(status) && WTERMSIG(status) == SIGPROF)
+        outcome.bracket->is_out_of_time = true;
+    else
+        outcome.failure = reason_of(status, *running.step->get());
+    return outcome;
 }
 
 void end_all(std::vector<Running>& all) {
@@ -138,6 +156,10 @@ void end_all(std::vector<Running>& all) {
 }
 
 }  // namespace
+
+void keep_so_far(const Outcome& outcome) {
+    if (answers >= 0) answer(outcome);
+}
 
 std::vector<Row> run_tasks(std::span<const Task> tasks, int processes,
                            const std::function<void(std::size_t)>& report,
@@ -162,7 +184,7 @@ std::vector<Row> run_tasks(std::span<const Task> tasks, int processes,
     end_all(all);
     std::vector<Row> rows;
     for (std::size_t i = 0; i < tasks.size(); ++i)
-        if (outcomes[i] && !outcomes[i]->is_skipped)
+        if (outcomes[i])
             rows.push_back({tasks[i].case_id, tasks[i].scene, tasks[i].solver, tasks[i].precision,
                             std::move(*outcomes[i])});
     return rows;

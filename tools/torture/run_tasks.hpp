@@ -13,9 +13,12 @@ namespace carom::torture {
 /// @param processes  at a time
 /// @param report  called whenever a task has ended, with the number of those that have
 /// @param stop    asked now and then; then those that run are ended, and the rows so far are returned
-/// @return in the order of the tasks, without those that were skipped
+/// @return in the order of the tasks
 /// @throws std::runtime_error if the system gives no process or pipe
 std::vector<Row> run_tasks(std::span<const Task> tasks, int processes,
                            const std::function<void(std::size_t)>& report, const std::function<bool()>& stop);
+
+/// What a task knows so far: its row, should it be ended before it returns. Nothing happens outside of tasks.
+void keep_so_far(const Outcome& outcome);
 
 }  // namespace carom::torture

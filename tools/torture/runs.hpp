@@ -1,7 +1,7 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
-#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -14,8 +14,21 @@ namespace carom::torture {
 inline constexpr double kGravity = 9.81;  // m/s²
 
 /// The solvers asked for, or these.
-inline std::vector<Solver> solvers_of(const Options& asked, std::initializer_list<Solver> otherwise) {
-    return asked.solvers.empty() ? std::vector<Solver>(otherwise) : asked.solvers;
+inline std::vector<Solver> solvers_of(const Options& asked, const std::vector<Solver>& otherwise) {
+    return asked.solvers.empty() ? otherwise : asked.solvers;
+}
+
+/// Those that a scene is for: `rattle` has no contacts, and nothing to do without joints.
+inline std::vector<Solver> every_solver_for(const Scene& scene) {
+    std::vector<Solver> all{Solver::automatic, Solver::soft, Solver::impulse, Solver::event};
+    if (!scene.joints.empty()) all.push_back(Solver::rattle);
+    all.push_back(Solver::pairwise);
+    return all;
+}
+
+/// Whether a row of the matrix, or an envelope, is among those asked for.
+inline bool is_named(const Options& asked, const std::string& row) {
+    return asked.rows.empty() || std::find(asked.rows.begin(), asked.rows.end(), row) != asked.rows.end();
 }
 
 inline std::vector<Precision> precisions_of(const Options& asked) {

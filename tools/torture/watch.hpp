@@ -25,6 +25,7 @@ class Watch {
     bool step(double dt);
     /// Steps up to a time of the world [s]. @return false once the limit is exceeded
     bool advance_to(double time);
+    void set_velocity(std::size_t body, Vec2 velocity) { simulation_->set_velocity(body, velocity); }
 
     const Scene& scene() const { return scene_; }  ///< with the solver and precision that run
     const tool::Simulation& simulation() const { return *simulation_; }

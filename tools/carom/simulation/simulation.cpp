@@ -12,6 +12,12 @@ namespace {
 
 }  // namespace
 
+void Simulation::set_velocity(std::size_t, Vec2) {
+    throw Error(
+        ErrorCode::not_built_yet,
+        "This engine's bodies are not touched while it runs; the solvers of a World are. Take one of these.");
+}
+
 std::vector<std::byte> Simulation::saved_state() const {
     refuse_states();
 }

@@ -33,6 +33,9 @@ class Simulation {
     /// @throws carom::Error (interrupted, given_up) if it ended early; the state is that of time()
     virtual void step(double dt) = 0;
 
+    /// @throws carom::Error (not_built_yet) but for worlds
+    virtual void set_velocity(std::size_t body, Vec2 velocity);
+
     virtual std::size_t body_count() const = 0;
     virtual Precision precision() const = 0;
     virtual double time() const = 0;  ///< s

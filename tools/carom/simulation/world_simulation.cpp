@@ -23,15 +23,16 @@ class WorldSimulation final : public Simulation {
     }
 
     void step(double dt) override { world_.step(dt); }
+    void set_velocity(std::size_t body, Vec2 velocity) override {
+        world_.set_velocity(id_of(body), velocity);
+    }
 
     std::size_t body_count() const override { return world_.body_count(); }
     Precision precision() const override {
         return std::is_same_v<Real, float> ? Precision::single_ : Precision::double_;
     }
     double time() const override { return world_.time(); }
-    BodyState state(std::size_t body) const override {
-        return world_.state(BodyId{.index = static_cast<std::uint32_t>(body), .generation = 0});
-    }
+    BodyState state(std::size_t body) const override { return world_.state(id_of(body)); }
 
     void copy_frame(const FrameTarget& frame) const override {
         auto* position = reinterpret_cast<Real*>(frame.position);
@@ -78,6 +79,10 @@ class WorldSimulation final : public Simulation {
     void restore_state(std::span<const std::byte> state) override { world_.restore_state(state); }
 
   private:
+    static BodyId id_of(std::size_t body) {
+        return {.index = static_cast<std::uint32_t>(body), .generation = 0};
+    }
+
     BasicWorld<Real> world_;
     bool keeps_ledger_ = false;
     mutable std::vector<Moving> by_body_;  // while a frame is copied
