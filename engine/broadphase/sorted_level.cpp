@@ -72,7 +72,7 @@ void SortedLevel<Real>::place_bodies(const LevelInput<Real>& input) {
     std::fill_n(x_.data() + count, kPlacesBeyond, std::numeric_limits<Real>::infinity());
     std::fill_n(y_.data() + count, kPlacesBeyond, Real{0});
     std::fill_n(reach_.data() + count, kPlacesBeyond, Real{0});
-    // Who reads a batch at the end reads no row but of its own line.
+    // A batch that is read at the end has rows of its own line alone.
     std::fill_n(row_.data() + count, kPlacesBeyond, row_[count - 1]);
     std::fill_n(cell_.data() + count, kPlacesBeyond, 0);  // of saved states every byte is known
 }
