@@ -26,6 +26,10 @@ constexpr float kTiny = 1e-30f;  // m², so that a contact in the centre of mass
 constexpr std::uint32_t kLongestBroad = 64;
 constexpr std::uint32_t kMostColours = 64;  // bits of a word
 
+// For the executor: rows of a task, and ns a contact on one thread.
+constexpr std::size_t kRowsPerTask = 256;
+constexpr double kNanosecondsToJoin = 15;
+
 /// Two contacts of a body and how well they go together, as a number: the larger the better, of equal ones
 /// the first. The upper half is in the order of the score, the lower tells which two they are.
 std::int64_t two_of(float score, std::size_t i, std::size_t j) {
@@ -45,12 +49,19 @@ static_assert(kMostJoined <= 16);
 
 }  // namespace
 
-void PathCut::cut(std::span<const ContactLink> contacts, std::size_t rows, std::size_t longest) {
+void PathCut::cut(std::span<const ContactLink> contacts, std::size_t rows, std::size_t longest,
+                  const Executor& executor) {
     list_contacts_of_bodies(contacts, rows);
     count_loads(contacts, rows);
     joined_.assign(2 * contacts.size(), -1);
-    for (std::size_t row = 0; row < rows; ++row)
-        if (first_at_[row + 1] - first_at_[row] > 1) join_at(contacts, static_cast<std::int32_t>(row));
+    const std::size_t tasks = (rows + kRowsPerTask - 1) / kRowsPerTask;
+    executor.for_each_task(tasks, kNanosecondsToJoin * static_cast<double>(contacts.size()),
+                           [&](std::size_t task) {
+                               for (std::size_t row = task * kRowsPerTask;
+                                    row < std::min(rows, (task + 1) * kRowsPerTask); ++row)
+                                   if (first_at_[row + 1] - first_at_[row] > 1)
+                                       join_at(contacts, static_cast<std::int32_t>(row));
+                           });
     walk(contacts, rows, longest);
     split_broad(contacts);
     colour(contacts, rows);
@@ -270,7 +281,7 @@ void PathCut::lay_out(std::span<const ContactLink> contacts) {
         const Piece &p = coloured_[i], &q = coloured_[j];
         return p.colour != q.colour ? p.colour < q.colour : p.length > q.length;
     });
-    places_.resize(contacts.size());
+    places_.resize(contacts.size()), contacts_.clear();
     first_link_.assign(1, 0), first_bundle_.assign(1, 0);
     first_contacts_.clear(), jumps_.clear(), is_slender_.clear();
     longest_ = 0, paths_ = coloured_.size();
@@ -307,7 +318,10 @@ void PathCut::lay_out_colour(std::span<const ContactLink> contacts, std::size_t 
         std::size_t length = end_of_length_.size();  // of the bundle
         for (std::uint8_t lane = 0; lane < kPathLanes && left > 0; ++lane) {
             const Piece& piece = *take(length);
-            if (lane == 0) length = piece.length;
+            if (lane == 0) {
+                length = piece.length;
+                contacts_.resize((begin + length) * kPathLanes, -1);
+            }
             used[lane] = piece.length;
             first_contacts_[(is_slender_.size() - 1) * kPathLanes + lane] = sequence_[piece.first].contact;
             put(contacts, piece, lane, begin);
@@ -332,6 +346,7 @@ void PathCut::put(std::span<const ContactLink> contacts, const Piece& piece, std
     if (is_slender(contacts, piece)) is_slender_.back() = 1;
     for (std::uint32_t k = 0; k < piece.length; ++k) {
         const Step& s = sequence_[piece.first + k];
+        contacts_[(link + k) * kPathLanes + lane] = s.contact;
         places_[static_cast<std::size_t>(s.contact)] = {static_cast<std::uint32_t>(link + k),
                                                         static_cast<std::uint32_t>(is_slender_.size() - 1),
                                                         lane, s.is_reversed};
@@ -352,8 +367,8 @@ std::size_t PathCut::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
     return of(first_at_) + of(contact_at_) + of(joined_) + of(is_seen_) + of(piece_of_row_) + of(sequence_) +
            of(pieces_) + of(coloured_) + of(used_) + of(loaded_count_) + of(order_) + of(count_) +
-           of(places_) + of(first_link_) + of(first_bundle_) + of(first_contacts_) + of(jumps_) +
-           of(is_slender_) + of(next_of_length_) + of(end_of_length_);
+           of(places_) + of(contacts_) + of(first_link_) + of(first_bundle_) + of(first_contacts_) +
+           of(jumps_) + of(is_slender_) + of(next_of_length_) + of(end_of_length_);
 }
 
 }  // namespace carom

@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "parallel/executor.hpp"
+
 namespace carom {
 
 /// A contact as the cut into paths sees it: a link between two bodies.
@@ -24,7 +26,7 @@ struct ContactLink {
 /// Shorter paths stand behind those that end before their bundle does, after a link without a contact, so
 /// that few places are empty. What finds no colour is alone in a bundle of a colour of its own.
 ///
-/// Cost: about 100 ns a contact, on one thread. docs/decisions/0027-paths-of-contacts.md.
+/// Cost: about 100 ns a contact, most of it on one thread. docs/decisions/0027-paths-of-contacts.md.
 class PathCut {
   public:
     /// Colours that whole paths get, by preference; more are for what is left over.
@@ -48,10 +50,13 @@ class PathCut {
 
     /// @param rows  of bodies
     /// @param longest  contacts in a path, >= 1; those that are not slender have at most 64
-    void cut(std::span<const ContactLink> contacts, std::size_t rows, std::size_t longest);
+    void cut(std::span<const ContactLink> contacts, std::size_t rows, std::size_t longest,
+             const Executor& executor);
 
     /// The place of each contact, in the order of `cut`.
     std::span<const Place> places() const { return places_; }
+    /// The contact in each lane of each link, [links][kPathLanes]; -1: none.
+    std::span<const std::int32_t> contacts() const { return contacts_; }
     std::size_t bundles() const { return first_link_.size() - 1; }
     std::size_t links() const { return first_link_.back(); }
     std::size_t colours() const { return first_bundle_.size() - 1; }
@@ -73,8 +78,8 @@ class PathCut {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.places_, self.first_link_, self.first_bundle_, self.first_contacts_, self.jumps_,
-                self.is_slender_, self.longest_, self.paths_);
+        archive(self.places_, self.contacts_, self.first_link_, self.first_bundle_, self.first_contacts_,
+                self.jumps_, self.is_slender_, self.longest_, self.paths_);
     }
 
   private:
@@ -120,6 +125,7 @@ class PathCut {
     std::vector<std::uint32_t> loaded_count_;  // by row: loaded contacts
     std::vector<std::uint32_t> order_, count_;
     std::vector<Place> places_;
+    std::vector<std::int32_t> contacts_;  // by place
     std::vector<std::size_t> first_link_{0}, first_bundle_{0};
     std::vector<std::int32_t> first_contacts_;
     std::vector<Jump> jumps_;
