@@ -35,14 +35,15 @@ bool is_nothing(const Bodies<Real>& bodies, std::int32_t b) {
 
 /// @param is_same  whether the contacts are those of the step before
 template <class Real>
-void PathSolver<Real>::choose_paths(const WorldState<Real>& world, double dt, bool is_same) {
+void PathSolver<Real>::choose_paths(const WorldState<Real>& world, double dt, bool is_same,
+                                    const Executor& executor) {
     judge_mood();
     ++since_cut_;
     const bool is_wild_crowd = mood_ == PathMood::wild && manifolds.live().size() >= kFewContacts;
     if (is_wild_crowd && mood_of_cut_ == mood_ && since_cut_ < kStepsOfWildCut && !is_cut_forgotten_)
         keep_paths(world);
     else if (!is_same || is_wild_crowd || since_cut_ >= kStepsOfCut || mood_of_cut_ != mood_)
-        cut_paths(world, dt);
+        cut_paths(world, dt, executor);
 }
 
 /// Judges by the last step whether paths settle, and by this one whether contacts come and go.
@@ -87,7 +88,7 @@ bool PathSolver<Real>::stays_apart(const WorldState<Real>& world, std::int32_t c
 }
 
 template <class Real>
-void PathSolver<Real>::cut_paths(const WorldState<Real>& world, double dt) {
+void PathSolver<Real>::cut_paths(const WorldState<Real>& world, double dt, const Executor& executor) {
     const bool is_wild_crowd = mood_ == PathMood::wild && manifolds.live().size() >= kFewContacts;
     const Bodies<Real>& bodies = world.bodies;
     contact_links_.clear();
@@ -111,7 +112,7 @@ void PathSolver<Real>::cut_paths(const WorldState<Real>& world, double dt) {
         contact_links_.push_back(link);
     }
     mood_of_cut_ = mood_;
-    cut_.cut(contact_links_, bodies.moving(), kLongest[static_cast<std::size_t>(mood_)]);
+    cut_.cut(contact_links_, bodies.moving(), kLongest[static_cast<std::size_t>(mood_)], executor);
     since_cut_ = 0, ++counters.cuts;
     links_hold_ = false;
     is_cut_forgotten_ = !is_wild_crowd;  // no contact knows its place
@@ -140,15 +141,15 @@ void PathSolver<Real>::keep_paths(const WorldState<Real>& world) {
     links_hold_ = false;
 }
 
-template void PathSolver<float>::choose_paths(const WorldState<float>&, double, bool);
+template void PathSolver<float>::choose_paths(const WorldState<float>&, double, bool, const Executor&);
 template void PathSolver<float>::judge_mood();
 template bool PathSolver<float>::stays_apart(const WorldState<float>&, std::int32_t, double) const;
-template void PathSolver<float>::cut_paths(const WorldState<float>&, double);
+template void PathSolver<float>::cut_paths(const WorldState<float>&, double, const Executor&);
 template void PathSolver<float>::keep_paths(const WorldState<float>&);
-template void PathSolver<double>::choose_paths(const WorldState<double>&, double, bool);
+template void PathSolver<double>::choose_paths(const WorldState<double>&, double, bool, const Executor&);
 template void PathSolver<double>::judge_mood();
 template bool PathSolver<double>::stays_apart(const WorldState<double>&, std::int32_t, double) const;
-template void PathSolver<double>::cut_paths(const WorldState<double>&, double);
+template void PathSolver<double>::cut_paths(const WorldState<double>&, double, const Executor&);
 template void PathSolver<double>::keep_paths(const WorldState<double>&);
 
 }  // namespace carom

@@ -24,6 +24,10 @@ constexpr float kTiny = 1e-30f;  // m², so that a contact in the centre of mass
 constexpr std::uint32_t kLongestBroad = 64;
 constexpr std::uint32_t kMostColours = 64;  // bits of a word
 
+// For the executor: rows of a task, and ns a contact on one thread.
+constexpr std::size_t kRowsPerTask = 256;
+constexpr double kNanosecondsToJoin = 15;
+
 /// Two contacts of a body and how well they go together, as a number: the larger the better, of equal ones
 /// the first. The upper half is in the order of the score, the lower tells which two they are.
 std::int64_t two_of(float score, std::size_t i, std::size_t j) {
@@ -43,12 +47,19 @@ static_assert(kMostJoined <= 16);
 
 }  // namespace
 
-void PathCut::cut(std::span<const ContactLink> contacts, std::size_t rows, std::size_t longest) {
+void PathCut::cut(std::span<const ContactLink> contacts, std::size_t rows, std::size_t longest,
+                  const Executor& executor) {
     list_contacts_of_bodies(contacts, rows);
     count_loads(contacts, rows);
     joined_.assign(2 * contacts.size(), -1);
-    for (std::size_t row = 0; row < rows; ++row)
-        if (first_at_[row + 1] - first_at_[row] > 1) join_at(contacts, static_cast<std::int32_t>(row));
+    const std::size_t tasks = (rows + kRowsPerTask - 1) / kRowsPerTask;
+    executor.for_each_task(tasks, kNanosecondsToJoin * static_cast<double>(contacts.size()),
+                           [&](std::size_t task) {
+                               for (std::size_t row = task * kRowsPerTask;
+                                    row < std::min(rows, (task + 1) * kRowsPerTask); ++row)
+                                   if (first_at_[row + 1] - first_at_[row] > 1)
+                                       join_at(contacts, static_cast<std::int32_t>(row));
+                           });
     walk(contacts, rows, longest);
     split_broad(contacts);
     colour(contacts, rows);

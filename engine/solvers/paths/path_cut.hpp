@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "kernels/paths/path_arguments.hpp"
+#include "parallel/executor.hpp"
 
 namespace carom {
 
@@ -31,7 +32,7 @@ struct ContactLink {
 /// of one link, in no colour. Where contacts come and go, a cut is kept for some steps: those that come stand
 /// beside it, those that go leave a link without a contact.
 ///
-/// Cost: about 100 ns a contact, on one thread. docs/decisions/0027-paths-of-contacts.md.
+/// Cost: about 100 ns a contact, most of it on one thread. docs/decisions/0027-paths-of-contacts.md.
 class PathCut {
   public:
     /// Colours that whole paths get, by preference; more are for what is left over.
@@ -61,7 +62,8 @@ class PathCut {
 
     /// @param rows  of bodies
     /// @param longest  contacts in a path, >= 1; those that are not slender have at most 64
-    void cut(std::span<const ContactLink> contacts, std::size_t rows, std::size_t longest);
+    void cut(std::span<const ContactLink> contacts, std::size_t rows, std::size_t longest,
+             const Executor& executor);
 
     /// Keeps the paths for contacts of which some are others than in `cut`, and in another order.
     /// @param slots  of contacts, as `slot_of` gave them; those without stand beside the paths

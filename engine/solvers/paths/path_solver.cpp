@@ -42,15 +42,24 @@ constexpr double kRestingShare = 1e-4;
 /// Two points whose rows are alike by more than this are solved as one: det K / (k11 k22).
 constexpr double kLeastDeterminant = 1e-3;
 
-/// Turns of rolling resistance and contacts in a substep, where there is any: a disc that rolls without slip
-/// loses a third of what is wrong in each.
+/// Turns of rolling resistance and contacts a substep: a rolling disc loses a third of what is wrong in each.
 constexpr int kTurnsOfRolling = 3;
 
 // ns on one thread, for the executor.
-constexpr double kNanosecondsToFill = 10, kNanosecondsToSolve = 10;
+constexpr double kNanosecondsToFill = 10, kNanosecondsToSolve = 10, kNanosecondsToKeep = 5;
 constexpr std::size_t kBundlesPerTask = 4, kContactsPerTask = 256, kWatchedPerTask = 64;
-/// Each has room of its own in `scratch`.
-constexpr std::size_t kMostTasksOfColour = 16;
+/// Shares of the bundles of a colour, tasks with room of their own in `scratch`: the same in all loops over
+/// links, so that a thread finds them in its cache.
+constexpr std::size_t kShares = 16;
+
+/// Calls fn(n) for n below `count`, on all threads.
+template <class Fn>
+void for_each_number(std::size_t count, double nanoseconds, const Executor& executor, const Fn& fn) {
+    executor.for_each_chunk(count, kContactsPerTask, nanoseconds,
+                            [&](std::size_t, std::size_t first, std::size_t last) {
+                                for (std::size_t n = first; n < last; ++n) fn(n);
+                            });
+}
 
 }  // namespace
 
@@ -62,7 +71,7 @@ void PathSolver<Real>::find(const WorldState<Real>& world, const EdgeCandidates<
     const bool is_same = manifolds.find(world, edges, terms, near, loops);
     counters.contacts = static_cast<std::int64_t>(manifolds.live().size());
     if (manifolds.live().empty()) return rolling_.clear();
-    choose_paths(world, terms.dt, is_same);
+    choose_paths(world, terms.dt, is_same, *loops.executor);
     lay_out(world, edges, terms, records, loops);
     if (world.effects.rolling_resistance) rolling_.find(world, manifolds, row_of_far_);
 }
@@ -113,7 +122,8 @@ void PathSolver<Real>::name_rows(const WorldState<Real>& world, const BodyRecord
             first >= 0 ? head_row(first) : static_cast<std::int32_t>(first_still_row_ + lane / kPathLanes);
     }
     closing_.resize(cut_.bundles());
-    scratch_.resize(path_scratch_bytes(cut_.longest()) * kMostTasksOfColour);
+    scratch_.resize(path_scratch_bytes(cut_.longest()) * kShares);
+    find_shares();
 }
 
 template <class Real>
@@ -150,13 +160,10 @@ void PathSolver<Real>::lay_out_padding(const StepLoops<Real>& loops) {
 template <class Real>
 void PathSolver<Real>::fill_links(bool found, const WorldState<Real>& world, const BodyRecords<Real>& records,
                                   const StepLoops<Real>& loops) {
-    const std::span<const std::int32_t> live = manifolds.live();
-    loops.executor->for_each_chunk(live.size(), kContactsPerTask, kNanosecondsToFill,
-                                   [&](std::size_t, std::size_t first, std::size_t last) {
-                                       for (std::size_t n = first; n < last; ++n)
-                                           if (manifolds.is_found(live[n]) == found)
-                                               fill_link(world, records, n, found);
-                                   });
+    const auto fill = [&](std::size_t n) {
+        if (manifolds.is_found(manifolds.live()[n]) == found) fill_link(world, records, n, found);
+    };
+    for_each_number(manifolds.live().size(), kNanosecondsToFill, *loops.executor, fill);
 }
 
 template <class Real>
@@ -270,27 +277,46 @@ SolvePaths<Real> PathSolver<Real>::arguments(const SubstepTerms& terms, BodyReco
     return k;
 }
 
+/// Bundles come in order of their length: shares have as many links as each other, not bundles.
+template <class Real>
+void PathSolver<Real>::find_shares() {
+    first_of_share_.clear();
+    for (std::size_t colour = 0; colour < cut_.colours(); ++colour) {
+        const std::size_t first = cut_.first_bundle()[colour], last = cut_.first_bundle()[colour + 1];
+        const std::span<const std::size_t> starts = cut_.first_link().subspan(first, last - first);
+        const std::size_t links = cut_.first_link()[last] - starts.front();
+        for (std::size_t share = 0; share <= kShares; ++share) {
+            const std::size_t link = starts.front() + share * links / kShares;
+            const auto at = std::lower_bound(starts.begin(), starts.end(), link);
+            first_of_share_.push_back(first + static_cast<std::size_t>(at - starts.begin()));
+        }
+    }
+}
+
+template <class Real>
+typename PathSolver<Real>::BundleRange PathSolver<Real>::share_of(std::size_t colour,
+                                                                  std::size_t share) const {
+    const std::size_t* first = &first_of_share_[colour * (kShares + 1) + share];
+    return {first[0], first[1]};
+}
+
 /// Colour after colour; the bundles of a colour side by side.
 template <class Real>
 void PathSolver<Real>::run(Pass pass, SolvePaths<Real> arguments, const StepLoops<Real>& loops) {
     const std::size_t bytes = path_scratch_bytes(cut_.longest());
     for (std::size_t colour = 0; colour < cut_.colours(); ++colour) {
         const std::size_t first = cut_.first_bundle()[colour], last = cut_.first_bundle()[colour + 1];
-        const std::span<const std::size_t> starts = cut_.first_link().subspan(first, last - first);
-        const std::size_t links = cut_.first_link()[last] - starts.front();
-        const std::size_t tasks = std::min(kMostTasksOfColour, last - first);
-        // Bundles come in order of their length: tasks have as many links as each other, not bundles.
-        const auto first_of = [&](std::size_t task) {
-            const std::size_t link = starts.front() + task * links / tasks;
-            return first + static_cast<std::size_t>(std::lower_bound(starts.begin(), starts.end(), link) -
-                                                    starts.begin());
-        };
-        std::array<std::size_t, kMostTasksOfColour> unsettled{};
+        const std::size_t links = cut_.first_link()[last] - cut_.first_link()[first];
+        const bool is_one = last - first < 2;  // bundle
+        std::array<std::size_t, kShares> unsettled{};
         loops.executor->for_each_task(
-            tasks, kNanosecondsToSolve * kPathLanes * static_cast<double>(links), [&](std::size_t task) {
+            is_one ? 1 : kShares, kNanosecondsToSolve * kPathLanes * static_cast<double>(links),
+            [&](std::size_t share) {
+                const BundleRange own = is_one ? BundleRange{first, last} : share_of(colour, share);
+                if (own.first == own.last) return;
                 SolvePaths<Real> k = arguments;
-                k.scratch = scratch_.data() + task * bytes;
-                unsettled[task] = pass(k, first_of(task), first_of(task + 1)).unsettled;
+                k.scratch = scratch_.data() + share * bytes;
+                unsettled[share] = pass(k, own.first, own.last).unsettled;
             });
         for (const std::size_t more : unsettled) counters.unsettled += static_cast<std::int64_t>(more);
     }
@@ -401,8 +427,8 @@ void PathSolver<Real>::take_back(const std::vector<std::uint8_t>& is_of, BodyRec
 }
 
 template <class Real>
-void PathSolver<Real>::end() {
-    for (std::size_t n = 0; n < manifolds.live().size(); ++n) {
+void PathSolver<Real>::end(const Executor& executor) {
+    const auto keep = [&](std::size_t n) {
         const PathCut::Place place = cut_.places()[n];
         const PathLink<Real>& link = links_[place.link];
         const std::size_t lane = place.lane;
@@ -410,7 +436,8 @@ void PathSolver<Real>::end() {
         memory.normal1 = link.normal1[lane], memory.normal2 = link.normal2[lane];
         memory.tangent = link.tangent[lane];
         memory.separation1 = link.separation1[lane], memory.separation2 = link.separation2[lane];
-    }
+    };
+    for_each_number(manifolds.live().size(), kNanosecondsToKeep, executor, keep);
 }
 
 template <class Real>
@@ -424,7 +451,7 @@ std::size_t PathSolver<Real>::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
     return manifolds.bytes() + rolling_.bytes() + of(row_of_far_) + of(with_kinematic_) + of(contact_links_) +
            of(slots_) + closing_.bytes() + cut_.bytes() + links_.bytes() + heads_.bytes() +
-           restless_.bytes() + scratch_.bytes() + of(hidden_);
+           restless_.bytes() + scratch_.bytes() + of(hidden_) + of(first_of_share_);
 }
 
 template class PathSolver<float>;

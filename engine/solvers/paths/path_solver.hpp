@@ -79,21 +79,24 @@ class PathSolver {
     /// Calls fn(contact) for each PathContact of the step.
     template <class Fn>
     void for_each(const Fn& fn) const {
-        for_each_from(0, fn);
+        for_each_of(0, manifolds.live().size(), fn);
     }
+    /// The same for those with numbers first ... last - 1 among all of the step.
+    template <class Fn>
+    void for_each_of(std::size_t first, std::size_t last, const Fn& fn) const;
     /// The same for those with walls and edges, which come last.
     template <class Fn>
     void for_each_surface(const Fn& fn) const {
         const auto live = manifolds.live();
         std::size_t first = live.size();
         while (first > 0 && live[first - 1] < 0) --first;
-        for_each_from(first, fn);
+        for_each_of(first, live.size(), fn);
     }
     /// Takes the impulses back that contacts of some bodies have.
     /// @param is_of  [rows], not 0 for these bodies
     void take_back(const std::vector<std::uint8_t>& is_of, BodyRecords<Real>& records);
     /// Keeps the impulses for the next step.
-    void end();
+    void end(const Executor& executor);
 
     /// Whether the loops over the contacts of the last step are long enough for more than one thread.
     bool has_long_loops() const;
@@ -115,22 +118,15 @@ class PathSolver {
         Real separation1, separation2;
     };
 
-    template <class Fn>
-    void for_each_from(std::size_t first, const Fn& fn) const {
-        const auto live = manifolds.live();
-        for (std::size_t n = first; n < live.size(); ++n) {
-            const ManifoldList<Real>& list = manifolds.list_of(live[n]);
-            const std::size_t i = Manifolds<Real>::place_of(live[n]);
-            const typename PathCut::Place place = cut_.places()[n];
-            fn(PathContact<Real>{links_[place.link], place.lane, near_row(place),
-                                 links_[place.link].body[place.lane], Partner(list.b[i]),
-                                 static_cast<double>(list.restitution[i])});
-        }
-    }
-
     SolvePaths<Real> arguments(const SubstepTerms& terms, BodyRecords<Real>& records);
+    /// Bundles first ... last - 1.
+    struct BundleRange {
+        std::size_t first, last;
+    };
+    BundleRange share_of(std::size_t colour, std::size_t share) const;
+    void find_shares();
     void run(Pass pass, SolvePaths<Real> arguments, const StepLoops<Real>& loops);
-    void choose_paths(const WorldState<Real>& world, double dt, bool is_same);
+    void choose_paths(const WorldState<Real>& world, double dt, bool is_same, const Executor& executor);
     void judge_mood();
     /// Row of the body where a link begins.
     std::int32_t near_row(PathCut::Place place) const {
@@ -138,7 +134,7 @@ class PathSolver {
         return is_first ? heads_[kPathLanes * place.bundle + place.lane]
                         : links_[place.link - 1].body[place.lane];
     }
-    void cut_paths(const WorldState<Real>& world, double dt);
+    void cut_paths(const WorldState<Real>& world, double dt, const Executor& executor);
     void keep_paths(const WorldState<Real>& world);
     bool stays_apart(const WorldState<Real>& world, std::int32_t contact, double dt) const;
     static void give(const PathLink<Real>& link, std::size_t lane, std::size_t near, std::size_t far,
@@ -170,6 +166,7 @@ class PathSolver {
     PathMood mood_ = PathMood::calm, mood_of_cut_ = PathMood::calm;
     Column<PathLink<Real>> links_;
     std::vector<Hidden> hidden_;
+    std::vector<std::size_t> first_of_share_;  // bundle, [colours][shares + 1]
     bool links_hold_ = false;  // they are laid out as the cut says, with what the step before left
     std::vector<std::int32_t> with_kinematic_;  // contacts of two bodies, one of which is kinematic
     Column<std::int32_t> heads_;
@@ -178,6 +175,20 @@ class PathSolver {
     Column<Real> restless_;  // m/s, kernels/paths/path_arguments.hpp
     Column<std::byte> scratch_;
 };
+
+template <class Real>
+template <class Fn>
+void PathSolver<Real>::for_each_of(std::size_t first, std::size_t last, const Fn& fn) const {
+    const auto live = manifolds.live();
+    for (std::size_t n = first; n < last; ++n) {
+        const ManifoldList<Real>& list = manifolds.list_of(live[n]);
+        const std::size_t i = Manifolds<Real>::place_of(live[n]);
+        const typename PathCut::Place place = cut_.places()[n];
+        fn(PathContact<Real>{links_[place.link], place.lane, near_row(place),
+                             links_[place.link].body[place.lane], Partner(list.b[i]),
+                             static_cast<double>(list.restitution[i])});
+    }
+}
 
 extern template class PathSolver<float>;
 extern template class PathSolver<double>;

@@ -120,7 +120,7 @@ class SoftSolver {
     /// What the impulses of this substep did; only the walls' impulses if the ledger is closed.
     void book_substep(const WorldState<Real>& world, Books& books) {
         books_.book_substep(view(), world, books);
-        book_paths(paths, records_, books);
+        book_paths(paths, records_, books, parts_of_books_, *loops_.executor);
     }
     /// Carries out the impacts of a substep.
     void carry_out_impacts(const Column<Real>& motion, Books& books, Interruption& interruption);
@@ -224,6 +224,7 @@ class SoftSolver {
     ContactChains<Real> chains_;
     EndProjection<Real> projection_;
     SubstepBooks<Real> books_;
+    std::vector<Books> parts_of_books_;  // of some contacts of shapes each
 };
 
 extern template class SoftSolver<float>;

@@ -74,7 +74,8 @@ void end_joints(SoftSimulation<Real>& sim) {
 
 template <class Real>
 void undo_tunnelling(SoftSimulation<Real>& sim) {
-    if (!sim.world.edges.empty()) sim.tunnelling.undo(sim.world, sim.flight(), sim.soft.graph.supports);
+    if (!sim.world.edges.empty())
+        sim.tunnelling.undo(sim.world, sim.flight(), sim.soft.graph.supports, sim.executor);
     if (sim.world.bodies.has_shapes && sim.can_touch())
         sim.shape_tunnelling.undo(sim.world, sim.flight(), sim.soft.records(), sim.soft.paths.manifolds);
 }

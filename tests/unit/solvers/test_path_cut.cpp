@@ -93,7 +93,7 @@ TEST_SUITE("solvers/paths/path_cut") {
                 random_contacts(random, bodies, static_cast<std::size_t>(below(random, 500)));
             const auto longest = static_cast<std::size_t>(1 + below(random, 20));
             PathCut cut;
-            cut.cut(contacts, bodies, longest);
+            cut.cut(contacts, bodies, longest, Executor());
             REQUIRE(cut.places().size() == contacts.size());
             std::set<std::pair<std::uint32_t, std::uint8_t>> places;
             for (const PathCut::Place& place : cut.places()) places.insert({place.link, place.lane});
@@ -131,7 +131,7 @@ TEST_SUITE("solvers/paths/path_cut") {
                 if (!contact.is_watched) on_paths.push_back(contact);
             }
             PathCut cut, without;
-            cut.cut(contacts, bodies, 16), without.cut(on_paths, bodies, 16);
+            cut.cut(contacts, bodies, 16, Executor()), without.cut(on_paths, bodies, 16, Executor());
             // The paths are those of the others alone.
             CHECK(cut.first_watched() == without.bundles());
             std::set<std::pair<std::uint32_t, std::uint8_t>> places;
@@ -154,7 +154,7 @@ TEST_SUITE("solvers/paths/path_cut") {
             const auto before =
                 random_contacts(random, bodies, static_cast<std::size_t>(1 + below(random, 300)));
             PathCut cut;
-            cut.cut(before, bodies, 16);
+            cut.cut(before, bodies, 16, Executor());
             const auto places_before = std::vector(cut.places().begin(), cut.places().end());
             std::vector<ContactLink> now;
             std::vector<PathCut::Slot> slots;
@@ -212,7 +212,7 @@ TEST_SUITE("solvers/paths/path_cut") {
         for (; body < 21; ++body) contacts.push_back({body, body + 1, 0, 1, 0, -1, true});
         for (++body; contacts.size() < 81; body += 2) contacts.push_back({body, body + 1, 0, 1, 0, -1, true});
         PathCut cut;
-        cut.cut(contacts, static_cast<std::size_t>(body), 128);
+        cut.cut(contacts, static_cast<std::size_t>(body), 128, Executor());
         CHECK(cut.bundles() == 1);
         CHECK(cut.links() == 21);
         CHECK(cut.paths() == 61);
@@ -223,7 +223,7 @@ TEST_SUITE("solvers/paths/path_cut") {
         for (std::int32_t body = 1; body < 12; ++body)
             contacts.push_back({body - 1, body, 0, 1, 0, -1, true});
         PathCut cut;
-        cut.cut(contacts, 12, 16);
+        cut.cut(contacts, 12, 16, Executor());
         CHECK(cut.bundles() == 1);
         CHECK(cut.links() == 12);
         CHECK(cut.longest() == 12);
@@ -238,7 +238,7 @@ TEST_SUITE("solvers/paths/path_cut") {
                 for (std::int32_t body = 0; body < high; ++body)
                     contacts.push_back({body, high + body, 1, 0, -1, 0, is_loaded});
             PathCut cut;
-            cut.cut(contacts, static_cast<std::size_t>(2 * high), 128);
+            cut.cut(contacts, static_cast<std::size_t>(2 * high), 128, Executor());
             return std::ranges::any_of(cut.is_slender(), [](std::uint8_t slender) { return slender != 0; });
         };
         CHECK(is_slender(12, true, false));
@@ -255,7 +255,7 @@ TEST_SUITE("solvers/paths/path_cut") {
                 for (std::int32_t body = 0; body < 100; ++body)
                     contacts.push_back({body, 100 + body, 1, 0, -1, 0, true});
             PathCut cut;
-            cut.cut(contacts, 200, 128);
+            cut.cut(contacts, 200, 128, Executor());
             CHECK(walk(cut, contacts).hangs_together);
             return cut.longest();
         };
@@ -269,7 +269,7 @@ TEST_SUITE("solvers/paths/path_cut") {
                 for (std::int32_t body = 1; body <= count; ++body)
                     contacts.push_back({0, body, static_cast<float>(body), 1, 0, -1, is_loaded});
                 PathCut cut;
-                cut.cut(contacts, static_cast<std::size_t>(count) + 1, 16);
+                cut.cut(contacts, static_cast<std::size_t>(count) + 1, 16, Executor());
                 const int joined = std::min(count, 12);
                 CHECK(cut.paths() == static_cast<std::size_t>((joined + 1) / 2 + count - joined));
             }
@@ -281,7 +281,7 @@ TEST_SUITE("solvers/paths/path_cut") {
                                                 {0, 3, 1, 0, -1, 0, true},
                                                 {0, 4, 0, 1, 0, -1, true}};
         PathCut cut;
-        cut.cut(contacts, 5, 16);
+        cut.cut(contacts, 5, 16, Executor());
         const auto same_path = [&](std::size_t i, std::size_t j) {
             return cut.places()[i].bundle == cut.places()[j].bundle &&
                    cut.places()[i].lane == cut.places()[j].lane;
@@ -294,13 +294,13 @@ TEST_SUITE("solvers/paths/path_cut") {
         std::vector<ContactLink> contacts;
         for (std::int32_t body = 1; body <= 1000; ++body) contacts.push_back({0, body, 0, 1, 0, -1, true});
         PathCut cut;
-        cut.cut(contacts, 1001, 16);
+        cut.cut(contacts, 1001, 16, Executor());
         CHECK(cut.places().size() == 1000);
         CHECK(cut.bundles() == cut.colours());  // all of them share body 0
     }
     TEST_CASE("without contacts there is nothing") {
         PathCut cut;
-        cut.cut({}, 10, 16);
+        cut.cut({}, 10, 16, Executor());
         CHECK(cut.bundles() == 0);
         CHECK(cut.links() == 0);
         CHECK(cut.colours() == 0);

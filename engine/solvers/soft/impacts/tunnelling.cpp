@@ -19,6 +19,8 @@ constexpr double kFastWay = 0.25;
 /// Edges are looked for in the circle around the way of a disc, this much wider against rounding.
 constexpr double kWiderCircle = 1 + 1e-9;
 
+constexpr double kNanosecondsToLook = 3;  // a disc, on one thread, for the executor
+
 /// A disc that is put back may get behind another edge by that.
 constexpr int kRounds = 3;
 
@@ -64,7 +66,8 @@ void Tunnelling<Real>::find_crossings(const WorldState<Real>& world, const StepF
         if (const Partner support = supports.partner(i); support.is_edge())
             note_crossing(world, flight, supports.a[i], support.edge_number());
     });
-    for (const std::int32_t row : strays_) note_crossings(world, flight, row);
+    strays_.for_each_below(world.bodies.moving(),
+                           [&](std::int32_t row) { note_crossings(world, flight, row); });
     std::sort(crossings_.begin(), crossings_.end(), [](const Crossing& left, const Crossing& right) {
         return std::tie(left.row, left.time, left.edge) < std::tie(right.row, right.time, right.edge);
     });
@@ -72,31 +75,40 @@ void Tunnelling<Real>::find_crossings(const WorldState<Real>& world, const StepF
 
 /// Lists discs that have left their margins: edges beyond these are none of their supports.
 template <class Real>
-void Tunnelling<Real>::find_strays(const WorldState<Real>& world, const StepFlight<Real>& flight) {
+void Tunnelling<Real>::find_strays(const WorldState<Real>& world, const StepFlight<Real>& flight,
+                                   const Executor& executor) {
     const Candidates<Real>& candidates = flight.candidates;
-    strays_.clear();
     const Bodies<Real>& bodies = world.bodies;
+    strays_.prepare(0, kRowsPerChunk);
     // No disc is made faster than the fastest by much, and only a fast one can pass.
     const double largest = flight.fastest * flight.dt / kFastWay;  // m, of discs that are fast
     if (!(largest > candidates.smallest_radius())) return;
-    for (std::size_t row = 0; row < bodies.moving(); ++row) {
+    const auto is_stray = [&](std::size_t row) {
         const double radius = bodies.radius[row];
-        if (radius >= largest) continue;
+        if (radius >= largest) return false;
         const Vec2 way = Vec2{bodies.position_x[row], bodies.position_y[row]} -
                          Vec2{candidates.built_x()[row], candidates.built_y()[row]};
         const double margin = static_cast<double>(candidates.reach()[row]) - radius;
         const double squared = length_squared(way);
-        if (squared <= margin * margin || !bodies.is_moving_disc(row)) continue;
+        if (squared <= margin * margin || !bodies.is_moving_disc(row)) return false;
         // Edges somewhat beyond its margin are among the supports, too.
-        if (std::sqrt(squared) - margin + candidates.farther_than_first(row) > flight.edges.allowance())
-            strays_.push_back(static_cast<std::int32_t>(row));
-    }
+        return std::sqrt(squared) - margin + candidates.farther_than_first(row) > flight.edges.allowance();
+    };
+    strays_.prepare(bodies.moving(), kRowsPerChunk);
+    executor.for_each_chunk(bodies.moving(), kRowsPerChunk, kNanosecondsToLook,
+                            [&](std::size_t chunk, std::size_t first, std::size_t last) {
+                                std::size_t count = 0;
+                                for (std::size_t row = first; row < last; ++row)
+                                    if (is_stray(row))
+                                        strays_.part(chunk)[count++] = static_cast<std::int32_t>(row);
+                                strays_.set_count(chunk, count);
+                            });
 }
 
 template <class Real>
 void Tunnelling<Real>::undo(WorldState<Real>& world, const StepFlight<Real>& flight,
-                            const ContactRows<Real>& supports) {
-    find_strays(world, flight);
+                            const ContactRows<Real>& supports, const Executor& executor) {
+    find_strays(world, flight, executor);
     for (int round = 0; round < kRounds; ++round) {
         find_crossings(world, flight, supports);
         if (crossings_.empty()) return;

@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "constraints/contact_rows.hpp"
+#include "parallel/executor.hpp"
 #include "solvers/substeps/step_terms.hpp"
+#include "state/chunked_list.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {
@@ -20,12 +22,11 @@ class Tunnelling {
   public:
     /// Puts discs that have got past an edge in this step back to it.
     /// @param supports  all that the contact graph has
-    /// Cost: O(supports); for each disc that was shot out of its margin O(edges)
-    void undo(WorldState<Real>& world, const StepFlight<Real>& flight, const ContactRows<Real>& supports);
+    /// Cost: O(bodies + supports); for each disc that was shot out of its margin O(edges)
+    void undo(WorldState<Real>& world, const StepFlight<Real>& flight, const ContactRows<Real>& supports,
+              const Executor& executor);
 
-    std::size_t bytes() const {
-        return crossings_.capacity() * sizeof(Crossing) + strays_.capacity() * sizeof(std::int32_t);
-    }
+    std::size_t bytes() const { return crossings_.capacity() * sizeof(Crossing) + strays_.bytes(); }
 
   private:
     /// A disc whose centre crossed an edge.
@@ -37,14 +38,14 @@ class Tunnelling {
     void note_crossing(const WorldState<Real>& world, const StepFlight<Real>& flight, std::int32_t disc,
                        std::int32_t number);
     void note_crossings(const WorldState<Real>& world, const StepFlight<Real>& flight, std::int32_t disc);
-    void find_strays(const WorldState<Real>& world, const StepFlight<Real>& flight);
+    void find_strays(const WorldState<Real>& world, const StepFlight<Real>& flight, const Executor& executor);
     void find_crossings(const WorldState<Real>& world, const StepFlight<Real>& flight,
                         const ContactRows<Real>& supports);
     void put_back(WorldState<Real>& world, const StepFlight<Real>& flight, const Crossing& passed,
                   bool to_start);
 
-    std::vector<Crossing> crossings_;   // of this step
-    std::vector<std::int32_t> strays_;  // rows that have left their margins in this step
+    std::vector<Crossing> crossings_;  // of this step
+    ChunkedList strays_;               // rows that have left their margins in this step
 };
 
 extern template class Tunnelling<float>;
