@@ -41,6 +41,7 @@ constexpr std::array<std::array<std::size_t, 2>, 10> kPairsOfNodes{
 template <class Real>
 bool CoarseCorrection<Real>::is_due(std::size_t bodies, int substeps, std::size_t fewest) {
     substeps_since_ = std::min(substeps_since_, kLongestPause) + substeps;
+    fewest_ = fewest;
     if (bodies < fewest || substeps_since_ < pause_) return false;
     kept_ = (substeps_since_ > kShortestPause ? kKeptAfterLong : 1.0) / substeps_since_;
     substeps_since_ = 0;
@@ -90,7 +91,7 @@ void CoarseCorrection<Real>::lay_out(std::size_t count, const Real* motion, cons
         all.x += part.x, all.y += part.y, all.xx += part.xx, all.yy += part.yy;
     }
     nodes_.clear();
-    if (all.count < static_cast<double>(kFewestOfSlender)) return;
+    if (all.count < static_cast<double>(fewest_)) return;
     const double x = all.x / all.count, y = all.y / all.count;
     const double half_x = kHalfWidth * std::sqrt(std::fmax(all.xx / all.count - x * x, 0)),
                  half_y = kHalfWidth * std::sqrt(std::fmax(all.yy / all.count - y * y, 0));

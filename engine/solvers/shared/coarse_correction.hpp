@@ -117,7 +117,8 @@ class CoarseCorrection {
 
     int pause_ = kShortestPause, substeps_since_ = 0;
     double kept_ = 1;
-    bool is_small_ = false;  // fewer than kFewestLoaded bodies push
+    bool is_small_ = false;               // fewer than kFewestLoaded bodies push
+    std::size_t fewest_ = kFewestLoaded;  // bodies that push, for a correction in this step
 
     Column<Real> load_, stress_, scale_;
     std::array<Extent, kParts> extents_;

@@ -35,7 +35,7 @@ std::size_t index(std::int32_t row) {
 
 template <class Real>
 void ContactChains<Real>::begin_step(const StepView<Real>& step) {
-    if (!(step.terms.fall_speed() > 0)) return chains_.clear();
+    if (step.records.count() < kFewestContacts || !(step.terms.fall_speed() > 0)) return chains_.clear();
     ++age_;
     const bool are_void = version_ != step.graph.version;
     if (version_ < 0 || age_ >= kStepsOfList || (are_void && !contacts_.empty() && age_ >= kFewestSteps))
