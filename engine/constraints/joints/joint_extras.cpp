@@ -97,10 +97,13 @@ void JointSystem::soften_taut_loops() {
         double* block = &matrix_[loop.first * count + loop.first];
         double least = block[0], alone = alone_[loop.first];
         if (loop.rows == 2) {  // the smaller of the two eigenvalues, and its direction
-            const double xx = block[0], xy = block[1], yy = block[count + 1];
-            least = 0.5 * (xx + yy) - std::hypot(0.5 * (xx - yy), xy);
-            const double of_larger = 0.5 * std::atan2(2 * xy, xx - yy);
-            loop.direction = {-std::sin(of_larger), std::cos(of_larger)};
+            const double xx = block[0], xy = block[1], yy = block[count + 1], half = 0.5 * (xx - yy),
+                         apart = std::sqrt(half * half + xy * xy);
+            least = 0.5 * (xx + yy) - apart;
+            loop.direction = half < 0 ? std::array{apart - half, -xy} : std::array{-xy, apart + half};
+            const double length =
+                std::sqrt(loop.direction[0] * loop.direction[0] + loop.direction[1] * loop.direction[1]);
+            for (double& part : loop.direction) part = length > 0 ? part / length : std::sqrt(0.5);
             alone = std::fmax(alone, alone_[loop.first + 1]);
         }
         loop.share = 1 - std::fmax(least, 0) / (kTaut * alone);
