@@ -23,7 +23,7 @@ std::string end_text(double value) {
     return number(value, "%.4g");
 }
 
-/// Of its mark; what has no number is beyond every mark.
+/// The share of its mark that a measure takes up; one without a number is beyond every mark.
 double share_of(const Json& measure) {
     const double share = number_of(measure.at("share"));
     return std::isnan(share) ? HUGE_VAL : share;
@@ -40,8 +40,8 @@ std::string words_of(const Json& measure) {
     return text;
 }
 
-/// Of the measures that fail the one farthest beyond its mark; else the first, which is what the case is
-/// about.
+/// The measure that a cell shows: of those that fail the one farthest beyond its mark; else the first, which
+/// is what the case is about.
 const Json* shown_of(const Json& row) {
     const Json* shown = nullptr;
     for (const Json& measure : row.at("measures")) {

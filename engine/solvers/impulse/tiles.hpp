@@ -82,7 +82,7 @@ class Tiles {
     std::size_t tile(std::size_t phase, std::size_t n) const {
         return is_side_by_side_ ? phase + 2 * n : phase;
     }
-    /// Of a world with several tiles.
+    /// The lines that the work on a tile may touch; known where a world has several tiles.
     const TileReach& reach(std::size_t tile) const { return reaches_[tile]; }
 
     /// The rows of the bodies of a tile, if it is a piece of the plane; in the order of the cells.

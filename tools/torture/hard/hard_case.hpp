@@ -33,7 +33,7 @@ struct Extent {
     }
 };
 
-/// Of several scenes of one kind: of each measure the one that takes up most of its mark.
+/// The worst of several scenes of one kind: of each measure the one that takes up most of its mark.
 /// @param run  of the first scene
 Measures worst_of_all(HardRun& run, const std::vector<Scene>& more,
                       const std::function<Measures(HardRun&)>& measures);
