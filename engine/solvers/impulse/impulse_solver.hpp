@@ -7,11 +7,11 @@
 #include "broadphase/candidates.hpp"
 #include "parallel/executor.hpp"
 #include "solvers/impulse/flights.hpp"
-#include "solvers/impulse/impact_lists.hpp"
-#include "solvers/impulse/impact_resolver.hpp"
-#include "solvers/impulse/resolver_pool.hpp"
-#include "solvers/impulse/resting_contacts.hpp"
-#include "solvers/impulse/tiles.hpp"
+#include "solvers/impulse/impacts/impact_lists.hpp"
+#include "solvers/impulse/impacts/impact_resolver.hpp"
+#include "solvers/impulse/impacts/resolver_pool.hpp"
+#include "solvers/impulse/impacts/resting_contacts.hpp"
+#include "solvers/impulse/impacts/tiles.hpp"
 #include "state/handles.hpp"
 
 namespace carom {

@@ -1,5 +1,5 @@
 // The calendar of impacts against a sorted set, and the lists of tiles.
-#include "solvers/impulse/impact_lists.hpp"
+#include "solvers/impulse/impacts/impact_lists.hpp"
 
 #include <doctest/doctest.h>
 

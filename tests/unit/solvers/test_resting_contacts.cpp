@@ -1,5 +1,5 @@
 // Contact forces of bodies at rest against statics, and against the exact solution in accelerations.
-#include "solvers/impulse/resting_contacts.hpp"
+#include "solvers/impulse/impacts/resting_contacts.hpp"
 
 #include "support/complementarity.hpp"
 #include "unit/solvers/flights_bench.hpp"

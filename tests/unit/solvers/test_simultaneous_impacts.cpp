@@ -1,5 +1,5 @@
 // Impacts at one instant against the exact solution of their complementarity problem, and closed forms.
-#include "solvers/impulse/simultaneous_impacts.hpp"
+#include "solvers/impulse/impacts/simultaneous_impacts.hpp"
 
 #include "support/complementarity.hpp"
 #include "unit/solvers/flights_bench.hpp"

@@ -1,5 +1,5 @@
 // Tiles: who works on one stays out of the way of who works on another at the same time, and does its own.
-#include "solvers/impulse/tiles.hpp"
+#include "solvers/impulse/impacts/tiles.hpp"
 
 #include <carom/world.hpp>
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "solvers/impulse/impact_calendar.hpp"
+#include "solvers/impulse/impacts/impact_calendar.hpp"
 
 namespace carom {
 

@@ -1,6 +1,6 @@
-#include "solvers/impulse/rough_impacts.hpp"
+#include "solvers/impulse/impacts/rough_impacts.hpp"
 
-#include "solvers/impulse/impact_sides.hpp"
+#include "solvers/impulse/impacts/impact_sides.hpp"
 
 namespace carom {
 

@@ -1,9 +1,9 @@
-#include "solvers/impulse/simultaneous_impacts.hpp"
+#include "solvers/impulse/impacts/simultaneous_impacts.hpp"
 
 #include <cmath>
 
-#include "solvers/impulse/impact_sides.hpp"
-#include "solvers/impulse/rough_impacts.hpp"
+#include "solvers/impulse/impacts/impact_sides.hpp"
+#include "solvers/impulse/impacts/rough_impacts.hpp"
 
 namespace carom {
 namespace {

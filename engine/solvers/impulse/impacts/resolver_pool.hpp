@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <memory>
 
-#include "solvers/impulse/impact_resolver.hpp"
+#include "solvers/impulse/impacts/impact_resolver.hpp"
 
 namespace carom {
 

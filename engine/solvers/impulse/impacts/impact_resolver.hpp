@@ -7,10 +7,10 @@
 #include "broadphase/candidates.hpp"
 #include "narrowphase/impact_time.hpp"
 #include "solvers/impulse/flights.hpp"
-#include "solvers/impulse/impact_lists.hpp"
-#include "solvers/impulse/resting_contacts.hpp"
-#include "solvers/impulse/simultaneous_impacts.hpp"
-#include "solvers/impulse/tiles.hpp"
+#include "solvers/impulse/impacts/impact_lists.hpp"
+#include "solvers/impulse/impacts/resting_contacts.hpp"
+#include "solvers/impulse/impacts/simultaneous_impacts.hpp"
+#include "solvers/impulse/impacts/tiles.hpp"
 
 namespace carom {
 

@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "simd/prefetch.hpp"
-#include "solvers/impulse/impact_resolver.hpp"
-#include "solvers/impulse/rough_impacts.hpp"
+#include "solvers/impulse/impacts/impact_resolver.hpp"
+#include "solvers/impulse/impacts/rough_impacts.hpp"
 
 // The part of a resolver that carries impacts out, one after the other.
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "solvers/impulse/flights.hpp"
-#include "solvers/impulse/simultaneous_impacts.hpp"
+#include "solvers/impulse/impacts/simultaneous_impacts.hpp"
 
 namespace carom {
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solvers/impulse/impact_resolver.hpp"
+#include "solvers/impulse/impacts/impact_resolver.hpp"
 
 // When and with whom: the part of a resolver that looks ahead.
 

@@ -1,4 +1,4 @@
-#include "solvers/impulse/resting_contacts.hpp"
+#include "solvers/impulse/impacts/resting_contacts.hpp"
 
 #include <algorithm>
 #include <cmath>

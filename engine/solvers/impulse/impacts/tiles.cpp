@@ -1,4 +1,4 @@
-#include "solvers/impulse/tiles.hpp"
+#include "solvers/impulse/impacts/tiles.hpp"
 
 namespace carom {
 namespace {
