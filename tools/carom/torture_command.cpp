@@ -185,6 +185,9 @@ void add_torture_command(CLI::App& program, Action& action) {
         ->type_name("NAME");
     command->add_flag("--quick", asked->options.is_quick,
                       "`hard` does a part of its long cases, `envelopes` tries their first values alone");
+    command->add_flag_callback(
+        "--no-joints", [asked] { asked->options.has_joints = false; },
+        "`random` has lone bodies in place of mechanisms");
     command->add_flag("--json", asked->json, "Prints torture.json in place of the tables");
     command->add_flag("--list", asked->list, "Lists the cases and ends");
     command->callback([asked, &action] { action = [asked] { return run_torture(*asked); }; });

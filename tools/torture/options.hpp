@@ -19,6 +19,7 @@ struct Options {
     std::vector<Solver> solvers{};         ///< empty: those that a case asks for
     std::optional<Precision> precision{};
     std::vector<std::string> rows{};  ///< codes of `hard`, names of `envelopes`; empty: all
+    bool has_joints = true;           ///< `random`: else lone bodies are in place of mechanisms
     bool is_quick = false;            ///< `hard` and `envelopes` do a part
     double limit = 20;  ///< s of processor time: a run that takes longer is given up, and has failed
 };

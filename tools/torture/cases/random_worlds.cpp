@@ -82,7 +82,8 @@ Outcome run(const RandomWorld& world, const WorldTraits& traits, Solver solver, 
 std::vector<Task> tasks(const Options& asked) {
     std::vector<Task> all;
     for_each_scene(asked, kScenes, [&](std::uint64_t index) {
-        const WorldTraits traits = world_traits(asked.seed, index, asked.bodies.value_or(kMostBodies));
+        WorldTraits traits = world_traits(asked.seed, index, asked.bodies.value_or(kMostBodies));
+        if (!asked.has_joints) traits.joined_share = 0;
         add_runs(all, {.case_id = "random",
                        .scene = in_words(traits),
                        .solvers = solvers_of(asked, {Solver::automatic, Solver::soft, Solver::impulse,
