@@ -62,6 +62,18 @@ void EdgeCandidates<Real>::place(const WorldState<Real>& world, double dt) {
 }
 
 template <class Real>
+void EdgeCandidates<Real>::settle(const WorldState<Real>& world) {
+    const Bodies<Real>& bodies = world.bodies;
+    for (EdgePose& pose : poses_) {
+        const std::size_t row = pose.row;
+        pose.end_position = {bodies.position_x[row], bodies.position_y[row]};
+        if (!bodies.has_rotation || pose.end_angle == static_cast<double>(bodies.angle[row])) continue;
+        pose.end_angle = bodies.angle[row];
+        pose.end_turn = rotation_by(pose.end_angle);
+    }
+}
+
+template <class Real>
 bool EdgeCandidates<Real>::has_left_margin(std::size_t body) const {
     const EdgePose& pose = poses_[body];
     const FoundAt& found = found_at_[body];

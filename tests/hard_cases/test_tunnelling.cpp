@@ -12,4 +12,7 @@ TEST_SUITE("hard cases/tunnelling") {
     TEST_CASE_TEMPLATE("B43: shapes that a drum throws about do not leave it", Real, float, double) {
         check_cases<Real>(torture::shapes_in_a_drum(extent()));
     }
+    TEST_CASE_TEMPLATE("B43: what a fast drum carries lies on it", Real, float, double) {
+        check_cases<Real>(torture::bodies_in_a_fast_drum(extent()));
+    }
 }

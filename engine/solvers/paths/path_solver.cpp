@@ -42,6 +42,12 @@ constexpr double kRestingShare = 1e-4;
 /// Two points whose rows are alike by more than this are solved as one: det K / (k11 k22).
 constexpr double kLeastDeterminant = 1e-3;
 
+/// Edges that turn farther in a step [rad] are taken to move straight on: of what is next to them then the
+/// start of the step tells nothing.
+constexpr double kMostTurn = 0.5;
+/// A body faces an edge whose direction is along its normal by no more than this, a cosine.
+constexpr double kFacing = 1e-3;
+
 /// Turns of rolling resistance and contacts a substep: a rolling disc loses a third of what is wrong in each.
 constexpr int kTurnsOfRolling = 3;
 
@@ -94,7 +100,7 @@ void PathSolver<Real>::lay_out(const WorldState<Real>& world, const EdgeCandidat
     if (manifolds.some_are_carried()) carry_links(terms, records, loops);
     fill_links(true, world, records, loops);
     links_hold_ = true;
-    move_still_rows(world, edges, records);
+    move_still_rows(world, edges, terms, records);
 }
 
 /// Rows at rest for the padding of each bundle and for what nothing moves, and the row where each path
@@ -178,7 +184,7 @@ void PathSolver<Real>::carry_links(const SubstepTerms& terms, BodyRecords<Real>&
 /// Velocities of kinematic bodies where they touch.
 template <class Real>
 void PathSolver<Real>::move_still_rows(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
-                                       BodyRecords<Real>& records) {
+                                       const SubstepTerms& terms, BodyRecords<Real>& records) {
     const Bodies<Real>& bodies = world.bodies;
     const std::span<const std::int32_t> live = manifolds.live();
     const auto move = [&](std::size_t n) {
@@ -191,9 +197,37 @@ void PathSolver<Real>::move_still_rows(const WorldState<Real>& world, const Edge
         velocity[0] = bodies.velocity_x[b], velocity[1] = bodies.velocity_y[b];
         if (bodies.has_rotation)
             velocity[2] = bodies.angular_velocity[b] * (partner.is_edge() ? Real(1) : bodies.rim(b));
+        if (partner.is_edge()) turn_edge(world, edges, n, terms, records);
     };
+    turning_edges_.clear();
     for (const std::int32_t n : with_kinematic_) move(static_cast<std::size_t>(n));
     for (std::size_t n = live.size(); n-- > 0 && live[n] < 0;) move(n);  // surfaces come last
+}
+
+/// Where a body faces an edge of a kinematic body; where it lies across a corner its own normal counts.
+template <class Real>
+void PathSolver<Real>::turn_edge(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
+                                 std::size_t number, const SubstepTerms& terms, BodyRecords<Real>& records) {
+    const ManifoldList<Real>& list = manifolds.list_of(manifolds.live()[number]);
+    const std::size_t i = Manifolds<Real>::place_of(manifolds.live()[number]);
+    const Edge& edge = world.edges[Partner(list.b[i]).edge_number()];
+    const EdgePose& pose = edges.pose_of(edge);
+    const double turned = pose.end_angle - pose.angle;
+    if (turned == 0 || std::fabs(turned) > kMostTurn) return;
+    const Vec2 normal{list.normal_x[i], list.normal_y[i]}, along = rotate(pose.turn, edge.b - edge.a);
+    if (std::fabs(dot(along, normal)) > kFacing * std::sqrt(length_squared(along))) return;
+    const bool is_one = !(list.separation2[i] < static_cast<Real>(kNoPoint));
+    const double lever = is_one ? static_cast<double>(list.lever_b1[i])
+                                : 0.5 * static_cast<double>(list.lever_b1[i] + list.lever_b2[i]),
+                 lever_t = list.lever_b_t[i];
+    turning_edges_.add({.edge_row = row_of_far_[number],
+                        .body_row = list.a[i],
+                        .arm = lever_t * normal + lever * Vec2{normal.y, -normal.x},
+                        .normal = normal,
+                        .height = lever_t - static_cast<double>(list.lever_a_t[i]),
+                        .velocity = (1 / terms.dt) * (pose.end_position - pose.position),
+                        .spin = turned / terms.dt},
+                       terms.substep_dt, records);
 }
 
 template <class Real>
@@ -393,6 +427,7 @@ void PathSolver<Real>::advance(const SubstepTerms& terms, BodyRecords<Real>& rec
             records.displacement[2 * row + 1] += h * velocity[1];
         records.turn()[row] += h * velocity[2];
     }
+    turning_edges_.advance(terms.substep_dt, records);
 }
 
 /// Gives the bodies of a contact its impulses.
@@ -449,9 +484,10 @@ bool PathSolver<Real>::has_long_loops() const {
 template <class Real>
 std::size_t PathSolver<Real>::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-    return manifolds.bytes() + rolling_.bytes() + of(row_of_far_) + of(with_kinematic_) + of(contact_links_) +
-           of(slots_) + closing_.bytes() + cut_.bytes() + links_.bytes() + heads_.bytes() +
-           restless_.bytes() + scratch_.bytes() + of(hidden_) + of(first_of_share_);
+    return manifolds.bytes() + rolling_.bytes() + turning_edges_.bytes() + of(row_of_far_) +
+           of(with_kinematic_) + of(contact_links_) + of(slots_) + closing_.bytes() + cut_.bytes() +
+           links_.bytes() + heads_.bytes() + restless_.bytes() + scratch_.bytes() + of(hidden_) +
+           of(first_of_share_);
 }
 
 template class PathSolver<float>;

@@ -9,6 +9,7 @@
 #include "solvers/manifolds/manifolds.hpp"
 #include "solvers/paths/path_cut.hpp"
 #include "solvers/paths/path_rolling.hpp"
+#include "solvers/paths/turning_edges.hpp"
 #include "solvers/substeps/body_records.hpp"
 #include "solvers/substeps/step_terms.hpp"
 #include "state/world_state.hpp"
@@ -150,11 +151,14 @@ class PathSolver {
                     const StepLoops<Real>& loops);
     void carry_links(const SubstepTerms& terms, BodyRecords<Real>& records, const StepLoops<Real>& loops);
     void move_still_rows(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
-                         BodyRecords<Real>& records);
+                         const SubstepTerms& terms, BodyRecords<Real>& records);
+    void turn_edge(const WorldState<Real>& world, const EdgeCandidates<Real>& edges, std::size_t number,
+                   const SubstepTerms& terms, BodyRecords<Real>& records);
     void fill_link(const WorldState<Real>& world, const BodyRecords<Real>& records, std::size_t number,
                    bool found);
 
     PathRolling<Real> rolling_;
+    TurningEdges<Real> turning_edges_;
     std::vector<std::int32_t> row_of_far_;  // of each contact: the row of b in the records
     std::vector<ContactLink> contact_links_;
     std::vector<PathCut::Slot> slots_;

@@ -74,6 +74,7 @@ void end_joints(SoftSimulation<Real>& sim) {
 
 template <class Real>
 void undo_tunnelling(SoftSimulation<Real>& sim) {
+    sim.edge_candidates.settle(sim.world);
     if (!sim.world.edges.empty())
         sim.tunnelling.undo(sim.world, sim.flight(), sim.soft.graph.supports, sim.executor);
     if (sim.world.bodies.has_shapes && sim.can_touch())

@@ -56,7 +56,8 @@ HardCases all_hard_cases(Extent extent) {
                              smooth_piles_of_uneven_masses,
                              twenty_under_a_million,
                              shots_at_plates,
-                             shapes_in_a_drum}) {
+                             shapes_in_a_drum,
+                             bodies_in_a_fast_drum}) {
         HardCases some = cases(extent);
         all.insert(all.end(), std::make_move_iterator(some.begin()), std::make_move_iterator(some.end()));
     }

@@ -72,6 +72,7 @@ HardCases shapes_in_a_room_that_is_left(Extent extent);
 HardCases discs_between_a_box_and_a_post(Extent extent);
 HardCases shots_at_plates(Extent extent);
 HardCases shapes_in_a_drum(Extent extent);
+HardCases bodies_in_a_fast_drum(Extent extent);
 
 HardCases odd_steps_of_a_pile(Extent extent);
 HardCases random_steps_of_a_pile(Extent extent);

@@ -154,6 +154,38 @@ bool is_in_drum(const HardRun& run, std::size_t body) {
     return most.value() <= inner;
 }
 
+/// A triangle whose sides are 22 m from its axis and come 33 mm nearer to what lies on them in each step than
+/// a straight way takes them.
+Scene fast_drum(bool of_discs) {
+    constexpr int kBodies = 4;
+    constexpr double kCorner = 44;  // m, from the axis
+    const Material material{.friction = 1};
+    Random random(5, 43);
+    Scene scene;
+    scene.gravity = {0, -9.81};
+    Chain loop{.points = {}, .loop = true};
+    for (int i = 0; i < 3; ++i) loop.points.push_back(turned(2 * std::numbers::pi * i / 3, {kCorner, 0}));
+    scene.add(
+        {.type = BodyType::kinematic_body, .shape = loop, .angular_velocity = -2.5, .material = material});
+    for (int i = 0; i < kBodies; ++i) {
+        Body body{.shape = Disc{0.1}, .material = material};
+        if (!of_discs) body.shape = Box{0.1, random.uniform(0.1, 0.3)};
+        body.position = turned(random.uniform(0, 6), {random.uniform(5, 20), 0});
+        body.velocity = turned(random.uniform(0, 6), {10, 0});
+        scene.add(body);
+    }
+    return scene;
+}
+
+Measures ride_in_a_fast_drum(HardRun& run, Extent extent) {
+    constexpr double kStep = 0.022;  // s
+    const int steps = extent.of(600, 300), from = 200;
+    Largest overlap;
+    for (int i = 0; i < steps && run.step(kStep); ++i)
+        if (i >= from) overlap.take(run.overlap());
+    return {{"overlap", overlap.value(), 0.1}, {"quarantined", static_cast<double>(run.quarantined()), 0}};
+}
+
 }  // namespace
 
 HardCases shots_at_plates(Extent extent) {
@@ -176,6 +208,16 @@ HardCases shapes_in_a_drum(Extent extent) {
                  return {{"times outside", static_cast<double>(outside), 0},
                          {"quarantined", static_cast<double>(run.quarantined()), 0}};
              }}};
+}
+
+HardCases bodies_in_a_fast_drum(Extent extent) {
+    HardCases cases;
+    for (const bool of_discs : {false, true})
+        cases.push_back({.code = "B43",
+                         .name = of_discs ? "discs carried by a fast drum" : "boxes carried by a fast drum",
+                         .make = [=] { return fast_drum(of_discs); },
+                         .run = [=](HardRun& run) { return ride_in_a_fast_drum(run, extent); }});
+    return cases;
 }
 
 }  // namespace carom::torture

@@ -109,12 +109,15 @@ double lowest_of_body(const Body& body, const RandomWorld& world) {
 
 EnergySources sources_of(const Scene& scene, const WorldTraits& traits) {
     EnergySources sources;
-    for (const Body& body : scene.bodies) sources.drives |= body.type == BodyType::kinematic_body;
+    for (const Body& body : scene.bodies) {
+        sources.drives |= body.type == BodyType::kinematic_body;
+        sources.falls |= body.sensor && body.type == BodyType::dynamic_body;  // through what is closed
+    }
     for (const Joint& joint : scene.joints) sources.joints |= has_own_force(joint);
     const bool is_stretched = traits.are_joints_stretched && !scene.joints.empty();
     sources.joints |= is_stretched;
     sources.overlaps = traits.is_crowded || is_stretched || sources.drives || sources.joints;
-    sources.falls = traits.surroundings == Surroundings::open || traits.surroundings == Surroundings::floor;
+    sources.falls |= traits.surroundings == Surroundings::open || traits.surroundings == Surroundings::floor;
     return sources;
 }
 
