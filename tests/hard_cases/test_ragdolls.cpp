@@ -80,7 +80,7 @@ TEST_SUITE("hard cases: joints") {
             for (const bool has_limits : {false, true})
                 for (const double friction : {0.0, 0.5})
                     for (const double rate : {30.0, 60.0, 120.0, 240.0})
-                        for (int way = 0; way < scaled(8, 2); ++way) {
+                        for (int way = 0; way < scaled(8, 1); ++way) {
                             CAPTURE(has_boxes);
                             CAPTURE(has_limits);
                             CAPTURE(friction);
@@ -99,7 +99,7 @@ TEST_SUITE("hard cases: joints") {
 
     TEST_CASE("a heap of ragdolls with friction in their hinges comes to rest and sleeps") {
         for (const int count : {12, 40})
-            for (const unsigned seed : {1u, 2u, 3u})
+            for (unsigned seed = 1; seed <= scaled(3u, 1u); ++seed)
                 for (const double torque : {0.01, 0.05}) {
                     CAPTURE(count);
                     CAPTURE(seed);

@@ -50,6 +50,9 @@ class WrongInputTest(ProgramTest):
         self.check_refused("run", SEED, "--solver", "impuls", says="impulse")
         self.check_refused("run", SEED, "--isa", "avx9", says="scalar")
         self.check_refused("run", SEED, "--precision", "half", says="double")
+        self.check_refused("rnu", SEED, says='"rnu" is no command; the nearest known one is "run"')
+        self.check_refused("--bogus", says='there is no option "--bogus"')
+        self.check_refused(says="one of run, explain, check")
 
     def test_scenes_that_cannot_be_read_are_refused(self):
         (self.folder / "folder.json").mkdir()

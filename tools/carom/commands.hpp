@@ -23,6 +23,9 @@ void add_report_command(CLI::App& program, Action& action);
 void add_accuracy_command(CLI::App& program, Action& action);
 void add_torture_command(CLI::App& program, Action& action);
 
+/// Parses the command line and does what its subcommand says. @return the exit code
+int run_program(int argc, char** argv);
+
 /// Version, instruction sets, threads, xsimd: the answer to --version.
 std::string version_text();
 
