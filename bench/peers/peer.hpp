@@ -29,7 +29,8 @@ struct PeerSettings {
 struct PeerCounts {
     std::int64_t impacts = 0;       ///< contacts that began, walls included
     std::int64_t wall_impacts = 0;  ///< of those, with walls
-    double wall_impulse = 0;        ///< N s, sum of the sizes of the walls' normal impulses
+    double wall_impulse =
+        0;  ///< N s, sum of the sizes of the walls' normal impulses; NaN: the engine does not tell
 };
 
 class Peer {
