@@ -12,4 +12,8 @@ TEST_SUITE("hard cases/squeezes") {
                        Real, float, double) {
         check_cases<Real>(torture::shapes_in_a_room_that_is_left(extent()));
     }
+    TEST_CASE_TEMPLATE("B37: nothing that kinematic bodies and lines press against segments gets through",
+                       Real, float, double) {
+        check_cases<Real>(torture::rooms_that_many_leave(extent()));
+    }
 }

@@ -51,6 +51,7 @@ HardCases all_hard_cases(Extent extent) {
                              random_steps_of_a_pile_that_sleeps,
                              shapes_under_a_plate,
                              shapes_in_a_room_that_is_left,
+                             rooms_that_many_leave,
                              overhangs,
                              piles_of_uneven_masses,
                              smooth_piles_of_uneven_masses,

@@ -98,6 +98,55 @@ Scene room_that_is_left() {
     return scene;
 }
 
+/// Slow and fast kinematic bodies and lines press discs, or shapes, against the segments of a room, and into
+/// the wedges between these and a static line, as they leave it.
+Scene room_that_many_leave(bool of_discs, std::uint64_t seed) {
+    constexpr int kBodies = 40, kPushers = 8;
+    Random random(37, seed);
+    Scene scene;
+    const Material material{.friction = 0.5};
+    const Vec2 corners[] = {{0, 0}, {kRoomWidth, 0}, {kRoomWidth, kRoomHeight}, {0, kRoomHeight}};
+    const auto add_line = [&](Vec2 a, Vec2 b) {
+        scene.add({.type = BodyType::static_body, .shape = Segment{a, b}, .material = material});
+    };
+    for (int i = 0; i < 4; ++i) add_line(corners[i], corners[(i + 1) % 4]);
+    add_line({0.1, 1}, {2, 0.1});
+    const auto put = [&](Body body, double margin) {
+        body.position.x = random.uniform(margin, kRoomWidth - margin);
+        body.position.y = random.uniform(margin, kRoomHeight - margin);
+        body.angle = random.uniform(0, 6), body.material = material;
+        scene.add(body);
+    };
+    for (int i = 0; i < kPushers; ++i) {
+        Body body{.type = BodyType::kinematic_body, .shape = Segment{{-0.6, 0}, {0.6, 0}}};
+        if (i % 4 == 1) body.shape = Disc{0.4};
+        if (i % 4 == 2 && !of_discs) body.shape = Box{1, 0.5};
+        const double angle = random.uniform(0, 6), speed = random.log_uniform(0.05, 20);
+        body.velocity = {speed * std::cos(angle), speed * std::sin(angle)};
+        body.angular_velocity = random.uniform(-1, 1);
+        put(body, 0.8);
+    }
+    for (int i = 0; i < kBodies; ++i) {
+        Body body{.shape = Disc{random.log_uniform(0.03, 0.2)}};
+        if (!of_discs && i % 3 == 1) body.shape = Capsule{0.3, 0.1};
+        if (!of_discs && i % 3 == 2) body.shape = Box{random.uniform(0.1, 0.5), 0.2};
+        put(body, 0.4);
+    }
+    return scene;
+}
+
+Measures left_the_room(HardRun& run) {
+    int outside = 0;
+    for (int i = 0; i < 900 && run.step(); ++i)
+        for (std::size_t body = 0; body < run.count(); ++body) {
+            const Vec2 p = run.place(body);
+            const bool is_inside = p.x > 0 && p.x < kRoomWidth && p.y > 0 && p.y < kRoomHeight;
+            outside += is_inside || !run.is_dynamic(body) ? 0 : 1;
+        }
+    return {{"times outside", static_cast<double>(outside), 0},
+            {"quarantined", static_cast<double>(run.quarantined()), 0}};
+}
+
 }  // namespace
 
 HardCases shapes_under_a_plate(Extent extent) {
@@ -123,16 +172,23 @@ HardCases shapes_in_a_room_that_is_left(Extent) {
     return {{.code = "B37",
              .name = "40 shapes in a room that a disc and a box leave",
              .make = room_that_is_left,
-             .run = [](HardRun& run) -> Measures {
-                 int outside = 0;
-                 for (int i = 0; i < 900 && run.step(); ++i)
-                     for (std::size_t body = 3; body < run.count(); ++body) {
-                         const Vec2 p = run.place(body);
-                         outside += p.x > 0 && p.x < kRoomWidth && p.y > 0 && p.y < kRoomHeight ? 0 : 1;
-                     }
-                 return {{"times outside", static_cast<double>(outside), 0},
-                         {"quarantined", static_cast<double>(run.quarantined()), 0}};
-             }}};
+             .run = left_the_room}};
+}
+
+HardCases rooms_that_many_leave(Extent extent) {
+    HardCases all;
+    for (const bool of_discs : {false, true}) {
+        std::vector<Scene> scenes;
+        for (std::uint64_t seed = 1; seed <= extent.of<std::uint64_t>(30, 6); ++seed)
+            scenes.push_back(room_that_many_leave(of_discs, seed));
+        all.push_back({.code = "B37",
+                       .name = of_discs ? "40 discs in rooms that discs and lines leave"
+                                        : "40 shapes in rooms that discs, boxes and lines leave",
+                       .make = [first = scenes.front()] { return first; },
+                       .run = [more = std::vector(scenes.begin() + 1, scenes.end())](
+                                  HardRun& run) { return worst_of_all(run, more, left_the_room); }});
+    }
+    return all;
 }
 
 HardCases discs_between_a_box_and_a_post(Extent) {

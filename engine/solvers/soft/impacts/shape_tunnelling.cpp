@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "math/vec2_math.hpp"
+#include "narrowphase/disc_edge.hpp"
 #include "narrowphase/line_crossing.hpp"
 #include "solvers/manifolds/meeting.hpp"
 
@@ -122,10 +123,26 @@ void ShapeTunnelling<Real>::list_swift(const Inputs& in, const Manifolds<Real>& 
         edge_ways_.push_back(static_cast<Real>(std::fabs(way.x) + std::fabs(way.y) +
                                                std::fabs(pose.end_angle - pose.angle) * body.reach));
     }
-    for (const EdgePair& pair : in.flight.edges.pairs())
+    for (const EdgePair& pair : in.flight.edges.pairs()) {
         look(pair.row, edge_ways_[static_cast<std::size_t>(in.world.edges[pair.edge].body)]);
+        if (begins_in_core(in, pair)) mark(static_cast<std::size_t>(pair.row));
+    }
     for (const std::int32_t row : swift_) is_swift_[static_cast<std::size_t>(row)] = 0;
     std::sort(swift_.begin(), swift_.end());
+}
+
+/// Whether an edge is in the core of a body, were it in one piece, at the start of the step. What is pressed
+/// into an edge slowly has come no way in any step; discs go on until their centre crosses it (Tunnelling).
+template <class Real>
+bool ShapeTunnelling<Real>::begins_in_core(const Inputs& in, const EdgePair& pair) const {
+    const Bodies<Real>& bodies = in.world.bodies;
+    const auto row = static_cast<std::size_t>(pair.row);
+    if (bodies.is_disc(row)) return false;
+    const Edge& edge = in.world.edges[pair.edge];
+    const EdgePose& pose = in.flight.edges.pose_of(edge);
+    const Vec2 from = rotate_back(pose.turn, in.flight.start_of(row) - pose.position);
+    const double core = kCore * static_cast<double>(bodies.inradius(row));
+    return distance_squared(from, edge.a, edge.b) < core * core;
 }
 
 template <class Real>
@@ -168,7 +185,7 @@ typename ShapeTunnelling<Real>::Passed ShapeTunnelling<Real>::first_passed(const
             const Vec2 centre = piece ? Vec2{piece->x, piece->y} : Vec2{};
             const Core core{way.start + rotate(at_start, centre), way.end + rotate(at_end, centre),
                             kCore * static_cast<double>(shape.inradius)};
-            if (!bodies.is_disc(way.row)) look_at_edges(in, way, core, is_last, first);
+            look_at_edges(in, way, core, is_last, first);
             for (std::size_t k = 0; k < found; ++k) {
                 const auto other = static_cast<std::size_t>(near_[k]);
                 if (is_last && (bodies.flags_of(other) & kKinematic) != 0) continue;
@@ -176,6 +193,14 @@ typename ShapeTunnelling<Real>::Passed ShapeTunnelling<Real>::first_passed(const
             }
         });
     return first;
+}
+
+/// Whether an edge that was in the core comes nearer to its centre. Small steps that each may be taken would
+/// lead across.
+template <class Real>
+bool ShapeTunnelling<Real>::sinks_in(const Core& core, const Edge& edge) {
+    const double before = distance_squared(core.from, edge.a, edge.b);
+    return before < core.radius * core.radius && distance_squared(core.to, edge.a, edge.b) < before;
 }
 
 template <class Real>
@@ -194,8 +219,10 @@ void ShapeTunnelling<Real>::look_at_edges(const Inputs& in, const Way& way, cons
             body, 0.5 * (seen.from + seen.to), kWiderCircle * (half + seen.radius), [&](std::int32_t number) {
                 const Edge& edge = in.world.edges[number];
                 MovingConvex still = still_edge(edge);
-                const double time = std::min(time_of_crossing(seen.from, seen.to, edge.a, edge.b),
-                                             CoreImpact(moving, still).time);
+                const double time = sinks_in(seen, edge)
+                                        ? 0
+                                        : std::min(time_of_crossing(seen.from, seen.to, edge.a, edge.b),
+                                                   CoreImpact(moving, still).time);
                 if (!(time < first.time)) return;
                 const Vec2 along = edge.b - edge.a;
                 const double length = std::sqrt(length_squared(along)),

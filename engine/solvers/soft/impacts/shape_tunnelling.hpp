@@ -59,8 +59,10 @@ class ShapeTunnelling {
     };
     void list_swift(const Inputs& in, const Manifolds<Real>& manifolds);
     void mark(std::size_t row);
+    bool begins_in_core(const Inputs& in, const EdgePair& pair) const;
     void look_at(const Inputs& in, std::size_t row);
     Passed first_passed(const Inputs& in, const Way& way, bool is_last);
+    static bool sinks_in(const Core& core, const Edge& edge);
     void look_at_edges(const Inputs& in, const Way& way, const Core& core, bool is_last, Passed& first) const;
     void look_at_body(const Inputs& in, const Way& way, const Core& core, std::size_t other,
                       Passed& first) const;

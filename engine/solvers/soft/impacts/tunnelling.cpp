@@ -10,7 +10,8 @@
 namespace carom {
 namespace {
 
-/// A disc whose centre moves less than this share of its radius past an edge is still held by its contact.
+/// A disc that moves less than this share of its radius in a step in which its centre gets past an edge was
+/// pressed into it: it goes back to where it was.
 constexpr double kSmallestWay = 0.5;
 
 /// A disc is looked at by itself if the fastest body moves more than this share of the disc's radius.
@@ -21,8 +22,9 @@ constexpr double kWiderCircle = 1 + 1e-9;
 
 constexpr double kNanosecondsToLook = 3;  // a disc, on one thread, for the executor
 
-/// A disc that is put back may get behind another edge by that.
-constexpr int kRounds = 3;
+/// A disc that is put back may get behind another edge by that. In the last round what moves by itself is
+/// left out: what a kinematic edge presses against a static one stays on its side of that.
+constexpr int kRounds = 4;
 
 }  // namespace
 
@@ -32,11 +34,10 @@ void Tunnelling<Real>::note_crossing(const WorldState<Real>& world, const StepFl
     const auto row = static_cast<std::size_t>(disc);
     const Edge& edge = world.edges[number];
     const EdgePose& pose = flight.edges.pose_of(edge);
+    if (is_last_ && (world.bodies.flags_of(pose.row) & kKinematic) != 0) return;
     const Vec2 x{world.bodies.position_x[row], world.bodies.position_y[row]};
     const Vec2 from = rotate_back(pose.turn, flight.start_of(row) - pose.position);
     const Vec2 to = rotate_back(pose.end_turn, x - pose.end_position);
-    const double radius = world.bodies.radius[row], least = kSmallestWay * radius;
-    if (length_squared(to - from) < least * least) return;
     const double time = time_of_crossing(from, to, edge.a, edge.b);
     if (time <= 1) crossings_.push_back({disc, number, time, from, from + time * (to - from)});
 }
@@ -110,6 +111,7 @@ void Tunnelling<Real>::undo(WorldState<Real>& world, const StepFlight<Real>& fli
                             const ContactRows<Real>& supports, const Executor& executor) {
     find_strays(world, flight, executor);
     for (int round = 0; round < kRounds; ++round) {
+        is_last_ = round + 1 == kRounds;
         find_crossings(world, flight, supports);
         if (crossings_.empty()) return;
         std::int32_t done = -1;
@@ -122,7 +124,8 @@ void Tunnelling<Real>::undo(WorldState<Real>& world, const StepFlight<Real>& fli
 }
 
 /// To where it crossed the edge, on the side it came from, without its velocity into the edge. In a sharp
-/// corner that can be behind the other edge: then to where it was before the step, beside the same edge.
+/// corner that can be behind the other edge: then to where it was before the step, beside the same edge, and
+/// so where it is slow.
 template <class Real>
 void Tunnelling<Real>::put_back(WorldState<Real>& world, const StepFlight<Real>& flight,
                                 const Crossing& passed, bool to_start) {
@@ -134,8 +137,9 @@ void Tunnelling<Real>::put_back(WorldState<Real>& world, const StepFlight<Real>&
     const double length = std::sqrt(length_squared(along));
     const double side = cross(along, passed.from - edge.a) > 0 ? 1 / length : -1 / length;
     const Vec2 out = side * Vec2{-along.y, along.x};
-    const double radius = bodies.radius[row];
-    const Vec2 place = to_start ? passed.from : passed.point + radius * out;
+    const double radius = bodies.radius[row], least = kSmallestWay * radius * passed.time;
+    const bool is_slow = length_squared(passed.point - passed.from) < least * least;
+    const Vec2 place = to_start || is_slow ? passed.from : passed.point + radius * out;
     const Vec2 x = pose.end_position + rotate(pose.end_turn, place);
     const Vec2 n = rotate(pose.end_turn, out);
     const double spin = (pose.end_angle - pose.angle) / flight.dt;

@@ -45,6 +45,7 @@ class Tunnelling {
                   bool to_start);
 
     std::vector<Crossing> crossings_;  // of this step
+    bool is_last_ = false;             // round of undo()
     ChunkedList strays_;               // rows that have left their margins in this step
 };
 
