@@ -75,7 +75,10 @@ class Column {
     void reserve(std::size_t rows) { grow(rows, size_); }
     void clear() { resize(0); }
     void push_back(T value) {
-        resize(size_ + 1);
+        if (rows_ && held(size_ + 1) == held(size_))
+            ++size_;  // the row is there
+        else
+            resize(size_ + 1);
         rows_[size_ - 1] = value;
     }
 

@@ -103,6 +103,7 @@ std::int32_t ShapeStore<Real>::add(const Shape& shape, const Material& standard)
 /// A number for a record that has none.
 template <class Real>
 std::int32_t ShapeStore<Real>::make_number(const Record& record, const ConvexShape<Real>& shape) {
+    ++revision_;
     if (free_.empty()) {
         free_.push_back(static_cast<std::int32_t>(records_.size()));
         shapes_.resize(records_.size() + 1), records_.emplace_back(), bodies_.push_back(0);
@@ -176,6 +177,7 @@ std::int32_t ShapeStore<Real>::add_compound(const Compound& given, const Materia
     }
     compounds_.resize(std::max(compounds_.size(), static_cast<std::size_t>(number) + 1));
     compounds_[static_cast<std::size_t>(number)] = std::move(stored);
+    ++revision_;
     return number;
 }
 
@@ -186,6 +188,7 @@ void ShapeStore<Real>::remove(std::int32_t number) {
         for (const StoredPiece& piece : pieces(number)) remove(piece.number);
         compounds_[static_cast<std::size_t>(number)].clear();
     }
+    ++revision_;
     leave_index(number);
     free_.push_back(number);
 }

@@ -35,6 +35,8 @@ class ShapeStore {
     bool empty() const { return shapes_.empty(); }
     /// Numbers are below it; some may be free.
     std::size_t size() const { return shapes_.size(); }
+    /// Another number whenever geometries have come or gone, from 1 on.
+    std::uint64_t revision() const { return revision_; }
     /// Geometries in use.
     std::size_t distinct() const { return shapes_.size() - free_.size(); }
 
@@ -87,7 +89,7 @@ class ShapeStore {
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
         archive(self.shapes_, self.records_, self.bodies_, self.free_, self.compounds_);
-        if constexpr (!std::is_const_v<Self>) self.make_index();
+        if constexpr (!std::is_const_v<Self>) self.make_index(), ++self.revision_;
     }
 
     std::size_t bytes() const {
@@ -125,6 +127,7 @@ class ShapeStore {
     std::vector<std::int32_t> free_;                   // numbers
     // Numbers by hash of their record, open addressing: a power of two of slots, -1 where there is none.
     std::vector<std::int32_t> index_;
+    std::uint64_t revision_ = 1;
 };
 
 extern template class ShapeStore<float>;

@@ -25,21 +25,6 @@ void DistantPairs<Real>::add(const WorldState<Real>& world, std::int32_t a, std:
                       -std::numeric_limits<Real>::infinity()});
 }
 
-/// Pieces of a compound may be thicker than the compound and are anywhere within its circle.
-template <class Real>
-typename DistantPairs<Real>::Frame DistantPairs<Real>::frame_of(const ShapeStore<Real>& shapes,
-                                                                std::int32_t number) {
-    const ConvexShape<Real>& shape = shapes[number];
-    if (!shapes.pieces(number).empty()) {
-        constexpr Real all = static_cast<Real>(1e15);  // m, more than any gap
-        return {0, 0, all, all};
-    }
-    const auto [left, right] = std::minmax_element(shape.x, shape.x + shape.count);
-    const auto [low, high] = std::minmax_element(shape.y, shape.y + shape.count);
-    return {(*left + *right) / 2, (*low + *high) / 2, (*right - *left) / 2 + shape.radius,
-            (*high - *low) / 2 + shape.radius};
-}
-
 /// Largest of the gaps along the sides of both rectangles, less what rounding may make of it.
 template <class Real>
 Real DistantPairs<Real>::gap(const Frame& a, const Real* pose_a, const Frame& b, const Real* pose_b) {
@@ -60,12 +45,7 @@ std::span<const typename DistantPairs<Real>::Pair> DistantPairs<Real>::take_near
     const Executor& executor) {
     taken_.clear();
     if (pairs_.empty()) return taken_;
-    const ShapeStore<Real>& shapes = world.shapes;
-    if (frame_of_.size() != shapes.size()) {
-        frame_of_.resize(shapes.size());
-        for (std::size_t shape = 0; shape < shapes.size(); ++shape)
-            frame_of_[shape] = frame_of(shapes, static_cast<std::int32_t>(shape));
-    }
+    frames_.follow(world.shapes);
     const auto share = static_cast<Real>(near.share), fall = static_cast<Real>(near.fall);
     const Column<std::int32_t>& shape_of = world.bodies.shape;
     near_.prepare(pairs_.size(), kPairsPerTask);
@@ -80,8 +60,7 @@ std::span<const typename DistantPairs<Real>::Pair> DistantPairs<Real>::take_near
                 const auto ways = static_cast<Real>(poses.path(a) + poses.path(b));
                 const Real reach = ways + poses.way(a) + poses.way(b) + (share * pair.thickness + fall);
                 if (reach <= pair.until) continue;
-                const Real apart = gap(frame_of_[static_cast<std::size_t>(shape_of[a])], &poses.pose[4 * a],
-                                       frame_of_[static_cast<std::size_t>(shape_of[b])], &poses.pose[4 * b]);
+                const Real apart = gap(frames_[shape_of[a]], &poses.pose[4 * a], frames_[shape_of[b]], &poses.pose[4 * b]);
                 pair.until = ways + apart - kRounding<Real> * reach;
                 if (!(reach <= pair.until)) out[count++] = static_cast<std::int32_t>(n);
             }
@@ -98,7 +77,7 @@ std::span<const typename DistantPairs<Real>::Pair> DistantPairs<Real>::take_near
 
 template <class Real>
 std::size_t DistantPairs<Real>::bytes() const {
-    return (pairs_.capacity() + taken_.capacity()) * sizeof(Pair) + frame_of_.capacity() * sizeof(Frame) +
+    return (pairs_.capacity() + taken_.capacity()) * sizeof(Pair) + frames_.bytes() +
            near_.bytes();
 }
 

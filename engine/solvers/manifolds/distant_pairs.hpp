@@ -8,6 +8,7 @@
 #include "solvers/manifolds/contact_distance.hpp"
 #include "solvers/manifolds/pose_watch.hpp"
 #include "state/chunked_list.hpp"
+#include "state/shape_frames.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {
@@ -31,8 +32,6 @@ class DistantPairs {
     void clear() { pairs_.clear(); }
     /// Adds a pair that is to be looked at in the next step.
     void add(const WorldState<Real>& world, std::int32_t a, std::int32_t b);
-    /// To be called when shapes may have changed.
-    void forget_shapes() { frame_of_.clear(); }
     /// Takes out the pairs that may touch in this step, in the order of their coming.
     /// @param poses  of the start of the step
     std::span<const Pair> take_near(const WorldState<Real>& world, const PoseWatch<Real>& poses,
@@ -43,19 +42,15 @@ class DistantPairs {
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
         archive(self.pairs_);
-        if constexpr (!std::is_const_v<Self>) self.forget_shapes();
+        if constexpr (!std::is_const_v<Self>) self.frames_.forget();
     }
 
   private:
-    /// The rectangle around a shape in the frame of its body [m].
-    struct Frame {
-        Real x, y, half_x, half_y;
-    };
-    static Frame frame_of(const ShapeStore<Real>& shapes, std::int32_t shape);
+    using Frame = ShapeFrame<Real>;
     static Real gap(const Frame& a, const Real* pose_a, const Frame& b, const Real* pose_b);
 
     std::vector<Pair> pairs_, taken_;
-    std::vector<Frame> frame_of_;  // by shape
+    ShapeFrames<Real> frames_;
     ChunkedList near_;
 };
 

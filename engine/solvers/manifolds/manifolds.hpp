@@ -87,7 +87,7 @@ class Manifolds {
         archive(self.items_, self.distant_, self.bodies_, self.surfaces_, self.surface_finder_, self.asleep_,
                 self.asleep_then_, self.live_, self.blocks_are_boxes_, self.poses_, self.found_within_,
                 self.first_new_block_);
-        if constexpr (!std::is_const_v<Self>) self.is_box_of_.clear(), self.is_renewed_ = false;
+        if constexpr (!std::is_const_v<Self>) self.shapes_of_boxes_ = 0, self.is_renewed_ = false;
     }
 
   private:
@@ -123,6 +123,7 @@ class Manifolds {
                     std::size_t last);
     void look_at_gaps(const WorldState<Real>& world, double dt, const ContactDistance& near,
                       std::size_t first, std::size_t last);
+    bool stay_parted(const WorldState<Real>& world, double dt, std::size_t i) const;
     bool find_meeting(const WorldState<Real>& world, double dt, std::size_t i, double gap);
     bool can_close(const WorldState<Real>& world, double dt, const ContactDistance& near,
                    std::size_t i) const;
@@ -142,6 +143,7 @@ class Manifolds {
     double changed_share_ = -1;
     std::vector<LoadedContact> loaded_;
     std::vector<std::uint8_t> is_box_of_;         // by shape
+    std::uint64_t shapes_of_boxes_ = 0;           // ShapeStore::revision of these shapes
     std::vector<std::uint8_t> blocks_are_boxes_;  // by block of kRowPadding contacts of bodies_
     PoseWatch<Real> poses_;
     /// What contacts are found within, by block of the last step; all zero: all are to be found anew.
