@@ -20,6 +20,7 @@ struct ConvexKernels {
     using Find = std::size_t (*)(const FindManifolds<Real>&, std::size_t first, std::size_t last);
     Find find_manifolds;      // of any convex shapes
     Find find_box_manifolds;  // of boxes, see is_box() in narrowphase/box_box.hpp
+    void (*turn_angles)(const double* angles, double* cosines, double* sines);  // of a block, in rad
     PathKernels<Real> paths;
 };
 

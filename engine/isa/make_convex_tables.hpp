@@ -6,6 +6,7 @@
 #include "kernels/paths/sweep_paths.hpp"
 #include "kernels/paths/warm_start_paths.hpp"
 #include "kernels/paths/watch_paths.hpp"
+#include "kernels/turn_angles.hpp"
 #include "simd/lanes.hpp"
 
 namespace carom {
@@ -15,6 +16,7 @@ template <class Real, class Isa>
 constexpr ConvexKernels<Real> make_convex_kernels() {
     return {.find_manifolds = &find_manifolds<Real, Isa>,
             .find_box_manifolds = &find_box_manifolds<Real, Isa>,
+            .turn_angles = &turn_angles<Isa>,
             .paths = {&carry_paths<Real, Isa>, &warm_start_paths<Real, Isa>, &solve_paths<Real, Isa>,
                       &sweep_all_paths<Real, Isa>, &watch_paths<Real, Isa>, &settle_watched<Real>}};
 }

@@ -28,6 +28,9 @@ struct ManifoldColumns {
                                       // Both are kNoPoint where shapes are farther apart than the margin
 };
 
+/// Angles that are turned into cosines and sines at once; their arrays are 64-byte aligned.
+inline constexpr std::size_t kAnglesOfBlock = 64;
+
 /// Contacts of pairs of convex shapes.
 template <class Real>
 struct FindManifolds {

@@ -14,6 +14,26 @@ struct Rotation {
     double sin = 0;
 };
 
+/// Numbers of rotation_by(), which is also written for lanes: kernels/turn_angles.hpp.
+struct RotationSeries {
+    static constexpr double kLargest = 1e15;  // rad
+    static constexpr double kPart[] = {0x1.921fb5p+0, 0x1.110b46p-26, 0x1.1a6263p-54, 0x1.8a2e03707344ap-81};
+    static constexpr double kTwoOverPi = 0.63661977236758134308;
+    static constexpr double kToWhole = 0x1.8p52;  // added and taken away again, it leaves a whole number
+    // The series in x², the highest power first: 16th to 0th of the cosine, 15th to 1st of the sine.
+    static constexpr double kOfCosine[] = {1. / 20922789888000,
+                                           -1. / 87178291200,
+                                           1. / 479001600,
+                                           -1. / 3628800,
+                                           1. / 40320,
+                                           -1. / 720,
+                                           1. / 24,
+                                           -1. / 2,
+                                           1};
+    static constexpr double kOfSine[] = {-1. / 1307674368000, 1. / 6227020800, -1. / 39916800, 1. / 362880,
+                                         -1. / 5040,          1. / 120,        -1. / 6,        1};
+};
+
 /// The turn by `angle` [rad]. Within 1e-15 for |angle| <= 1e8 rad, which is as far as scenes go.
 ///
 /// The angle is reduced to |x| <= π/4 by subtracting a whole number of π/2, which is kept in four parts of 26
@@ -23,30 +43,15 @@ struct Rotation {
 ///
 /// Cost: about 60 operations, none of them a division, and no call.
 inline Rotation rotation_by(double angle) {
-    constexpr double kLargest = 1e15;  // rad
-    if (!(std::fabs(angle) <= kLargest)) return {};
-    constexpr double kPart[] = {0x1.921fb5p+0, 0x1.110b46p-26, 0x1.1a6263p-54, 0x1.8a2e03707344ap-81};
-    constexpr double kTwoOverPi = 0.63661977236758134308;
-    constexpr double kToWhole = 0x1.8p52;  // added and taken away again, it leaves a whole number
-    const double quarters = (angle * kTwoOverPi + kToWhole) - kToWhole;
+    using Series = RotationSeries;
+    if (!(std::fabs(angle) <= Series::kLargest)) return {};
+    const double quarters = (angle * Series::kTwoOverPi + Series::kToWhole) - Series::kToWhole;
     double x = angle;
-    for (const double part : kPart) x -= quarters * part;
+    for (const double part : Series::kPart) x -= quarters * part;
     const double square = x * x;
-    // The series in x², the highest power first: 16th to 0th of the cosine, 15th to 1st of the sine.
-    constexpr double kOfCosine[] = {1. / 20922789888000,
-                                    -1. / 87178291200,
-                                    1. / 479001600,
-                                    -1. / 3628800,
-                                    1. / 40320,
-                                    -1. / 720,
-                                    1. / 24,
-                                    -1. / 2,
-                                    1};
-    constexpr double kOfSine[] = {-1. / 1307674368000, 1. / 6227020800, -1. / 39916800, 1. / 362880,
-                                  -1. / 5040,          1. / 120,        -1. / 6,        1};
     double c = 0, s = 0;
-    for (const double factor : kOfCosine) c = c * square + factor;
-    for (const double factor : kOfSine) s = s * square + factor;
+    for (const double factor : Series::kOfCosine) c = c * square + factor;
+    for (const double factor : Series::kOfSine) s = s * square + factor;
     s *= x;
     switch (static_cast<long long>(quarters) & 3) {
         case 0:

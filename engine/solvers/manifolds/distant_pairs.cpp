@@ -60,7 +60,8 @@ std::span<const typename DistantPairs<Real>::Pair> DistantPairs<Real>::take_near
                 const auto ways = static_cast<Real>(poses.path(a) + poses.path(b));
                 const Real reach = ways + poses.way(a) + poses.way(b) + (share * pair.thickness + fall);
                 if (reach <= pair.until) continue;
-                const Real apart = gap(frames_[shape_of[a]], &poses.pose[4 * a], frames_[shape_of[b]], &poses.pose[4 * b]);
+                const Real apart =
+                    gap(frames_[shape_of[a]], &poses.pose[4 * a], frames_[shape_of[b]], &poses.pose[4 * b]);
                 pair.until = ways + apart - kRounding<Real> * reach;
                 if (!(reach <= pair.until)) out[count++] = static_cast<std::int32_t>(n);
             }
@@ -77,8 +78,7 @@ std::span<const typename DistantPairs<Real>::Pair> DistantPairs<Real>::take_near
 
 template <class Real>
 std::size_t DistantPairs<Real>::bytes() const {
-    return (pairs_.capacity() + taken_.capacity()) * sizeof(Pair) + frames_.bytes() +
-           near_.bytes();
+    return (pairs_.capacity() + taken_.capacity()) * sizeof(Pair) + frames_.bytes() + near_.bytes();
 }
 
 template class DistantPairs<float>;

@@ -260,7 +260,7 @@ bool Manifolds<Real>::find(const WorldState<Real>& world, const EdgeCandidates<R
     const bool finds_all = !(found_within_ == within);
     if (finds_all) first_new_block_ = 0;
     found_within_ = within;
-    poses_.look(world, terms.dt, near, finds_all, *loops.executor);
+    poses_.look(world, terms.dt, near, finds_all, loops.kernels->convex->turn_angles, *loops.executor);
     take_near(world, near, *loops.executor);
     items_.add_poses(poses_.pose);
     surface_finder_.find(world, edges, terms, near, surfaces_);

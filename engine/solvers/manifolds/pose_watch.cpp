@@ -1,10 +1,9 @@
 #include "solvers/manifolds/pose_watch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-
-#include "math/rotation.hpp"
 
 namespace carom {
 namespace {
@@ -27,7 +26,7 @@ constexpr double kNanosecondsToLook = 20;  // a row, on one thread, for the exec
 
 template <class Real>
 void PoseWatch<Real>::look(const WorldState<Real>& world, double dt, const ContactDistance& near,
-                           bool forgets, const Executor& executor) {
+                           bool forgets, const TurnAngles& turn_angles, const Executor& executor) {
     const Bodies<Real>& bodies = world.bodies;
     const std::size_t rows = bodies.rows();
     pose.resize(4 * angle_.size());  // poses of pieces are none of rows
@@ -38,11 +37,33 @@ void PoseWatch<Real>::look(const WorldState<Real>& world, double dt, const Conta
     if (forgets) std::fill(thinnest_.begin(), thinnest_.end(), Real(0));
     executor.for_each_chunk(rows, kRowsPerTask, kNanosecondsToLook,
                             [&](std::size_t, std::size_t first, std::size_t last) {
-                                for (std::size_t row = first; row < last; ++row)
-                                    look_at(world, dt, near, row);
+                                for (std::size_t row = first; row < last; row += kAnglesOfBlock) {
+                                    const std::size_t end = std::min(last, row + kAnglesOfBlock);
+                                    turn(bodies, turn_angles, row, end);
+                                    for (std::size_t i = row; i < end; ++i) look_at(world, dt, near, i);
+                                }
                             });
     if (forgets) std::fill(thinnest_.begin(), thinnest_.end(), std::numeric_limits<Real>::infinity());
     begins_paths_ = false;
+}
+
+/// Cosines and sines of the rows of a block, if one of them has turned.
+template <class Real>
+void PoseWatch<Real>::turn(const Bodies<Real>& bodies, const TurnAngles& turn_angles, std::size_t first,
+                           std::size_t last) {
+    alignas(64) std::array<double, kAnglesOfBlock> angles{}, cosines, sines;
+    bool has_turned = false;
+    for (std::size_t row = first; row < last; ++row) {
+        angles[row - first] = bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0;
+        const Real* at = &pose[4 * row];
+        has_turned = has_turned || angles[row - first] != angle_[row] || (at[2] == 0 && at[3] == 0);
+    }
+    if (!has_turned) return;
+    turn_angles(angles.data(), cosines.data(), sines.data());
+    for (std::size_t row = first; row < last; ++row) {
+        pose[4 * row + 2] = static_cast<Real>(cosines[row - first]);
+        pose[4 * row + 3] = static_cast<Real>(sines[row - first]);
+    }
 }
 
 template <class Real>
@@ -59,12 +80,7 @@ void PoseWatch<Real>::look_at(const WorldState<Real>& world, double dt, const Co
     const Real moved =
         std::fabs(come_[2 * row]) + std::fabs(come_[2 * row + 1]) + std::fabs(turned) * bodies.radius[row];
     path_[row] = begins_paths_ ? 0 : path_[row] + static_cast<double>(moved);
-    at[0] = x, at[1] = y;
-    if (wide != angle_[row] || (at[2] == 0 && at[3] == 0)) {
-        const Rotation by = rotation_by(wide);
-        at[2] = static_cast<Real>(by.cos), at[3] = static_cast<Real>(by.sin);
-        angle_[row] = wide;
-    }
+    at[0] = x, at[1] = y, angle_[row] = wide;
     const bool is_driven = (bodies.flags_of(row) & kKinematic) != 0;
     const bool may_move = is_driven || !(row >= bodies.count || bodies.is_immovable(row));
     const Real thinnest = thinnest_[row], away = std::fabs(x - base[0]) + std::fabs(y - base[1]),

@@ -1,5 +1,6 @@
 #include "solvers/manifolds/distant_pairs.hpp"
 
+#include "isa/select_isa.hpp"
 #include "support/convex_oracle.hpp"
 #include "support/convex_pairs.hpp"
 
@@ -88,6 +89,7 @@ TEST_SUITE("solvers/manifolds/distant_pairs") {
                 }
         };
         const Executor executor(1);
+        const auto turn_angles = select_kernels("auto").of<Real>().convex->turn_angles;
         const auto speed = [&](std::size_t row) {  // of the surface, in both directions [m/s]
             return static_cast<double>(std::fabs(bodies.velocity_x[row]) + std::fabs(bodies.velocity_y[row]) +
                                        std::fabs(bodies.angular_velocity[row]) * bodies.radius[row]);
@@ -95,7 +97,7 @@ TEST_SUITE("solvers/manifolds/distant_pairs") {
         std::size_t listed = 0, left_after_ten = 0;
         for (int step = 0; step < 120; ++step) {
             if (step % 40 == 0) list(), listed += waiting.size();
-            poses.look(world, kStep, kNear, false, executor);
+            poses.look(world, kStep, kNear, false, turn_angles, executor);
             for (const auto& pair : distant.take_near(world, poses, kNear, executor))
                 REQUIRE(waiting.erase({pair.a, pair.b}) == 1);
             for (const auto& [first, second] : waiting) {
