@@ -116,7 +116,8 @@ struct ContactRows {
     bool has_overflow = false;
     std::size_t overflow_stride = 1;
 
-    /// Blocks of kContactBlock contacts [first, last) of which each has some that can touch.
+    /// Half blocks of contacts [first, last), whole blocks but for the last one, of which each has some that
+    /// can touch.
     struct Run {
         std::uint32_t first, last;
     };

@@ -4,7 +4,8 @@
 #include <cstdint>
 
 // Plain arguments of the kernels that find contacts and solve them (solver `soft`). Columns are padded and
-// 64-byte aligned; `first` and `last` are multiples of kRowPadding, so there is no tail.
+// 64-byte aligned, and `first` is a multiple of kRowPadding: a batch that goes beyond `last` ends in padding,
+// so there is no tail.
 //
 // A body's velocity record is [4]: vx, vy [m/s], rim speed u = spin * radius [m/s], inverse mass [1/kg]. The
 // inverse mass is zero for what nothing moves, and negative for a disc that has a fixed angle.
@@ -16,6 +17,8 @@ namespace carom {
 /// Contacts of a block belong to one colour: a batch of any width is in one block. It is kRowPadding, which
 /// kernels do not see.
 inline constexpr std::size_t kContactBlock = 16;
+/// The last block of a colour is half a block where that holds its contacts: it is solved by short lanes.
+inline constexpr std::size_t kHalfBlock = kContactBlock / 2;
 
 /// Contacts of one kind as the solver streams them, sorted by colour: a body is in one contact of a colour.
 /// The normal points from body a to body b, the tangent is the normal turned by a quarter counter-clockwise.

@@ -133,45 +133,60 @@ template <unsigned kVariant, class Lanes, class Real, class A, class B>
     return floor;
 }
 
+/// Calls solve.operator()<Lanes>(c) for batches of contacts one behind the other; the last takes short lanes
+/// where they hold it. (Each contact's bits are the same in either.)
+template <class Real, class Isa, class Solve>
+[[gnu::always_inline]] inline void for_each_batch(std::size_t first, std::size_t last, const Solve& solve) {
+    using Lanes = simd::Lanes<Real, Isa>;
+    using ShortLanes = simd::ShortLanes<Real, Isa>;
+    constexpr bool kAreShorter = ShortLanes::size < Lanes::size;
+    std::size_t c = first;
+    for (; c + (kAreShorter ? ShortLanes::size : 0) < last; c += Lanes::size)
+        solve.template operator()<Lanes>(c);
+    if constexpr (kAreShorter)
+        if (c < last) solve.template operator()<ShortLanes>(c);
+}
+
 /// Contacts of pairs that both move, or of bodies with what nothing moves: walls, static and kinematic
 /// bodies, whose surface moves at a steady velocity through the step. kFirst: the first sweep of a substep.
 template <unsigned kVariant, bool kFirst, bool kOtherMoves, class Real, class Isa>
 void solve_contacts(const SolveContacts<Real>& arguments, std::size_t first, std::size_t last) {
     const SolveContacts<Real> k = arguments;  // a copy: no store can change it
-    using Lanes = simd::Lanes<Real, Isa>;
-    using F = typename Lanes::Batch;
-    for (std::size_t c = first; c < last; c += Lanes::size) {
-        MovingSide<kVariant, Lanes> a{Lanes::load_rows4(k.velocity, k.contacts.a + c)};
-        auto b = load_other_side<kVariant, kOtherMoves, Lanes>(k, c);
-        ContactTerms<F> terms{};
-        terms.nx = Lanes::load(k.contacts.normal_x + c), terms.ny = Lanes::load(k.contacts.normal_y + c);
-        terms.mass = Lanes::load(k.contacts.mass + c);
-        if constexpr (kFirst)
-            terms.floor = part_surfaces<kVariant, Lanes>(k, c, a, b, terms.nx, terms.ny, terms.mass);
-        else
-            terms.floor = Lanes::load(k.contacts.floor + c);
-        terms.tangent_mass = tangent_mass<kVariant>(a, b, terms.mass);
-        if constexpr ((kVariant & kRough) != 0)
-            terms.friction =
-                k.contacts.friction ? Lanes::load(k.contacts.friction + c) : F(k.uniform_friction);
-        if constexpr ((kVariant & kRolling) != 0)
-            terms.rolling = k.contacts.rolling ? Lanes::load(k.contacts.rolling + c) : F(k.uniform_rolling);
-        terms.of_a = share_of<kVariant, Lanes>(k, c);
+    for_each_batch<Real, Isa>(
+        first, last, [&k]<class Lanes>(std::size_t c) __attribute__((always_inline)) {
+            using F = typename Lanes::Batch;
+            MovingSide<kVariant, Lanes> a{Lanes::load_rows4(k.velocity, k.contacts.a + c)};
+            auto b = load_other_side<kVariant, kOtherMoves, Lanes>(k, c);
+            ContactTerms<F> terms{};
+            terms.nx = Lanes::load(k.contacts.normal_x + c), terms.ny = Lanes::load(k.contacts.normal_y + c);
+            terms.mass = Lanes::load(k.contacts.mass + c);
+            if constexpr (kFirst)
+                terms.floor = part_surfaces<kVariant, Lanes>(k, c, a, b, terms.nx, terms.ny, terms.mass);
+            else
+                terms.floor = Lanes::load(k.contacts.floor + c);
+            terms.tangent_mass = tangent_mass<kVariant>(a, b, terms.mass);
+            if constexpr ((kVariant & kRough) != 0)
+                terms.friction =
+                    k.contacts.friction ? Lanes::load(k.contacts.friction + c) : F(k.uniform_friction);
+            if constexpr ((kVariant & kRolling) != 0)
+                terms.rolling =
+                    k.contacts.rolling ? Lanes::load(k.contacts.rolling + c) : F(k.uniform_rolling);
+            terms.of_a = share_of<kVariant, Lanes>(k, c);
 
-        ContactImpulses<F> impulses = load_impulses<kVariant, Lanes>(k, c);
-        // The first sweep over pairs goes less far where it hardly changes: nothing follows on it there.
-        const auto relax = [&](F wanted) {
-            if constexpr (!kOtherMoves || (!kFirst && (kVariant & kRough) != 0)) return wanted;
-            if constexpr (!kFirst) return wanted * F(k.next_over_relaxation);
-            return wanted * simd::select(simd::abs(wanted) > terms.mass * F(k.calm), F(k.over_relaxation),
-                                         F(k.calm_over_relaxation));
-        };
-        const ContactImpulses<F> added = solve_contact<kVariant>(a, b, terms, impulses, relax);
-        store_impulses<kVariant, Lanes>(k, c, impulses);
-        store_sides<Lanes>(k, c, a, b);
-        if constexpr (kFirst && kOtherMoves)
-            note_second_sweep<Lanes>(k, c, terms.mass, added.normal, added.tangent);
-    }
+            ContactImpulses<F> impulses = load_impulses<kVariant, Lanes>(k, c);
+            // The first sweep over pairs goes less far where it hardly changes: nothing follows on it there.
+            const auto relax = [&](F wanted) {
+                if constexpr (!kOtherMoves || (!kFirst && (kVariant & kRough) != 0)) return wanted;
+                if constexpr (!kFirst) return wanted * F(k.next_over_relaxation);
+                return wanted * simd::select(simd::abs(wanted) > terms.mass * F(k.calm), F(k.over_relaxation),
+                                             F(k.calm_over_relaxation));
+            };
+            const ContactImpulses<F> added = solve_contact<kVariant>(a, b, terms, impulses, relax);
+            store_impulses<kVariant, Lanes>(k, c, impulses);
+            store_sides<Lanes>(k, c, a, b);
+            if constexpr (kFirst && kOtherMoves)
+                note_second_sweep<Lanes>(k, c, terms.mass, added.normal, added.tangent);
+        });
 }
 
 /// Gives the bodies of a batch a share of the impulses that their contacts have.
@@ -193,10 +208,11 @@ template <unsigned kVariant, bool kOtherMoves, class Lanes, class Real>
 /// Gives the bodies the impulses that their contacts had at the end of the step before.
 template <unsigned kVariant, bool kOtherMoves, class Real, class Isa>
 void warm_start(const SolveContacts<Real>& arguments, std::size_t first, std::size_t last) {
-    using Lanes = simd::Lanes<Real, Isa>;
     const SolveContacts<Real> k = arguments;  // a copy: no store can change it
-    for (std::size_t c = first; c < last; c += Lanes::size)
-        give_impulses<kVariant, kOtherMoves, Lanes>(k, c, typename Lanes::Batch(1));
+    for_each_batch<Real, Isa>(
+        first, last, [&k]<class Lanes>(std::size_t c) __attribute__((always_inline)) {
+            give_impulses<kVariant, kOtherMoves, Lanes>(k, c, typename Lanes::Batch(1));
+        });
 }
 
 }  // namespace

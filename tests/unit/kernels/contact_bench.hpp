@@ -31,7 +31,8 @@ struct ContactBench {
     static constexpr long double kH = 0.004L, kElapsed = 0.008L;  // s
 
     BenchKind kind;
-    std::size_t count, last;
+    std::size_t count, last;       // of the columns that kernels may use
+    std::size_t end;               // what kernels are called with: the last block may be half a one
     std::vector<RigidDisc> discs;  // 2 i and 2 i + 1 are those of contact i
     std::vector<DiscContact> expected;
     std::vector<long double> separation;  // m, at the start of the step
@@ -45,7 +46,11 @@ struct ContactBench {
     Real uniform_friction = Real(0.4), uniform_rolling = Real(0.2);
 
     ContactBench(BenchKind of, std::size_t contacts, unsigned seed)
-        : kind(of), count(contacts), last(kFirst + padded(contacts)), random_(seed) {
+        : kind(of),
+          count(contacts),
+          last(kFirst + padded(contacts)),
+          end(kFirst + (contacts + kHalfBlock - 1) / kHalfBlock * kHalfBlock),
+          random_(seed) {
         const std::size_t length = last + kContactBlock;
         for (Column<std::int32_t>* column : {&a, &b}) fill(*column, length, dummy_row());
         dummy = dummy_row();

@@ -22,7 +22,7 @@ void for_each_bench(bool is_support, const Fn& fn) {
     for (const KernelTables* tables : runnable_kernel_tables())
         for (std::size_t variant = 0; variant < 5; ++variant)
             for (const bool is_uniform : {false, true})
-                for (const std::size_t count : {1u, 2u, 15u, 16u, 17u, 500u}) {
+                for (const std::size_t count : {1u, 2u, 8u, 9u, 15u, 16u, 17u, 500u}) {
                     const KernelTable<Real>& table = tables->of<Real>();
                     CAPTURE(table.isa);
                     CAPTURE(variant);
@@ -58,7 +58,7 @@ template <class Real>
 void check_warm_start(bool is_support) {
     for_each_bench<Real>(is_support, [&](const ContactKernels<Real>& kernels, ContactBench<Real>& bench) {
         const SolveContacts<Real> k = bench.arguments();
-        (is_support ? kernels.warm_start_supports : kernels.warm_start_pairs)(k, bench.kFirst, bench.last);
+        (is_support ? kernels.warm_start_supports : kernels.warm_start_pairs)(k, bench.kFirst, bench.end);
         for (DiscContact& c : bench.expected) c.apply_all();
         check_errors(bench);
     });
@@ -70,7 +70,7 @@ void check_next_sweep(bool is_support) {
     for_each_bench<Real>(is_support, [&](const ContactKernels<Real>& kernels, ContactBench<Real>& bench) {
         SolveContacts<Real> k = bench.arguments();
         k.calm = Real(0.1), k.over_relaxation = Real(1.9), k.calm_over_relaxation = Real(1.8);
-        (is_support ? kernels.next_supports : kernels.next_pairs)(k, bench.kFirst, bench.last);
+        (is_support ? kernels.next_supports : kernels.next_pairs)(k, bench.kFirst, bench.end);
         for (DiscContact& c : bench.expected) c.solve_normal(), c.solve_rolling(), c.solve_friction();
         check_errors(bench);
         for (std::size_t disc = 0; disc < 2 * bench.count; ++disc) {
@@ -112,7 +112,7 @@ void check_first_sweep(bool is_support) {
         SolveContacts<Real> k = bench.arguments();
         k.calm = static_cast<Real>(kCalm), k.over_relaxation = static_cast<Real>(kOverRelaxation);
         k.calm_over_relaxation = static_cast<Real>(kCalmOverRelaxation);
-        (is_support ? kernels.first_supports : kernels.first_pairs)(k, bench.kFirst, bench.last);
+        (is_support ? kernels.first_supports : kernels.first_pairs)(k, bench.kFirst, bench.end);
         long double worst = 0, worst_floor = 0, worst_moved = 0;
         std::vector<int> restless(bench.needs_second_sweep.size(), 0), unclear(restless);
         for (std::size_t i = 0; i < bench.count; ++i) {
@@ -190,8 +190,8 @@ TEST_SUITE("kernels/solve contacts") {
                     before[i] = momentum_of(bench, i, angular_before[i]);
                 const SolveContacts<Real> k = bench.arguments();
                 const ContactKernels<Real>& kernels = tables->of<Real>().contacts[variant];
-                kernels.first_pairs(k, bench.kFirst, bench.last);
-                for (int sweep = 0; sweep < 10; ++sweep) kernels.next_pairs(k, bench.kFirst, bench.last);
+                kernels.first_pairs(k, bench.kFirst, bench.end);
+                for (int sweep = 0; sweep < 10; ++sweep) kernels.next_pairs(k, bench.kFirst, bench.end);
                 long double worst = 0;
                 for (std::size_t i = 0; i < bench.count; ++i) {
                     long double angular = 0;
@@ -212,8 +212,7 @@ TEST_SUITE("kernels/solve contacts") {
                     const SolveContacts<Real> k = bench.arguments();
                     const ContactKernels<Real>& kernels = tables->of<Real>().contacts[variant];
                     for (int sweep = 0; sweep < 300; ++sweep)
-                        (is_support ? kernels.next_supports : kernels.next_pairs)(k, bench.kFirst,
-                                                                                  bench.last);
+                        (is_support ? kernels.next_supports : kernels.next_pairs)(k, bench.kFirst, bench.end);
                     int pushing = 0, sliding = 0, rolling = 0;
                     long double worst = 0;
                     for (std::size_t i = 0; i < bench.count; ++i) {

@@ -37,15 +37,17 @@ void sweep_pairs(ContactRows<Real>& pairs, std::size_t group,
         std::fill(needs_second_sweep + first, needs_second_sweep + last, std::uint8_t{0});
     if (sweep.blocks != Blocks::restless) {
         for (std::size_t i = 0; i < pairs.run_count[group]; ++i)
-            sweep.pair_kernel(on_pairs, kContactBlock * run[i].first, kContactBlock * run[i].last);
+            sweep.pair_kernel(on_pairs, kHalfBlock * run[i].first, kHalfBlock * run[i].last);
         return;
     }
-    for (std::size_t i = 0; i < pairs.run_count[group]; ++i)
-        for (std::size_t block = run[i].first; block < run[i].last; ++block) {
-            const std::size_t begin = block;
-            while (block < run[i].last && needs_second_sweep[block]) ++block;
-            if (block > begin) sweep.pair_kernel(on_pairs, kContactBlock * begin, kContactBlock * block);
+    for (std::size_t i = 0; i < pairs.run_count[group]; ++i) {
+        const std::size_t end = kHalfBlock * run[i].last;
+        for (std::size_t at = kHalfBlock * run[i].first; at < end; at += kContactBlock) {
+            const std::size_t begin = at;
+            while (at < end && needs_second_sweep[at / kContactBlock]) at += kContactBlock;
+            if (at > begin) sweep.pair_kernel(on_pairs, begin, std::min(at, end));
         }
+    }
 }
 
 /// @param candidates  which have the colours of `supports`

@@ -45,14 +45,17 @@ void describe_group(ContactRows<Real>& pairs, std::size_t group, const Bodies<Re
 /// Lists runs of blocks of a group that have contacts which can touch.
 template <class Real>
 void list_runs(ContactRows<Real>& pairs, std::size_t group) {
-    const std::size_t first = pairs.first_place(group) / kContactBlock,
-                      last = pairs.first_place(group + 1) / kContactBlock;
+    typename ContactRows<Real>::Run* const list = pairs.run.data() + pairs.first_place(group) / kContactBlock;
     std::size_t runs = 0;
-    for (std::size_t block = first; block < last; ++block) {
-        if (!pairs.is_live[block]) continue;
-        const bool follows = runs > 0 && pairs.run[first + runs - 1].last == block;
-        if (!follows) pairs.run[first + runs++].first = static_cast<std::uint32_t>(block);
-        pairs.run[first + runs - 1].last = static_cast<std::uint32_t>(block + 1);
+    for (std::size_t c = pairs.first_colour[group]; c < pairs.first_colour[group + 1]; ++c) {
+        const std::size_t stride = pairs.stride(c), end = pairs.begin[c] + pairs.length(c);
+        for (std::size_t at = pairs.begin[c]; at < end; at += kContactBlock) {
+            if (!pairs.is_live[at / kContactBlock]) continue;
+            const std::size_t half = at / kHalfBlock, filled = stride > 1 ? 1 : end - at;
+            if (runs == 0 || list[runs - 1].last != half)
+                list[runs++].first = static_cast<std::uint32_t>(half);
+            list[runs - 1].last = static_cast<std::uint32_t>(half + (filled > kHalfBlock ? 2 : 1));
+        }
     }
     pairs.run_count[group] = runs;
 }

@@ -157,7 +157,7 @@ void Impacts<Real>::mark(const WorldState<Real>& world, const StepView<Real>& st
         const typename ContactRows<Real>::Run* run =
             pairs.run.data() + pairs.first_place(group) / kContactBlock;
         for (std::size_t r = 0; r < pairs.run_count[group]; ++r)
-            mark_in(pairs, kPair, kContactBlock * run[r].first, kContactBlock * run[r].last);
+            mark_in(pairs, kPair, kHalfBlock * run[r].first, kHalfBlock * run[r].last);
     }
     supports.for_each([&](std::size_t i) { mark_in(supports, kSupport, i, i + 1); });
 }
