@@ -80,15 +80,20 @@ double Candidates<Real>::overshoot_of(std::int32_t row, double radius, Vec2 end)
 template <class Real>
 void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
                               std::span<const std::int32_t> displaced, double fastest,
-                              const KernelTable<Real>& kernels, const Executor& executor) {
+                              const KernelTable<Real>& kernels, const Executor& executor,
+                              const ShapeStore<Real>* shapes) {
     strays_.clear(), overshoot_ = 0;
     new_pairs_.clear();
-    if (rule_ == MarginRule::own && is_valid_ &&
-        may_renew(displaced.size() + fresh_rows_.size(), bodies.moving())) {
+    if (shapes && !slim_.empty()) slim_.read_shapes(*shapes);  // forgotten where a state was read
+    if (rule_ == MarginRule::own && is_valid_) {
         strays_.assign(displaced.begin(), displaced.end());
-        add_fresh_strays();
-        renew_margins(bodies, end, gravity);
-        return;
+        add_turned(bodies, end.s);
+        if (may_renew(strays_.size() + fresh_rows_.size(), bodies.moving())) {
+            add_fresh_strays();
+            renew_margins(bodies, end, gravity);
+            return;
+        }
+        strays_.clear();
     }
     if (rule_ == MarginRule::own && is_valid_ && follow_flow(bodies, end, gravity, executor)) return;
     if (rule_ == MarginRule::common && is_valid_ && displaced.size() * kBodiesPerStray <= bodies.moving()) {
@@ -105,7 +110,7 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
     if (!radii_are_known_) radii_ = measure_radii(bodies);
     radii_are_known_ = true;
     if (rule_ == MarginRule::own)
-        choose_own_margins(bodies, end, gravity, executor);
+        choose_own_margins(bodies, end, gravity, shapes, executor);
     else
         choose_margins(bodies, end, gravity, fastest);
     if (is_renamed()) forget_names();
@@ -114,6 +119,10 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
                 kernels, executor);
     is_standing_known_ = bodies.standing > 0;
     grid_.find_candidates(executor);
+    if (!slim_.empty())
+        grid_.keep_pairs([&](std::int32_t* a, std::int32_t* b, std::size_t count) {
+            return slim_.drop_parted(kernels, a, b, count);
+        });
     is_valid_ = true;
     if (rule_ == MarginRule::own) move_places(bodies, end.s, executor);  // to the end of this step
     ++rebuild_count_;
@@ -124,7 +133,7 @@ template <class Real>
 std::size_t Candidates<Real>::bytes() const {
     return grid_.bytes() + stray_rows_.bytes() + bytes_of_names() + reach_.bytes() + own_x_.bytes() +
            own_y_.bytes() + first_reach_.bytes() + drift_x_.bytes() + drift_y_.bytes() + flow_x_.bytes() +
-           flow_y_.bytes() + rate_.bytes() + flow_.bytes() +
+           flow_y_.bytes() + rate_.bytes() + flow_.bytes() + slim_.bytes() +
            (new_pairs_.capacity() + added_pairs_.capacity() + spare_pairs_.capacity()) * sizeof(Pair);
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "broadphase/mean_flow.hpp"
+#include "broadphase/slim_bodies.hpp"
 #include "broadphase/uniform_grid.hpp"
 #include "effects/flight.hpp"
 #include "isa/kernel_table.hpp"
@@ -65,9 +66,10 @@ class Candidates {
     /// begin now.
     /// @param displaced  rows whose flight leaves the margin
     /// @param fastest  m/s, of all bodies
+    /// @param shapes  rule `own`: of bodies that are no discs; null: pairs are those of the discs around them
     void update(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
                 std::span<const std::int32_t> displaced, double fastest, const KernelTable<Real>& kernels,
-                const Executor& executor);
+                const Executor& executor, const ShapeStore<Real>* shapes = nullptr);
 
     /// Bodies that leave their margins in this substep: what they can hit is not among the pairs.
     std::span<const std::int32_t> strays() const { return strays_; }
@@ -185,6 +187,7 @@ class Candidates {
         archive(self.row_of_name_, self.name_of_, self.is_loose_, self.loose_rows_, self.fresh_rows_);
         archive(self.is_valid_, self.radii_are_known_, self.rebuild_count_, self.rebuilds_until_sorted_);
         archive(self.is_standing_known_, self.largest_standing_reach_, self.largest_drift_);
+        archive(self.slim_);
     }
     /// To be called after the state was read.
     void use(const KernelTable<Real>& kernels) { grid_.use(kernels); }
@@ -202,6 +205,8 @@ class Candidates {
     /// that leave their margins: at most so many comparisons and bodies.
     static constexpr std::size_t kMostComparisons = 2'000'000, kMostLoose = 2048;
     static constexpr std::int32_t kNoName = -1;
+    /// Bodies that are near each other now were at most this many times as far apart when they drifted.
+    static constexpr double kSteepnessThen = 1.5;
 
     /// Rows have changed since the grid was built: it knows bodies by the rows they had then, their names.
     bool is_renamed() const { return !row_of_name_.empty(); }
@@ -225,7 +230,7 @@ class Candidates {
     void choose_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity, double fastest);
     Real own_reach(const Bodies<Real>& bodies, std::size_t row, const FlightClock& end, double fall) const;
     void choose_own_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
-                            const Executor& executor);
+                            const ShapeStore<Real>* shapes, const Executor& executor);
     void measure_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity, bool is_new);
     void set_velocity(std::size_t row, const MeanFlow::At& flow);
     void note_reach(double reach);
@@ -237,6 +242,14 @@ class Candidates {
                      const Executor& executor);
     void renew_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity);
     void add_pairs_of(const Bodies<Real>& bodies, std::int32_t row);
+    void set_rectangles(const Bodies<Real>& bodies, double dt, const ShapeStore<Real>* shapes);
+    void set_rectangle(const Bodies<Real>& bodies, std::size_t row, double dt) {
+        const auto reach = static_cast<double>(reach_[row]);
+        slim_.set(bodies, row, {own_x_[row], own_y_[row]}, reach - static_cast<double>(bodies.radius[row]),
+                  reach, dt);
+    }
+    void add_turned(const Bodies<Real>& bodies, double dt);
+    bool has_spread() const { return !slim_.empty() && kSteepnessThen * steepness_ > slim_.spread(); }
     bool was_pair(std::size_t a, std::size_t b) const;
     bool is_pair(std::size_t a, std::size_t b) const;
 
@@ -272,6 +285,7 @@ class Candidates {
     bool may_flow_ = false, flows_ = false, flow_is_local_ = true;
     // Attempts to follow the flow that failed in a row, and occasions left out since the last attempt.
     int failed_follows_ = 0, follows_left_out_ = 0;
+    SlimBodies<Real> slim_;  // rule `own`
     Column<std::int32_t> near_;
     Radii radii_;
     bool is_valid_ = false;

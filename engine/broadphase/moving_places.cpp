@@ -116,7 +116,7 @@ void Candidates<Real>::move_places(const Bodies<Real>& bodies, double dt, const 
     const MeanFlow::Most& most = flow_.most();
     drift_left_ -= dt * most.speed, steepness_ += dt * most.gradient_of_velocity;
     since_flow_ += dt;
-    if (drift_left_ < 0 || since_flow_ * most.rate > kLargestStretch) {
+    if (drift_left_ < 0 || since_flow_ * most.rate > kLargestStretch || has_spread()) {
         is_valid_ = false;
         return;
     }
@@ -147,7 +147,7 @@ bool Candidates<Real>::follow_flow(const Bodies<Real>& bodies, const FlightClock
     measure_flow(bodies, end, gravity, false);
     const MeanFlow::Most& most = flow_.most();
     drift_left_ -= most.jump, steepness_ += most.gradient;
-    if (drift_left_ < 0 || most.stretch > kLargestStretch) return false;
+    if (drift_left_ < 0 || most.stretch > kLargestStretch || has_spread()) return false;
     flows_ = true;
     const double since_flow = std::exchange(since_flow_, 0);
     flow_is_local_ = flow_.side() >= kCellInReaches * largest_reach_;
@@ -182,6 +182,7 @@ bool Candidates<Real>::follow_flow(const Bodies<Real>& bodies, const FlightClock
                             });
     strays_.clear();
     stray_rows_.for_each_below(bodies.count, [&](std::int32_t row) { strays_.push_back(row); });
+    add_turned(bodies, end.s);
     add_fresh_strays();
     if (!may_renew(strays_.size(), bodies.count)) return false;
     failed_follows_ = 0;

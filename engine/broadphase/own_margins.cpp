@@ -18,10 +18,12 @@ constexpr double kLargestSize = 4;       // own radii that count as a body's siz
 constexpr double kFewestSteps = 1.25;    // steps that a margin lasts, even above the largest margin
 constexpr double kFlowSteps = 0.7;       // steps of the flow around the body, because the flow changes
 
+// Share of their distance by which the places of two bodies, one of them slim, may come nearer by their
+// drifts. So much as in so many steps of the flow of now, between limits.
+constexpr double kFlowSpreadSteps = 3, kLeastSpread = 0.02, kMostSpread = 0.1;
+
 constexpr double kNanosecondsToChoose = 4;  // ns a body on one thread, for the executor
 
-/// Bodies that are near each other now were at most this many times as far apart when they drifted.
-constexpr double kSteepnessThen = 1.5;
 // Relative error of a drifted place: drifts are sums, rounded to Real a few times.
 template <class Real>
 constexpr double kRoundingOfPlace = sizeof(Real) == sizeof(float) ? 1e-6 : 4e-15;
@@ -47,7 +49,7 @@ Real Candidates<Real>::own_reach(const Bodies<Real>& bodies, std::size_t row, co
 
 template <class Real>
 void Candidates<Real>::choose_own_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
-                                          const Executor& executor) {
+                                          const ShapeStore<Real>* shapes, const Executor& executor) {
     begin_flow(bodies, end, gravity, executor);
     const double fall = std::sqrt(length_squared(gravity)) * end.q;
     const std::size_t rows = rows_to_find(bodies), moving = bodies.moving();
@@ -67,8 +69,33 @@ void Candidates<Real>::choose_own_margins(const Bodies<Real>& bodies, const Flig
     };
     take_over(own_x_, bodies.position_x), take_over(own_y_, bodies.position_y);
     take_over(first_reach_, reach_);
+    set_rectangles(bodies, end.s, shapes);
     added_pairs_.clear();
     renewed_count_ = 0, farthest_ = 0;
+}
+
+/// Rectangles around all bodies, if some of them are slim.
+template <class Real>
+void Candidates<Real>::set_rectangles(const Bodies<Real>& bodies, double dt, const ShapeStore<Real>* shapes) {
+    slim_.clear();
+    if (!shapes || !bodies.has_shapes) return;
+    slim_.read_shapes(*shapes);
+    if (slim_.empty()) return;
+    const double of_flow = flows_ ? kFlowSpreadSteps * dt * flow_.most().gradient_of_velocity : 0;
+    slim_.begin(bodies.count, kSteepnessThen * std::clamp(of_flow, kLeastSpread, kMostSpread));
+    for (std::size_t row = 0; row < bodies.count; ++row) set_rectangle(bodies, row, dt);
+    slim_.note_all_are_first();
+}
+
+/// Slim bodies that turn too far are strays, too.
+template <class Real>
+void Candidates<Real>::add_turned(const Bodies<Real>& bodies, double dt) {
+    if (slim_.empty()) return;
+    const std::size_t before = strays_.size();
+    slim_.list_turned(bodies, dt, strays_);
+    if (strays_.size() == before) return;
+    std::sort(strays_.begin(), strays_.end());
+    strays_.erase(std::unique(strays_.begin(), strays_.end()), strays_.end());
 }
 
 /// Whether a and b were a pair when the pairs were found anew, as the grid decided then. (A body's first
@@ -78,13 +105,16 @@ bool Candidates<Real>::was_pair(std::size_t a, std::size_t b) const {
     if (is_loose(a) || is_loose(b)) return false;
     const Real dx = first_x(b) - first_x(a), dy = first_y(b) - first_y(a);
     const Real reach = first_reach_[a] + first_reach_[b];
-    return dx * dx + dy * dy < reach * reach;
+    return dx * dx + dy * dy < reach * reach && (slim_.empty() || !slim_.were_parted(a, b));
 }
 
 template <class Real>
 bool Candidates<Real>::is_pair(std::size_t a, std::size_t b) const {
     const Real dx = own_x_[b] - own_x_[a], dy = own_y_[b] - own_y_[a], reach = reach_[a] + reach_[b];
-    return dx * dx + dy * dy < reach * reach;
+    if (!(dx * dx + dy * dy < reach * reach)) return false;
+    if (slim_.empty()) return true;
+    const auto drift = [&](std::size_t row) { return Vec2{own_x_[row], own_y_[row]} - slim_.place(row); };
+    return !slim_.are_parted(a, b, drift(a), drift(b));
 }
 
 template <class Real>
@@ -99,6 +129,7 @@ void Candidates<Real>::renew_margins(const Bodies<Real>& bodies, const FlightClo
         }
         own_x_[row] = static_cast<Real>(place.x), own_y_[row] = static_cast<Real>(place.y);
         reach_[row] = own_reach(bodies, row, end, fall);
+        if (!slim_.empty()) set_rectangle(bodies, row, end.s);
         largest_reach_ = std::fmax(largest_reach_, static_cast<double>(reach_[row]));
         if (!is_loose(row)) farthest_ = std::fmax(farthest_, farther_than_first(row));
     }
@@ -157,14 +188,18 @@ void Candidates<Real>::add_pairs_of(const Bodies<Real>& bodies, std::int32_t row
     for (std::size_t k = 0; k < found; ++k) compare_with(static_cast<std::size_t>(near_[k]));
 }
 
+template void Candidates<float>::set_rectangles(const Bodies<float>&, double, const ShapeStore<float>*);
+template void Candidates<double>::set_rectangles(const Bodies<double>&, double, const ShapeStore<double>*);
+template void Candidates<float>::add_turned(const Bodies<float>&, double);
+template void Candidates<double>::add_turned(const Bodies<double>&, double);
 template float Candidates<float>::own_reach(const Bodies<float>&, std::size_t, const FlightClock&,
                                             double) const;
 template double Candidates<double>::own_reach(const Bodies<double>&, std::size_t, const FlightClock&,
                                               double) const;
 template void Candidates<float>::choose_own_margins(const Bodies<float>&, const FlightClock&, Vec2,
-                                                    const Executor&);
+                                                    const ShapeStore<float>*, const Executor&);
 template void Candidates<double>::choose_own_margins(const Bodies<double>&, const FlightClock&, Vec2,
-                                                     const Executor&);
+                                                     const ShapeStore<double>*, const Executor&);
 template void Candidates<float>::renew_margins(const Bodies<float>&, const FlightClock&, Vec2);
 template void Candidates<double>::renew_margins(const Bodies<double>&, const FlightClock&, Vec2);
 template std::size_t Candidates<float>::find_around(std::size_t, double, Vec2, Column<std::int32_t>&) const;

@@ -56,6 +56,13 @@ class UniformGrid {
     /// bodies.
     const CandidatePairs& find_candidates(const Executor& executor);
     const CandidatePairs& candidates() const noexcept { return pairs_; }
+    /// Keeps some of the candidate pairs, in their order.
+    /// @param keep  keep(a, b, count) leaves these at the beginning of both lists and returns how many
+    template <class Keep>
+    void keep_pairs(const Keep& keep) {
+        pairs_.count = keep(pairs_.a.data(), pairs_.b.data(), pairs_.count);
+        pad_pairs();
+    }
 
     /// Finds all bodies of the last build with distance to (x, y) < reach + theirs; not the disabled ones. A
     /// body's own row is among them if it is near. Fixed order.

@@ -58,6 +58,13 @@ void ContactGraph<Real>::rename_rows(const Bodies<Real>& bodies) {
         });
 }
 
+template <class Real>
+bool has_disc(const Bodies<Real>& bodies) {
+    for (std::size_t row = 0; row < bodies.moving(); ++row)
+        if (bodies.is_disc(row)) return true;
+    return false;
+}
+
 /// Share of the pairs that would be far, by a sample.
 template <class Real>
 double ContactGraph<Real>::far_share(const Candidates<Real>& candidates, const TaskGroups& tried) const {
@@ -87,7 +94,7 @@ void ContactGraph<Real>::choose_groups(const Candidates<Real>& candidates, std::
 template <class Real>
 void ContactGraph<Real>::find_crowds(const Candidates<Real>& candidates, const Bodies<Real>& bodies) {
     crowd_.clear();
-    if (candidates.pair_count() < kCrowdedMean * bodies.moving()) return;
+    if (!has_discs_ || candidates.pair_count() < kCrowdedMean * bodies.moving()) return;
     crowd_.assign(bodies.count, 0);
     for (std::size_t p = 0; p < candidates.pair_count(); ++p) {
         const std::int32_t a = candidates.pair_a()[p], b = candidates.pair_b()[p];
@@ -119,6 +126,7 @@ template <class Real>
 template <class Pair>
 void ContactGraph<Real>::for_each_piece(const Candidates<Real>& candidates, const Bodies<Real>& bodies,
                                         const Executor& executor, const Pair& pair) {
+    if (!has_discs_) return;
     const std::size_t count = candidates.pair_count(), piece_size = (count + kPieces - 1) / kPieces;
     const double work = kNanosecondsToGroup * static_cast<double>(count);
     executor.for_each_task(kPieces, work, [&](std::size_t piece) {
@@ -347,6 +355,7 @@ void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const EdgeCan
     if (keeps_rolling) rolling_of_pairs_.file(pairs, rows), rolling_of_supports_.file(supports, rows);
     memory_.file(pairs, supports, rows, is_moved || pairs.groups() == 0 ? nullptr : &groups, executor);
 
+    has_discs_ = !bodies.has_shapes || has_disc(bodies);
     choose_groups(candidates, rows);
     find_crowds(candidates, bodies);
     group_pairs(candidates, bodies, executor);

@@ -160,6 +160,7 @@ class ContactGraph {
     std::vector<std::int32_t> listed_a_, listed_b_;  // supports as they are found
     std::vector<Late> late_, new_pairs_, new_supports_;
     std::vector<std::uint32_t> crowd_;          // candidates of each row; empty where no body has many
+    bool has_discs_ = true;                     // that move: else no pair is one of discs
     std::vector<std::uint32_t> piece_counts_;   // by piece of the pair list and group
     Column<std::uint64_t> colours_of_[2];       // a row, bit a colour: inside or as a, as b of a border
     std::vector<std::uint32_t> colour_counts_;  // by group and colour

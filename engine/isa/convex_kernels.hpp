@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kernels/broadphase_arguments.hpp"
 #include "kernels/manifold_arguments.hpp"
 #include "kernels/paths/path_arguments.hpp"
 
@@ -21,6 +22,8 @@ struct ConvexKernels {
     Find find_manifolds;      // of any convex shapes
     Find find_box_manifolds;  // of boxes, see is_box() in narrowphase/box_box.hpp
     void (*turn_angles)(const double* angles, double* cosines, double* sines);  // of a block, in rad
+    std::size_t (*find_approached)(const FindApproached<Real>&, std::size_t first, std::size_t last);
+    std::size_t (*drop_parted)(const DropParted<Real>&);
     PathKernels<Real> paths;
 };
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "isa/convex_kernels.hpp"
+#include "kernels/drop_parted.hpp"
+#include "kernels/find_approached.hpp"
 #include "kernels/find_manifolds.hpp"
 #include "kernels/paths/solve_paths.hpp"
 #include "kernels/paths/sweep_paths.hpp"
@@ -17,6 +19,8 @@ constexpr ConvexKernels<Real> make_convex_kernels() {
     return {.find_manifolds = &find_manifolds<Real, Isa>,
             .find_box_manifolds = &find_box_manifolds<Real, Isa>,
             .turn_angles = &turn_angles<Isa>,
+            .find_approached = &find_approached<Real, Isa>,
+            .drop_parted = &drop_parted<Real, Isa>,
             .paths = {&carry_paths<Real, Isa>, &warm_start_paths<Real, Isa>, &solve_paths<Real, Isa>,
                       &sweep_all_paths<Real, Isa>, &watch_paths<Real, Isa>, &settle_watched<Real>}};
 }

@@ -88,6 +88,15 @@ struct FindCandidates {
     std::size_t count;  // in and out: pairs in a and b
 };
 
+/// Pairs of bodies in rectangles: of which may the rectangles come to overlap?
+template <class Real>
+struct DropParted {
+    const Real* pose;     // [rows][4]: x, y of the centre [m], cosine and sine of the angle
+    const Real* size;     // [rows][4]: half sides [m]; what it may yet grow by on every side [m]; unused
+    std::int32_t *a, *b;  // in and out: rows, [padded(count)], all below the length of the columns
+    std::size_t count;
+};
+
 /// All bodies of a level with distance to (x, y) < reach + theirs.
 template <class Real>
 struct FindNear {

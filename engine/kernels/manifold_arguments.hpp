@@ -31,6 +31,19 @@ struct ManifoldColumns {
 /// Angles that are turned into cosines and sines at once; their arrays are 64-byte aligned.
 inline constexpr std::size_t kAnglesOfBlock = 64;
 
+/// Pairs that wait until their bodies have come near enough.
+template <class Real>
+struct FindApproached {
+    const Real *pose, *frame;   // [rows][4]: x, y [m], cosine, sine of the angle; ShapeFrame
+    const Real *come, *way;     // m, by row: since pairs were listed, this step included; in this step
+    const std::int32_t *a, *b;  // rows
+    const Real* thickness;      // m, by pair
+    Real* until;                // in and out: m, of what both have come together
+    Real share, fall;           // ContactDistance
+    Real rounding;              // share of lengths by which they may be off
+    std::int32_t* out;          // numbers of pairs
+};
+
 /// Contacts of pairs of convex shapes.
 template <class Real>
 struct FindManifolds {

@@ -1,8 +1,8 @@
 #include "solvers/manifolds/distant_pairs.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
+#include <utility>
 
 namespace carom {
 namespace {
@@ -19,66 +19,91 @@ constexpr Real kRounding = 16 * std::numeric_limits<Real>::epsilon();
 }  // namespace
 
 template <class Real>
-void DistantPairs<Real>::add(const WorldState<Real>& world, std::int32_t a, std::int32_t b) {
-    pairs_.push_back({a, b,
-                      pair_thickness(world.bodies, static_cast<std::size_t>(a), static_cast<std::size_t>(b)),
-                      -std::numeric_limits<Real>::infinity()});
+void DistantPairs<Real>::clear() {
+    a_.clear(), b_.clear(), thickness_.clear(), until_.clear();
+    frame_.clear();  // rows may have changed
 }
 
-/// Largest of the gaps along the sides of both rectangles, less what rounding may make of it.
 template <class Real>
-Real DistantPairs<Real>::gap(const Frame& a, const Real* pose_a, const Frame& b, const Real* pose_b) {
-    const Real ca = pose_a[2], sa = pose_a[3], cb = pose_b[2], sb = pose_b[3];
-    const Real x = pose_b[0] - pose_a[0] + (cb * b.x - sb * b.y) - (ca * a.x - sa * a.y),
-               y = pose_b[1] - pose_a[1] + (sb * b.x + cb * b.y) - (sa * a.x + ca * a.y);
-    const Real c = std::fabs(ca * cb + sa * sb), s = std::fabs(ca * sb - sa * cb);
-    const Real of_a = std::max(std::fabs(ca * x + sa * y) - a.half_x - (b.half_x * c + b.half_y * s),
-                               std::fabs(ca * y - sa * x) - a.half_y - (b.half_x * s + b.half_y * c));
-    const Real of_b = std::max(std::fabs(cb * x + sb * y) - b.half_x - (a.half_x * c + a.half_y * s),
-                               std::fabs(cb * y - sb * x) - b.half_y - (a.half_x * s + a.half_y * c));
-    return std::max(of_a, of_b) - kRounding<Real> * (a.half_x + a.half_y + b.half_x + b.half_y);
+void DistantPairs<Real>::add(const WorldState<Real>& world, std::int32_t a, std::int32_t b) {
+    a_.push_back(a), b_.push_back(b);
+    thickness_.push_back(
+        pair_thickness(world.bodies, static_cast<std::size_t>(a), static_cast<std::size_t>(b)));
+    until_.push_back(-std::numeric_limits<Real>::infinity());
+}
+
+/// What rows have come since pairs were listed, and may come in this step; and their rectangles.
+template <class Real>
+void DistantPairs<Real>::describe_rows(const WorldState<Real>& world, const PoseWatch<Real>& poses) {
+    const std::size_t rows = world.bodies.rows();
+    come_.resize_for_overwrite(rows), way_.resize_for_overwrite(rows);
+    for (std::size_t row = 0; row < rows; ++row) {
+        way_[row] = poses.way(row);
+        come_[row] = static_cast<Real>(poses.path(row)) + way_[row];
+    }
+    if (frame_.size() == rows) return;
+    frames_.follow(world.shapes);
+    frame_.resize_for_overwrite(rows);
+    for (std::size_t row = 0; row < rows; ++row) {
+        const std::int32_t shape = world.bodies.shape[row];
+        frame_[row] = shape < 0 ? ShapeFrame<Real>{} : frames_[shape];
+    }
 }
 
 template <class Real>
 std::span<const typename DistantPairs<Real>::Pair> DistantPairs<Real>::take_near(
     const WorldState<Real>& world, const PoseWatch<Real>& poses, const ContactDistance& near,
-    const Executor& executor) {
+    const ConvexKernels<Real>& kernels, const Executor& executor) {
     taken_.clear();
-    if (pairs_.empty()) return taken_;
-    frames_.follow(world.shapes);
-    const auto share = static_cast<Real>(near.share), fall = static_cast<Real>(near.fall);
-    const Column<std::int32_t>& shape_of = world.bodies.shape;
-    near_.prepare(pairs_.size(), kPairsPerTask);
-    executor.for_each_chunk(
-        pairs_.size(), kPairsPerTask, kNanosecondsToScan,
-        [&](std::size_t chunk, std::size_t first, std::size_t last) {
-            std::int32_t* out = near_.part(chunk);
-            std::size_t count = 0;
-            for (std::size_t n = first; n < last; ++n) {
-                Pair& pair = pairs_[n];
-                const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
-                const auto ways = static_cast<Real>(poses.path(a) + poses.path(b));
-                const Real reach = ways + poses.way(a) + poses.way(b) + (share * pair.thickness + fall);
-                if (reach <= pair.until) continue;
-                const Real apart =
-                    gap(frames_[shape_of[a]], &poses.pose[4 * a], frames_[shape_of[b]], &poses.pose[4 * b]);
-                pair.until = ways + apart - kRounding<Real> * reach;
-                if (!(reach <= pair.until)) out[count++] = static_cast<std::int32_t>(n);
-            }
-            near_.set_count(chunk, count);
-        });
-    near_.for_each_below(pairs_.size(), [&](std::int32_t n) {
-        Pair& pair = pairs_[static_cast<std::size_t>(n)];
-        taken_.push_back(pair);
-        pair.a = kTaken;
+    if (empty()) return taken_;
+    const std::array<double, 2> within{near.share, near.fall};
+    if (std::exchange(within_, within) != within)
+        std::fill(until_.begin(), until_.end(), -std::numeric_limits<Real>::infinity());
+    describe_rows(world, poses);
+    near_.prepare(count(), kPairsPerTask);
+    FindApproached<Real> all{poses.pose.data(),
+                             &frame_.data()->x,
+                             come_.data(),
+                             way_.data(),
+                             a_.data(),
+                             b_.data(),
+                             thickness_.data(),
+                             until_.data(),
+                             static_cast<Real>(near.share),
+                             static_cast<Real>(near.fall),
+                             kRounding<Real>,
+                             nullptr};
+    executor.for_each_chunk(count(), kPairsPerTask, kNanosecondsToScan,
+                            [&](std::size_t chunk, std::size_t first, std::size_t last) {
+                                FindApproached<Real> k = all;
+                                k.out = near_.part(chunk);
+                                near_.set_count(chunk, kernels.find_approached(k, first, last));
+                            });
+    near_.for_each_below(count(), [&](std::int32_t number) {
+        const auto n = static_cast<std::size_t>(number);
+        taken_.push_back({a_[n], b_[n]});
+        a_[n] = kTaken;
     });
-    if (!taken_.empty()) std::erase_if(pairs_, [](const Pair& pair) { return pair.a == kTaken; });
+    if (!taken_.empty()) close_gaps();
     return taken_;
+}
+
+/// Closes the gaps that pairs have left which were taken out.
+template <class Real>
+void DistantPairs<Real>::close_gaps() {
+    std::size_t kept = 0;
+    for (std::size_t n = 0; n < count(); ++n) {
+        if (a_[n] == kTaken) continue;
+        a_[kept] = a_[n], b_[kept] = b_[n], thickness_[kept] = thickness_[n], until_[kept] = until_[n];
+        ++kept;
+    }
+    a_.resize(kept), b_.resize(kept), thickness_.resize(kept), until_.resize(kept);
 }
 
 template <class Real>
 std::size_t DistantPairs<Real>::bytes() const {
-    return (pairs_.capacity() + taken_.capacity()) * sizeof(Pair) + frames_.bytes() + near_.bytes();
+    return a_.bytes() + b_.bytes() + thickness_.bytes() + until_.bytes() + come_.bytes() + way_.bytes() +
+           frame_.bytes() + taken_.capacity() * sizeof(Pair) + frames_.bytes() + near_.bytes();
 }
 
 template class DistantPairs<float>;

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "effects/friction.hpp"
 #include "effects/restitution.hpp"
 #include "narrowphase/box_box.hpp"
-#include "solvers/manifolds/meeting.hpp"
 
 namespace carom {
 namespace {
@@ -15,10 +13,6 @@ namespace {
 // For the executor: ns a contact on one thread, and contacts of a task.
 constexpr double kNanosecondsToFind = 10;
 constexpr std::size_t kContactsPerTask = 256;
-
-/// Share of how far a shape reaches by which a gap may be off through rounding.
-template <class Real>
-constexpr double kRoundingOfGaps = 16 * static_cast<double>(std::numeric_limits<Real>::epsilon());
 
 }  // namespace
 
@@ -80,9 +74,9 @@ void Manifolds<Real>::renew(const WorldState<Real>& world, const Candidates<Real
 
 template <class Real>
 void Manifolds<Real>::take_near(const WorldState<Real>& world, const ContactDistance& near,
-                                const Executor& executor) {
+                                const StepLoops<Real>& loops) {
     const std::size_t before = bodies_.count();
-    const auto taken = distant_.take_near(world, poses_, near, executor);
+    const auto taken = distant_.take_near(world, poses_, near, *loops.kernels->convex, *loops.executor);
     if (shapes_of_boxes_ != world.shapes.revision()) list_boxes(world.shapes);
     // Boxes first: blocks of them alone have a quicker kernel.
     for (const bool boxes : {true, false})
@@ -261,7 +255,7 @@ bool Manifolds<Real>::find(const WorldState<Real>& world, const EdgeCandidates<R
     if (finds_all) first_new_block_ = 0;
     found_within_ = within;
     poses_.look(world, terms.dt, near, finds_all, loops.kernels->convex->turn_angles, *loops.executor);
-    take_near(world, near, *loops.executor);
+    take_near(world, near, loops);
     items_.add_poses(poses_.pose);
     surface_finder_.find(world, edges, terms, near, surfaces_);
     recall_surfaces();
@@ -360,92 +354,6 @@ void Manifolds<Real>::find_pairs(const WorldState<Real>& world, const ConvexKern
         const bool are_boxes = blocks_are_boxes_[i / kRowPadding] != 0;
         (are_boxes ? kernels.find_box_manifolds : kernels.find_manifolds)(k, i, i + kRowPadding);
     }
-}
-
-/// Bodies that do not touch yet may meet elsewhere than where they face each other (meeting.hpp), or not at
-/// all in this step, whatever becomes of them: those contacts are left out.
-template <class Real>
-void Manifolds<Real>::look_at_gaps(const WorldState<Real>& world, double dt, const ContactDistance& near,
-                                   std::size_t first, std::size_t last) {
-    const auto none = static_cast<Real>(kNoPoint);
-    for (std::size_t i = first; i < last; ++i) {
-        const Real gap = std::min(bodies_.separation1[i], bodies_.separation2[i]);
-        if (!(gap > 0) || !(gap < none)) continue;
-        if (!find_meeting(world, dt, i, static_cast<double>(gap)) && !can_close(world, dt, near, i))
-            bodies_.separation1[i] = bodies_.separation2[i] = none;
-    }
-}
-
-/// Whether the line that was found across the gap parts the bodies all through the step, as they fly: then
-/// they do not meet, which meeting_manifold() takes ten times as long to find.
-template <class Real>
-bool Manifolds<Real>::stay_parted(const WorldState<Real>& world, double dt, std::size_t i) const {
-    const Bodies<Real>& bodies = world.bodies;
-    const Vec2 normal{bodies_.normal_x[i], bodies_.normal_y[i]};
-    double gap = -kMeetingTarget * static_cast<double>(bodies_.thickness[i]);  // m, now, beyond the target
-    double opening = 0;                                                        // m/s, at least
-    const auto add = [&](std::int32_t number, const Column<std::int32_t>& items, double side) {
-        const auto row = static_cast<std::size_t>(number);
-        const ConvexShape<Real>& shape =
-            world.shapes[shape_of_item(world, row, items_.empty() ? number : items[i])];
-        const Real* pose = &poses_.pose[4 * row];
-        const auto extent = static_cast<double>(shape.extent);
-        const double reach = reach_along(shape, {pose[2], pose[3]}, -side * normal),
-                     spin = bodies.has_rotation ? static_cast<double>(bodies.angular_velocity[row]) : 0;
-        gap += side * dot({pose[0], pose[1]}, normal) - reach - kRoundingOfGaps<Real> * extent;
-        opening +=
-            side * dot({bodies.velocity_x[row], bodies.velocity_y[row]}, normal) - std::fabs(spin) * extent;
-    };
-    add(bodies_.a[i], bodies_.item_a, -1), add(bodies_.b[i], bodies_.item_b, 1);
-    return gap > 0 && gap + dt * opening > 0;
-}
-
-/// @return whether the bodies meet later than at once
-template <class Real>
-bool Manifolds<Real>::find_meeting(const WorldState<Real>& world, double dt, std::size_t i, double gap) {
-    const Bodies<Real>& bodies = world.bodies;
-    const auto turns = [&](std::size_t row) {
-        return bodies.has_rotation ? static_cast<double>(bodies.angular_velocity[row]) : 0;
-    };
-    const auto a = static_cast<std::size_t>(bodies_.a[i]), b = static_cast<std::size_t>(bodies_.b[i]);
-    const Vec2 dv{static_cast<double>(bodies.velocity_x[b]) - static_cast<double>(bodies.velocity_x[a]),
-                  static_cast<double>(bodies.velocity_y[b]) - static_cast<double>(bodies.velocity_y[a])};
-    const double way = dt * (std::sqrt(length_squared(dv)) + std::fabs(turns(a)) * bodies.radius[a] +
-                             std::fabs(turns(b)) * bodies.radius[b]);
-    const double thickness = bodies_.thickness[i];
-    if (!(way > kFastThicknesses * thickness) || !(way > gap)) return false;
-    if (stay_parted(world, dt, i)) return false;
-    Manifold<double> met{};
-    const auto moving = [&](std::size_t row, const Column<std::int32_t>& items) {
-        if (items_.empty()) return moving_row(world, row, bodies.shape[row]);
-        return moving_row(world, row, shape_of(world, static_cast<std::int32_t>(row), items[i]));
-    };
-    const bool meets =
-        meeting_manifold(moving(a, bodies_.item_a), moving(b, bodies_.item_b), dt, thickness, met);
-    if (meets) bodies_.set_manifold(i, met);
-    return meets;
-}
-
-/// Whether a gap may close in the step. What flies may keep its velocity, be stopped or come back with its
-/// restitution: a contact of two bodies that fly side by side counts only once one of them may be stopped.
-template <class Real>
-bool Manifolds<Real>::can_close(const WorldState<Real>& world, double dt, const ContactDistance& near,
-                                std::size_t i) const {
-    const Bodies<Real>& bodies = world.bodies;
-    const auto a = static_cast<std::size_t>(bodies_.a[i]), b = static_cast<std::size_t>(bodies_.b[i]);
-    const Real nx = bodies_.normal_x[i], ny = bodies_.normal_y[i], e = bodies_.restitution[i];
-    const Real va = bodies.velocity_x[a] * nx + bodies.velocity_y[a] * ny,
-               vb = bodies.velocity_x[b] * nx + bodies.velocity_y[b] * ny;
-    const Real wa = bodies.has_rotation ? bodies.angular_velocity[a] : Real(0),
-               wb = bodies.has_rotation ? bodies.angular_velocity[b] : Real(0);
-    const auto towards = [&](Real speed) { return std::max(speed, -e * speed); };
-    const auto reach = static_cast<Real>(near(static_cast<double>(bodies_.thickness[i])));
-    const auto closes = [&](Real separation, Real lever_a, Real lever_b) {
-        return separation <=
-               reach + static_cast<Real>(dt) * (towards(va + wa * lever_a) + towards(-vb - wb * lever_b));
-    };
-    return closes(bodies_.separation1[i], bodies_.lever_a1[i], bodies_.lever_b1[i]) ||
-           closes(bodies_.separation2[i], bodies_.lever_a2[i], bodies_.lever_b2[i]);
 }
 
 /// @return whether they are those of the step before

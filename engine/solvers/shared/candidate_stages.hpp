@@ -62,7 +62,7 @@ void find_candidate_pairs(Simulation<Real>& sim, const FlightClock& end) {
             sim.displaced.push_back(row);
     });
     sim.candidates.update(bodies, end, sim.world.gravity, sim.displaced, sim.fastest, *sim.kernels,
-                          sim.executor);
+                          sim.executor, &sim.world.shapes);
 }
 
 }  // namespace carom

@@ -2,9 +2,13 @@
 
 #include <doctest/doctest.h>
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <random>
+
+#include "isa/select_isa.hpp"
 
 using namespace carom;
 
@@ -27,6 +31,27 @@ TEST_SUITE("math/rotation") {
                 worst = std::fmax(worst, std::fabs(turn.sin - std::sin(angle)));
             }
         CHECK(worst <= 2.3e-16);
+    }
+
+    TEST_CASE("by lanes angles have the bits that they have one by one, on every instruction set") {
+        std::mt19937_64 random(7);
+        alignas(64) double angles[kAnglesOfBlock], cosines[kAnglesOfBlock], sines[kAnglesOfBlock];
+        for (const double largest : {1e-9, 1.0, 7.0, 1e3, 1e8, 1e15}) {
+            for (double& angle : angles)
+                angle = std::uniform_real_distribution<double>(-largest, largest)(random);
+            for (int quarters = -9; quarters <= 9; ++quarters)
+                angles[quarters + 9] = quarters * 1.5707963267948966;
+            angles[20] = kNaN, angles[21] = kInfinity, angles[22] = -2e15, angles[23] = -0.0;
+            for (const KernelTables* tables : runnable_kernel_tables()) {
+                tables->double_precision.convex->turn_angles(angles, cosines, sines);
+                for (std::size_t i = 0; i < kAnglesOfBlock; ++i) {
+                    CAPTURE(angles[i]);
+                    const Rotation turn = rotation_by(angles[i]);
+                    CHECK(std::bit_cast<std::uint64_t>(cosines[i]) == std::bit_cast<std::uint64_t>(turn.cos));
+                    CHECK(std::bit_cast<std::uint64_t>(sines[i]) == std::bit_cast<std::uint64_t>(turn.sin));
+                }
+            }
+        }
     }
 
     TEST_CASE("quarter turns are exact to rounding, and no turn is exact") {

@@ -89,7 +89,7 @@ TEST_SUITE("solvers/manifolds/distant_pairs") {
                 }
         };
         const Executor executor(1);
-        const auto turn_angles = select_kernels("auto").of<Real>().convex->turn_angles;
+        const ConvexKernels<Real>& kernels = *select_kernels("auto").of<Real>().convex;
         const auto speed = [&](std::size_t row) {  // of the surface, in both directions [m/s]
             return static_cast<double>(std::fabs(bodies.velocity_x[row]) + std::fabs(bodies.velocity_y[row]) +
                                        std::fabs(bodies.angular_velocity[row]) * bodies.radius[row]);
@@ -97,8 +97,8 @@ TEST_SUITE("solvers/manifolds/distant_pairs") {
         std::size_t listed = 0, left_after_ten = 0;
         for (int step = 0; step < 120; ++step) {
             if (step % 40 == 0) list(), listed += waiting.size();
-            poses.look(world, kStep, kNear, false, turn_angles, executor);
-            for (const auto& pair : distant.take_near(world, poses, kNear, executor))
+            poses.look(world, kStep, kNear, false, kernels.turn_angles, executor);
+            for (const auto& pair : distant.take_near(world, poses, kNear, kernels, executor))
                 REQUIRE(waiting.erase({pair.a, pair.b}) == 1);
             for (const auto& [first, second] : waiting) {
                 const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
