@@ -3,6 +3,9 @@
 #include <carom/accuracy.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
 #include <string>
 
 namespace carom {
@@ -27,6 +30,42 @@ std::string name_of(KernelChoice choice, const Simulation<Real>& sim) {
         default:
             return "";
     }
+}
+
+/// Coordinates are to differ by less than this share of half a body's thickness from one number to the next.
+/// At 2e-3 a disc that rolls by 20 m is 8 cm off, at 0.016 1.2 m, and at 0.12 it stays where it is (B11).
+constexpr double kCoarse = 1e-3;
+
+/// Says of the body whose coordinates are the coarsest beside its size how coarse they are.
+template <class Real>
+void describe_precision(const WorldState<Real>& world, std::vector<std::string>& limits) {
+    const Bodies<Real>& bodies = world.bodies;
+    double worst = kCoarse;
+    std::size_t worst_row = bodies.count;
+    const auto step_at = [](Real x) {  // m, from this number to the next
+        const Real magnitude = std::fabs(x);
+        return static_cast<double>(std::nextafter(magnitude, std::numeric_limits<Real>::infinity()) -
+                                   magnitude);
+    };
+    const auto farther = [&](std::size_t row) {
+        return std::max(std::fabs(bodies.position_x[row]), std::fabs(bodies.position_y[row]));
+    };
+    for (std::size_t row = 0; row < bodies.count; ++row) {
+        if (bodies.is_immovable(row)) continue;
+        const double share = step_at(farther(row)) / static_cast<double>(bodies.inradius(row));
+        if (share > worst) worst = share, worst_row = row;
+    }
+    if (worst_row == bodies.count) return;
+    const bool is_single = sizeof(Real) == sizeof(float);
+    char text[400];
+    std::snprintf(
+        text, sizeof text,
+        "body %u is %.2g m from the origin, where coordinates in %s precision are %.2g m apart, %.2g %% "
+        "of half its thickness: it may tremble, or not move at all where it is slow. %s",
+        bodies.id[worst_row].index, static_cast<double>(farther(worst_row)), is_single ? "single" : "double",
+        step_at(farther(worst_row)), 100 * worst,
+        is_single ? "Use double precision, or an origin near the bodies" : "Use an origin near the bodies");
+    limits.push_back(text);
 }
 
 }  // namespace
@@ -54,6 +93,7 @@ Plan describe_plan(Simulation<Real>& sim, const CalledEffects& called) {
     });
     plan.shapes = sim.world.shapes.distinct();
     if (plan.shapes > 0) plan.bytes_per_shape = sizeof(ConvexShape<Real>);
+    describe_precision(sim.world, plan.limits);
     return plan;
 }
 

@@ -202,6 +202,19 @@ class OtherCommandsTest(ProgramTest):
                 self.assertIn(effect["reason"], text)
         self.assertEqual(self.everything(), [])
 
+    def test_coordinates_that_are_too_coarse_are_said_with_the_remedy(self):
+        scene = gas(2, steps=2)
+        del scene["walls"]
+        scene["bodies"][1]["position"] = [2e6, 0]
+        file = self.write_scene(scene)
+        limit, = json.loads(self.carom("explain", file, "--json").stdout)["limits"]
+        self.assertRegex(limit, "^body 1 is 2e[+]06 m from the origin.*single precision.*Use double precision")
+        self.assertIn(f"limit: {limit}", self.carom("explain", file).stdout)
+        done = self.carom("run", file, "--out", "out", "--quiet")
+        self.assertIn(limit, done.stderr)
+        self.assertIn(limit, json.loads((self.folder / "out/summary.json").read_text())["messages"])
+        self.assertEqual(self.carom("run", file, "--out", "out", "--quiet", "--precision", "double").stderr, "")
+
     def test_what_a_scene_does_not_call_for_is_off(self):
         scene = gas(3)
         del scene["walls"]

@@ -54,6 +54,7 @@ std::string to_text(const Plan& plan, const std::string& scene, std::size_t bodi
             format("  %-20s  %4zu  %s\n", column.name.c_str(), column.bytes_per_body, column.unit.c_str());
     if (plan.shapes > 0)
         text += format("\nshapes: %zu distinct, %zu bytes each\n", plan.shapes, plan.bytes_per_shape);
+    for (const std::string& limit : plan.limits) text += format("\nlimit: %s\n", limit.c_str());
     return text;
 }
 

@@ -270,6 +270,8 @@ void describe_end(const Scene& scene, const Simulation& simulation, RunOutcome& 
             format("%lld impacts were left to the next step, beyond the limit of solver \"impulse\": bodies "
                    "may overlap. A shorter step resolves them; for crowds use \"soft\" or \"auto\"",
                    static_cast<long long>(run.profile.unresolved_impacts)));
+    const Plan plan = simulation.plan();
+    run.messages.insert(run.messages.end(), plan.limits.begin(), plan.limits.end());
 }
 
 /// Drawn from the files that were just written.

@@ -81,6 +81,9 @@ struct Plan {
     /// Distinct geometries that bodies share: 0 where all are discs, segments and chains.
     std::size_t shapes = 0;
     std::size_t bytes_per_shape = 0;
+    /// Where the precision ends as the bodies are now, and the remedy, in words; empty where it does not
+    /// matter.
+    std::vector<std::string> limits;
 };
 
 }  // namespace carom

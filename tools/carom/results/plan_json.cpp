@@ -19,7 +19,8 @@ Json plan_json(const Plan& plan) {
               {"columns", Json::array()},
               {"bytes_per_body", plan.bytes_per_body},
               {"shapes", plan.shapes},
-              {"bytes_per_shape", plan.bytes_per_shape}};
+              {"bytes_per_shape", plan.bytes_per_shape},
+              {"limits", plan.limits}};
     for (const EffectReport& effect : plan.effects)
         json["effects"].push_back({{"name", effect.name}, {"on", effect.on}, {"reason", effect.reason}});
     for (const StageReport& stage : plan.stages)
