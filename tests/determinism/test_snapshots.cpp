@@ -242,7 +242,7 @@ TEST_SUITE("determinism/snapshots") {
         CHECK(refusal(world, other_start).find("do not begin like a state") != std::string::npos);
         // Of the header, too: its solver, say, would be made a world of.
         for (std::size_t at = 0; at < 64; ++at)
-            for (const unsigned bit : {0, 1, 2, 7}) {
+            for (const unsigned bit : {0u, 1u, 2u, 7u}) {
                 std::vector<std::byte> flipped = state;
                 flipped[at] ^= std::byte{1} << bit;
                 CAPTURE(at);

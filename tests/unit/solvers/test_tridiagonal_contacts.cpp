@@ -45,7 +45,7 @@ TEST_SUITE("solvers/tridiagonal contacts") {
     TEST_CASE("contacts in a row are solved as one that tries all sets of them does") {
         std::mt19937 random(11);
         for (int trial = 0; trial < 300; ++trial) {
-            const std::size_t count = 1 + trial % 9;
+            const auto count = static_cast<std::size_t>(1 + trial % 9);
             TridiagonalContacts line = random_line(count, 1.5, random);
             Complementarity all(count);
             for (std::size_t n = 0; n < count; ++n) {
