@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "constraints/partner.hpp"
-#include "kernels/contact_arguments.hpp"
+#include "kernels/contacts/contact_arguments.hpp"
 #include "state/column.hpp"
 
 namespace carom {
@@ -58,7 +58,7 @@ struct ContactRows {
     Column<Real> friction_impulse;  // N s
     Column<Real> rolling_impulse;   // N s
 
-    // What the kernels stream besides: kernels/contact_arguments.hpp.
+    // What the kernels stream besides: kernels/contacts/contact_arguments.hpp.
     Column<Real> normal_x, normal_y, separation, mass, friction, floor;
     Column<Real> surface_normal, surface_tangent, rolling, rolling_share, surface_rolling;
     Column<Real> smaller;  // m
@@ -122,7 +122,7 @@ struct ContactRows {
         std::uint32_t first, last;
     };
     // These columns are for pairs alone.
-    Column<std::uint8_t> is_live;                    // a block: kernels/contact_arguments.hpp
+    Column<std::uint8_t> is_live;                    // a block: kernels/contacts/contact_arguments.hpp
     Column<std::uint8_t> needs_second_sweep;         // a block: likewise
     Column<Run> run;                                 // those of a group begin at its first block
     std::vector<std::size_t> run_count, live_count;  // a group: runs, contacts that can touch

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "kernels/broadphase_arguments.hpp"
-#include "kernels/manifold_arguments.hpp"
+#include "kernels/broadphase/broadphase_arguments.hpp"
+#include "kernels/manifolds/manifold_arguments.hpp"
 #include "kernels/paths/path_arguments.hpp"
 
 namespace carom {

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "isa/convex_kernels.hpp"
-#include "kernels/broadphase_arguments.hpp"
-#include "kernels/contact_arguments.hpp"
-#include "kernels/flight_arguments.hpp"
-#include "kernels/joint_arguments.hpp"
+#include "kernels/broadphase/broadphase_arguments.hpp"
+#include "kernels/contacts/contact_arguments.hpp"
+#include "kernels/flight/flight_arguments.hpp"
+#include "kernels/joints/joint_arguments.hpp"
 
 #include <array>
 #include <string_view>

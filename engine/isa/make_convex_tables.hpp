@@ -1,14 +1,14 @@
 #pragma once
 
 #include "isa/convex_kernels.hpp"
-#include "kernels/drop_parted.hpp"
-#include "kernels/find_approached.hpp"
-#include "kernels/find_manifolds.hpp"
+#include "kernels/broadphase/drop_parted.hpp"
+#include "kernels/manifolds/find_approached.hpp"
+#include "kernels/manifolds/find_manifolds.hpp"
+#include "kernels/manifolds/turn_angles.hpp"
 #include "kernels/paths/solve_paths.hpp"
 #include "kernels/paths/sweep_paths.hpp"
 #include "kernels/paths/warm_start_paths.hpp"
 #include "kernels/paths/watch_paths.hpp"
-#include "kernels/turn_angles.hpp"
 #include "simd/lanes.hpp"
 
 namespace carom {

@@ -14,7 +14,7 @@ struct Rotation {
     double sin = 0;
 };
 
-/// Numbers of rotation_by(), which is also written for lanes: kernels/turn_angles.hpp.
+/// Numbers of rotation_by(), which is also written for lanes: kernels/manifolds/turn_angles.hpp.
 struct RotationSeries {
     static constexpr double kLargest = 1e15;  // rad
     static constexpr double kPart[] = {0x1.921fb5p+0, 0x1.110b46p-26, 0x1.1a6263p-54, 0x1.8a2e03707344ap-81};

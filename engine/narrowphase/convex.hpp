@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "kernels/manifold_arguments.hpp"
+#include "kernels/manifolds/manifold_arguments.hpp"
 #include "narrowphase/manifold.hpp"
 #include "simd/scalar_lanes.hpp"
 

@@ -2,8 +2,8 @@
 
 namespace carom {
 
-/// Where two convex shapes touch, in the terms of ManifoldColumns (kernels/manifold_arguments.hpp): a number
-/// or a batch each.
+/// Where two convex shapes touch, in the terms of ManifoldColumns (kernels/manifolds/manifold_arguments.hpp):
+/// a number or a batch each.
 template <class F>
 struct Manifold {
     F normal_x, normal_y;

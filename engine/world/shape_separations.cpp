@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "kernels/manifold_arguments.hpp"
+#include "kernels/manifolds/manifold_arguments.hpp"
 #include "math/vec2_math.hpp"
 #include "shapes/convex_geometry.hpp"
 

@@ -44,7 +44,7 @@ struct SolvePaths {
     PathLink<Real>* links;          // of bundle i: first_link[i] ... first_link[i + 1]
     const std::size_t* first_link;  //
     const std::int32_t* heads;      // [bundles][kPathLanes]: rows where the paths begin
-    Real* velocity;                 // [rows][4], kernels/contact_arguments.hpp
+    Real* velocity;                 // [rows][4], kernels/contacts/contact_arguments.hpp
     Real* displacement;             // [rows][2], m, since the start of the step
     Real* turn;                     // [rows], m, rim displacement since the start of the step
     const Real* come;               // [rows][2], m, in the step before, for carry_paths

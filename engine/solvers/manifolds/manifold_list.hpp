@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "kernels/manifold_arguments.hpp"
+#include "kernels/manifolds/manifold_arguments.hpp"
 #include "narrowphase/manifold.hpp"
 #include "state/column.hpp"
 
@@ -78,7 +78,7 @@ struct ManifoldList {
     std::vector<ManifoldName> names;  ///< of every contact
     std::vector<ManifoldMemory<Real>> memory;
 
-    // As they were found: kernels/manifold_arguments.hpp.
+    // As they were found: kernels/manifolds/manifold_arguments.hpp.
     Column<Real> normal_x, normal_y, lever_a1, lever_a2, lever_b1, lever_b2, lever_a_t, lever_b_t,
         separation1, separation2;
 

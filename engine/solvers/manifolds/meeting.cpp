@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "kernels/manifold_arguments.hpp"
+#include "kernels/manifolds/manifold_arguments.hpp"
 #include "math/vec2_math.hpp"
 
 namespace carom {

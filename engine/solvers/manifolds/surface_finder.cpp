@@ -6,7 +6,7 @@
 #include "constraints/partner.hpp"
 #include "effects/friction.hpp"
 #include "effects/restitution.hpp"
-#include "kernels/manifold_arguments.hpp"
+#include "kernels/manifolds/manifold_arguments.hpp"
 #include "math/rotation.hpp"
 #include "shapes/walls.hpp"
 #include "solvers/manifolds/meeting.hpp"

@@ -46,7 +46,7 @@ class CoarseCorrection {
     /// @param fewest  bodies that are corrected
     bool is_due(std::size_t bodies, int substeps, std::size_t fewest = kFewestLoaded);
 
-    /// Makes room for the sums over contacts (kernels/coarse_correction.hpp) and clears them.
+    /// Makes room for the sums over contacts (kernels/contacts/coarse_correction.hpp) and clears them.
     void begin(std::size_t rows);
 
     /// Finds s of each row from the sums.

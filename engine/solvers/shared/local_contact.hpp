@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "constraints/contact_law.hpp"
-#include "kernels/contact_arguments.hpp"
+#include "kernels/contacts/contact_arguments.hpp"
 
 namespace carom {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "constraints/contact_rows.hpp"
-#include "kernels/contact_arguments.hpp"
+#include "kernels/contacts/contact_arguments.hpp"
 #include "solvers/shared/local_contact.hpp"
 
 namespace carom {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "kernels/contact_arguments.hpp"
+#include "kernels/contacts/contact_arguments.hpp"
 #include "solvers/substeps/body_masses.hpp"
 #include "solvers/substeps/step_terms.hpp"
 #include "state/chunked_list.hpp"
@@ -20,7 +20,7 @@ namespace carom {
 template <class Real>
 class BodyRecords {
   public:
-    Column<Real> velocity;      ///< [rows][4], kernels/contact_arguments.hpp
+    Column<Real> velocity;      ///< [rows][4], kernels/contacts/contact_arguments.hpp
     Column<Real> displacement;  ///< [rows][2], m, since the start of the step
 
     /// Records at the start of a step, with the velocities that the first substep foresees.

@@ -1,6 +1,6 @@
 // Contacts along paths against the laws that they must obey, and one instruction set against the other.
 #include "isa/select_isa.hpp"
-#include "kernels/manifold_arguments.hpp"
+#include "kernels/manifolds/manifold_arguments.hpp"
 #include "kernels/paths/path_arguments.hpp"
 #include "math/random.hpp"
 #include "state/column.hpp"

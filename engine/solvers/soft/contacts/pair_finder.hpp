@@ -8,8 +8,8 @@
 
 namespace carom {
 
-/// Finds which of the coloured pairs can touch in a step, and where (kernels/find_contacts.hpp). Masses,
-/// radii and coefficients of pairs are computed when the pairs are new.
+/// Finds which of the coloured pairs can touch in a step, and where (kernels/contacts/find_contacts.hpp).
+/// Masses, radii and coefficients of pairs are computed when the pairs are new.
 template <class Real>
 class PairFinder {
   public:

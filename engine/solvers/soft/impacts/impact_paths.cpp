@@ -14,7 +14,7 @@ void ImpactPaths<Real>::begin_substep(const WorldState<Real>& world, const Subst
     movers_.resize(std::max(movers_.size(), bodies.count));
 }
 
-/// By which kernels/advance_bodies.hpp will move a body that is awake.
+/// By which kernels/contacts/advance_bodies.hpp will move a body that is awake.
 template <class Real>
 Mover ImpactPaths<Real>::path_of(std::size_t row) const {
     const Real* record = bodies_->velocity + 4 * row;

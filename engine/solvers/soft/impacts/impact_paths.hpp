@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "kernels/contact_arguments.hpp"
+#include "kernels/contacts/contact_arguments.hpp"
 #include "math/vec2_math.hpp"
 #include "state/world_state.hpp"
 
@@ -24,7 +24,8 @@ struct SubstepBodies {
     Real decay, spin_decay;    ///< what drag leaves in a substep
 };
 
-/// How a body moves through a substep: by what kernels/advance_bodies.hpp will move it. A cache line.
+/// How a body moves through a substep: by what kernels/contacts/advance_bodies.hpp will move it. A cache
+/// line.
 struct alignas(64) Mover {
     Vec2 x, v, acceleration;    // m, m/s, m/s², at the start of the substep
     double radius = 0;          // m

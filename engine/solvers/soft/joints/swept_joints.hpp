@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "constraints/task_groups.hpp"
-#include "kernels/joint_arguments.hpp"
+#include "kernels/joints/joint_arguments.hpp"
 #include "parallel/phases.hpp"
 #include "solvers/soft/joints/joint_step.hpp"
 #include "solvers/soft/joints/joint_stiffness.hpp"

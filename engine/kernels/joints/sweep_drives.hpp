@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/sweep_joints.hpp"
+#include "kernels/joints/sweep_joints.hpp"
 
 // Springs, ropes, limits and motors by lanes: rows that give way, and rows with bounds. Each has an impulse
 // of its own along the one coordinate that they act on, a length (ropes, springs) or an angle.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/manifold_arguments.hpp"
+#include "kernels/manifolds/manifold_arguments.hpp"
 #include "math/rotation.hpp"
 #include "simd/lanes.hpp"
 

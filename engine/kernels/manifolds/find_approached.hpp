@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/manifold_arguments.hpp"
+#include "kernels/manifolds/manifold_arguments.hpp"
 #include "narrowphase/rectangle_gap.hpp"
 #include "simd/lanes.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/manifold_arguments.hpp"
+#include "kernels/manifolds/manifold_arguments.hpp"
 #include "narrowphase/box_box.hpp"
 #include "narrowphase/convex.hpp"
 #include "simd/lanes.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "kernels/consecutive_rows.hpp"
-#include "kernels/flight_arguments.hpp"
+#include "kernels/flight/flight_arguments.hpp"
+#include "simd/consecutive_rows.hpp"
 #include "simd/lanes.hpp"
 
 namespace carom {

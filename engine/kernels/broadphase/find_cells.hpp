@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/broadphase_arguments.hpp"
+#include "kernels/broadphase/broadphase_arguments.hpp"
 #include "simd/lanes.hpp"
 
 namespace carom {

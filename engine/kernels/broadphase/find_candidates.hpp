@@ -1,7 +1,7 @@
 #pragma once
 
-#include "kernels/candidate_offsets.hpp"
-#include "kernels/scan_range.hpp"
+#include "kernels/broadphase/candidate_offsets.hpp"
+#include "kernels/broadphase/scan_range.hpp"
 #include "simd/lanes.hpp"
 
 namespace carom {

@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "kernels/consecutive_rows.hpp"
-#include "kernels/contact_arguments.hpp"
+#include "kernels/contacts/contact_arguments.hpp"
+#include "simd/consecutive_rows.hpp"
 #include "simd/lanes.hpp"
 
 namespace carom {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/contact_arguments.hpp"
+#include "kernels/contacts/contact_arguments.hpp"
 #include "narrowphase/coincident.hpp"
 #include "narrowphase/time_of_impact.hpp"
 #include "simd/lanes.hpp"

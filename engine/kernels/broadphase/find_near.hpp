@@ -1,7 +1,7 @@
 #pragma once
 
-#include "kernels/find_cells.hpp"
-#include "kernels/scan_range.hpp"
+#include "kernels/broadphase/find_cells.hpp"
+#include "kernels/broadphase/scan_range.hpp"
 
 namespace carom {
 namespace {

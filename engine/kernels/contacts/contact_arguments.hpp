@@ -67,7 +67,7 @@ struct SolveContacts {
     Real next_over_relaxation = 1;  // of pairs in the other sweeps, without friction alone
     std::uint8_t*
         needs_second_sweep;  // out, [last / kContactBlock]: set where a contact of the block is not calm
-    // The rest is for kernels/coarse_correction.hpp alone.
+    // The rest is for kernels/contacts/coarse_correction.hpp alone.
     const Real* reach = nullptr;  // m, sum of the radii; null where b is
     Real* load = nullptr;         // [rows][4]
     Real* stress = nullptr;       // [rows][4]

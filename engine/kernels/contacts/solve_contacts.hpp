@@ -1,7 +1,7 @@
 #pragma once
 
 #include "constraints/contact_law.hpp"
-#include "kernels/contact_arguments.hpp"
+#include "kernels/contacts/contact_arguments.hpp"
 #include "simd/forget_loads.hpp"
 #include "simd/lanes.hpp"
 

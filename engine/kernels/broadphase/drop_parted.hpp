@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/broadphase_arguments.hpp"
+#include "kernels/broadphase/broadphase_arguments.hpp"
 #include "narrowphase/rectangle_gap.hpp"
 #include "simd/lanes.hpp"
 

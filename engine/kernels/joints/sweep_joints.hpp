@@ -4,7 +4,7 @@
 #include <limits>
 #include <numbers>
 
-#include "kernels/joint_arguments.hpp"
+#include "kernels/joints/joint_arguments.hpp"
 #include "simd/forget_loads.hpp"
 #include "simd/lanes.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/solve_contacts.hpp"
+#include "kernels/contacts/solve_contacts.hpp"
 
 // What engine/solvers/shared/coarse_correction.hpp does to each contact. The loads of a body are two records
 // of [4]:

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "kernels/find_near.hpp"
-#include "kernels/flight_arguments.hpp"
+#include "kernels/broadphase/find_near.hpp"
+#include "kernels/flight/flight_arguments.hpp"
 #include "simd/lanes.hpp"
 #include "simd/prefetch.hpp"
 
