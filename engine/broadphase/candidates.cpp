@@ -87,7 +87,7 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
     if (shapes && !slim_.empty()) slim_.read_shapes(*shapes);  // forgotten where a state was read
     if (rule_ == MarginRule::own && is_valid_) {
         strays_.assign(displaced.begin(), displaced.end());
-        add_turned(bodies, end.s);
+        slim_.add_turned(bodies, end.s, strays_);
         if (may_renew(strays_.size() + fresh_rows_.size(), bodies.moving())) {
             add_fresh_strays();
             renew_margins(bodies, end, gravity);

@@ -242,13 +242,11 @@ class Candidates {
                      const Executor& executor);
     void renew_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity);
     void add_pairs_of(const Bodies<Real>& bodies, std::int32_t row);
-    void set_rectangles(const Bodies<Real>& bodies, double dt, const ShapeStore<Real>* shapes);
     void set_rectangle(const Bodies<Real>& bodies, std::size_t row, double dt) {
         const auto reach = static_cast<double>(reach_[row]);
         slim_.set(bodies, row, {own_x_[row], own_y_[row]}, reach - static_cast<double>(bodies.radius[row]),
                   reach, dt);
     }
-    void add_turned(const Bodies<Real>& bodies, double dt);
     bool has_spread() const { return !slim_.empty() && kSteepnessThen * steepness_ > slim_.spread(); }
     bool was_pair(std::size_t a, std::size_t b) const;
     bool is_pair(std::size_t a, std::size_t b) const;

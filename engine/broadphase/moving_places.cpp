@@ -182,7 +182,7 @@ bool Candidates<Real>::follow_flow(const Bodies<Real>& bodies, const FlightClock
                             });
     strays_.clear();
     stray_rows_.for_each_below(bodies.count, [&](std::int32_t row) { strays_.push_back(row); });
-    add_turned(bodies, end.s);
+    slim_.add_turned(bodies, end.s, strays_);
     add_fresh_strays();
     if (!may_renew(strays_.size(), bodies.count)) return false;
     failed_follows_ = 0;

@@ -69,33 +69,16 @@ void Candidates<Real>::choose_own_margins(const Bodies<Real>& bodies, const Flig
     };
     take_over(own_x_, bodies.position_x), take_over(own_y_, bodies.position_y);
     take_over(first_reach_, reach_);
-    set_rectangles(bodies, end.s, shapes);
+    slim_.clear();
+    if (shapes && bodies.has_shapes) slim_.read_shapes(*shapes);
+    if (!slim_.empty()) {
+        const double of_flow = flows_ ? kFlowSpreadSteps * end.s * flow_.most().gradient_of_velocity : 0;
+        slim_.begin(bodies.count, kSteepnessThen * std::clamp(of_flow, kLeastSpread, kMostSpread));
+        for (std::size_t row = 0; row < bodies.count; ++row) set_rectangle(bodies, row, end.s);
+        slim_.note_all_are_first();
+    }
     added_pairs_.clear();
     renewed_count_ = 0, farthest_ = 0;
-}
-
-/// Rectangles around all bodies, if some of them are slim.
-template <class Real>
-void Candidates<Real>::set_rectangles(const Bodies<Real>& bodies, double dt, const ShapeStore<Real>* shapes) {
-    slim_.clear();
-    if (!shapes || !bodies.has_shapes) return;
-    slim_.read_shapes(*shapes);
-    if (slim_.empty()) return;
-    const double of_flow = flows_ ? kFlowSpreadSteps * dt * flow_.most().gradient_of_velocity : 0;
-    slim_.begin(bodies.count, kSteepnessThen * std::clamp(of_flow, kLeastSpread, kMostSpread));
-    for (std::size_t row = 0; row < bodies.count; ++row) set_rectangle(bodies, row, dt);
-    slim_.note_all_are_first();
-}
-
-/// Slim bodies that turn too far are strays, too.
-template <class Real>
-void Candidates<Real>::add_turned(const Bodies<Real>& bodies, double dt) {
-    if (slim_.empty()) return;
-    const std::size_t before = strays_.size();
-    slim_.list_turned(bodies, dt, strays_);
-    if (strays_.size() == before) return;
-    std::sort(strays_.begin(), strays_.end());
-    strays_.erase(std::unique(strays_.begin(), strays_.end()), strays_.end());
 }
 
 /// Whether a and b were a pair when the pairs were found anew, as the grid decided then. (A body's first
@@ -188,10 +171,6 @@ void Candidates<Real>::add_pairs_of(const Bodies<Real>& bodies, std::int32_t row
     for (std::size_t k = 0; k < found; ++k) compare_with(static_cast<std::size_t>(near_[k]));
 }
 
-template void Candidates<float>::set_rectangles(const Bodies<float>&, double, const ShapeStore<float>*);
-template void Candidates<double>::set_rectangles(const Bodies<double>&, double, const ShapeStore<double>*);
-template void Candidates<float>::add_turned(const Bodies<float>&, double);
-template void Candidates<double>::add_turned(const Bodies<double>&, double);
 template float Candidates<float>::own_reach(const Bodies<float>&, std::size_t, const FlightClock&,
                                             double) const;
 template double Candidates<double>::own_reach(const Bodies<double>&, std::size_t, const FlightClock&,

@@ -85,13 +85,17 @@ std::size_t SlimBodies<Real>::drop_parted(const KernelTable<Real>& kernels, std:
 }
 
 template <class Real>
-void SlimBodies<Real>::list_turned(const Bodies<Real>& bodies, double dt,
-                                   std::vector<std::int32_t>& rows) const {
-    if (!bodies.has_rotation) return;
+void SlimBodies<Real>::add_turned(const Bodies<Real>& bodies, double dt,
+                                  std::vector<std::int32_t>& rows) const {
+    if (empty() || !bodies.has_rotation) return;
     const auto h = static_cast<Real>(dt);
+    const std::size_t before = rows.size();
     for (std::size_t row = 0; row < bodies.moving(); ++row)
         if (!(std::fabs(bodies.angle[row] + h * bodies.angular_velocity[row] - angle_[row]) <= turn_[row]))
             rows.push_back(static_cast<std::int32_t>(row));
+    if (rows.size() == before) return;
+    std::sort(rows.begin(), rows.end());
+    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
 }
 
 template <class Real>

@@ -59,8 +59,9 @@ class SlimBodies {
     /// Place that a row's margin had when it was set [m].
     Vec2 place(std::size_t row) const { return {place_x_[row], place_y_[row]}; }
 
-    /// Appends the rows that will have turned by more than they are allowed at the end of a step.
-    void list_turned(const Bodies<Real>& bodies, double dt, std::vector<std::int32_t>& rows) const;
+    /// Adds the rows that will have turned by more than they are allowed at the end of a step.
+    /// @param rows  in order, none twice; it stays so if some are added. Cost: O(bodies) where some are slim
+    void add_turned(const Bodies<Real>& bodies, double dt, std::vector<std::int32_t>& rows) const;
 
     std::size_t bytes() const;
 

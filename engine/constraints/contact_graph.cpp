@@ -28,6 +28,14 @@ constexpr double kDeep = 0.2;
 /// Of that many candidates of such a body are kept, on average, among those that overlap deeply.
 constexpr std::uint64_t kKept = 48;
 
+/// Whether one of the bodies that may move is a disc.
+template <class Real>
+bool has_disc(const Bodies<Real>& bodies) {
+    for (std::size_t row = 0; row < bodies.moving(); ++row)
+        if (bodies.is_disc(row)) return true;
+    return false;
+}
+
 }  // namespace
 
 /// The contacts of the last renewal in terms of today's rows.
@@ -56,13 +64,6 @@ void ContactGraph<Real>::rename_rows(const Bodies<Real>& bodies) {
                     contacts->rolling_impulse[i] = -contacts->rolling_impulse[i];
             }
         });
-}
-
-template <class Real>
-bool has_disc(const Bodies<Real>& bodies) {
-    for (std::size_t row = 0; row < bodies.moving(); ++row)
-        if (bodies.is_disc(row)) return true;
-    return false;
 }
 
 /// Share of the pairs that would be far, by a sample.

@@ -6,6 +6,7 @@
 #include "effects/friction.hpp"
 #include "effects/restitution.hpp"
 #include "narrowphase/box_box.hpp"
+#include "solvers/manifolds/gaps.hpp"
 
 namespace carom {
 namespace {
@@ -274,6 +275,7 @@ bool Manifolds<Real>::find(const WorldState<Real>& world, const EdgeCandidates<R
 template <class Real>
 void Manifolds<Real>::find_chunk(const WorldState<Real>& world, double dt, const ContactDistance& near,
                                  const ConvexKernels<Real>& kernels, std::size_t first, std::size_t last) {
+    Gaps<Real> gaps({world, items_, poses_, near, dt}, bodies_);
     for (std::size_t begin = first; begin < last;) {
         std::size_t end = begin;  // of the blocks from `begin` on that must be found
         while (end < last && must_find(end / kRowPadding)) {
@@ -283,7 +285,7 @@ void Manifolds<Real>::find_chunk(const WorldState<Real>& world, double dt, const
         if (end > begin) {
             describe_pairs(world, near, begin, end);
             find_pairs(world, kernels, begin, end);
-            look_at_gaps(world, dt, near, begin, end);
+            gaps.look_at(begin, end);
         }
         begin = end + kRowPadding;  // that block need not
     }

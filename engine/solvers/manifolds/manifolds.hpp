@@ -76,8 +76,7 @@ class Manifolds {
 
     /// Number of the geometry that an item of a body has: the body's, or a piece's.
     std::int32_t shape_of_item(const WorldState<Real>& world, std::size_t row, std::int32_t item) const {
-        return items_.empty() ? world.bodies.shape[row]
-                              : shape_of(world, static_cast<std::int32_t>(row), item);
+        return items_.shape_of(world, static_cast<std::int32_t>(row), item);
     }
 
     std::size_t bytes() const;
@@ -114,19 +113,9 @@ class Manifolds {
     void describe_pairs(const WorldState<Real>& world, const ContactDistance& near, std::size_t first,
                         std::size_t last);
     void describe_pieces(const WorldState<Real>& world, const ContactDistance& near, std::size_t i);
-    std::int32_t shape_of(const WorldState<Real>& world, std::int32_t row, std::int32_t item) const {
-        const StoredPiece* piece = items_.piece_of(world, row, item);
-        return piece ? piece->number : world.bodies.shape[static_cast<std::size_t>(row)];
-    }
     void count_changes();
     void find_pairs(const WorldState<Real>& world, const ConvexKernels<Real>& kernels, std::size_t first,
                     std::size_t last);
-    void look_at_gaps(const WorldState<Real>& world, double dt, const ContactDistance& near,
-                      std::size_t first, std::size_t last);
-    bool stay_parted(const WorldState<Real>& world, double dt, std::size_t i) const;
-    bool find_meeting(const WorldState<Real>& world, double dt, std::size_t i, double gap);
-    bool can_close(const WorldState<Real>& world, double dt, const ContactDistance& near,
-                   std::size_t i) const;
     bool list_live();
 
     PieceItems<Real> items_;

@@ -33,6 +33,11 @@ class PieceItems {
         const auto i = static_cast<std::size_t>(row);
         return &world.shapes.pieces(world.bodies.shape[i])[static_cast<std::size_t>(item - first_[i])];
     }
+    /// The number in the ShapeStore of the geometry of an item of a row: the body's, or a piece's.
+    std::int32_t shape_of(const WorldState<Real>& world, std::int32_t row, std::int32_t item) const {
+        const StoredPiece* piece = empty() ? nullptr : piece_of(world, row, item);
+        return piece ? piece->number : world.bodies.shape[static_cast<std::size_t>(row)];
+    }
     /// Adds the poses of the pieces to those of the rows.
     void add_poses(Column<Real>& poses) const;
 

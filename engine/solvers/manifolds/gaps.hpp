@@ -1,0 +1,45 @@
+#pragma once
+
+#include "solvers/manifolds/contact_distance.hpp"
+#include "solvers/manifolds/manifold_list.hpp"
+#include "solvers/manifolds/piece_items.hpp"
+#include "solvers/manifolds/pose_watch.hpp"
+#include "state/world_state.hpp"
+
+namespace carom {
+
+/// Contacts of two bodies with a gap between them, as the kernels have found them: where the bodies meet, if
+/// they do, and whether they can in the step.
+template <class Real>
+class Gaps {
+  public:
+    struct Inputs {
+        const WorldState<Real>& world;
+        const PieceItems<Real>& items;
+        const PoseWatch<Real>& poses;
+        const ContactDistance& near;
+        double dt;  // s, of the step
+    };
+    Gaps(const Inputs& in, ManifoldList<Real>& contacts) : in_(in), contacts_(contacts) {}
+
+    /// Looks at the contacts first ... last: they become those of the moment of meeting, or none.
+    void look_at(std::size_t first, std::size_t last);
+
+  private:
+    bool stay_parted(std::size_t i) const;
+    bool find_meeting(std::size_t i, double gap);
+    bool can_close(std::size_t i) const;
+    /// @param items  of contacts, of the side where `row` is
+    std::int32_t shape_of(std::size_t row, const Column<std::int32_t>& items, std::size_t i) const {
+        const auto number = static_cast<std::int32_t>(row);
+        return in_.items.shape_of(in_.world, number, in_.items.empty() ? number : items[i]);
+    }
+
+    const Inputs in_;
+    ManifoldList<Real>& contacts_;
+};
+
+extern template class Gaps<float>;
+extern template class Gaps<double>;
+
+}  // namespace carom
