@@ -1,6 +1,7 @@
 #include "solvers/manifolds/distant_pairs.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -34,12 +35,23 @@ void DistantPairs<Real>::add(const WorldState<Real>& world, std::int32_t a, std:
 
 /// What rows have come since pairs were listed, and may come in this step; and their rectangles.
 template <class Real>
-void DistantPairs<Real>::describe_rows(const WorldState<Real>& world, const PoseWatch<Real>& poses) {
-    const std::size_t rows = world.bodies.rows();
+void DistantPairs<Real>::describe_rows(const WorldState<Real>& world, double dt,
+                                       const PoseWatch<Real>& poses) {
+    const Bodies<Real>& bodies = world.bodies;
+    const std::size_t rows = bodies.rows();
     come_.resize_for_overwrite(rows), way_.resize_for_overwrite(rows);
+    motion_.resize_for_overwrite(4 * rows);
+    const auto h = static_cast<Real>(dt);
     for (std::size_t row = 0; row < rows; ++row) {
         way_[row] = poses.way(row);
         come_[row] = static_cast<Real>(poses.path(row)) + way_[row];
+        const Real moving = way_[row] > 0 ? h : 0;  // what nothing moves may have a velocity all the same
+        Real* motion = &motion_[4 * row];
+        motion[0] = moving * bodies.velocity_x[row], motion[1] = moving * bodies.velocity_y[row];
+        motion[2] = bodies.has_rotation
+                        ? moving * std::fabs(bodies.angular_velocity[row]) * bodies.radius[row]
+                        : Real(0);
+        motion[3] = static_cast<Real>(bodies.restitution[row]);
     }
     if (frame_.size() == rows) return;
     frames_.follow(world.shapes);
@@ -52,19 +64,20 @@ void DistantPairs<Real>::describe_rows(const WorldState<Real>& world, const Pose
 
 template <class Real>
 std::span<const typename DistantPairs<Real>::Pair> DistantPairs<Real>::take_near(
-    const WorldState<Real>& world, const PoseWatch<Real>& poses, const ContactDistance& near,
+    const WorldState<Real>& world, double dt, const PoseWatch<Real>& poses, const ContactDistance& near,
     const ConvexKernels<Real>& kernels, const Executor& executor) {
     taken_.clear();
     if (empty()) return taken_;
     const std::array<double, 2> within{near.share, near.fall};
     if (std::exchange(within_, within) != within)
         std::fill(until_.begin(), until_.end(), -std::numeric_limits<Real>::infinity());
-    describe_rows(world, poses);
+    describe_rows(world, dt, poses);
     near_.prepare(count(), kPairsPerTask);
     FindApproached<Real> all{poses.pose.data(),
                              &frame_.data()->x,
                              come_.data(),
                              way_.data(),
+                             motion_.data(),
                              a_.data(),
                              b_.data(),
                              thickness_.data(),
@@ -103,7 +116,8 @@ void DistantPairs<Real>::close_gaps() {
 template <class Real>
 std::size_t DistantPairs<Real>::bytes() const {
     return a_.bytes() + b_.bytes() + thickness_.bytes() + until_.bytes() + come_.bytes() + way_.bytes() +
-           frame_.bytes() + taken_.capacity() * sizeof(Pair) + frames_.bytes() + near_.bytes();
+           motion_.bytes() + frame_.bytes() + taken_.capacity() * sizeof(Pair) + frames_.bytes() +
+           near_.bytes();
 }
 
 template class DistantPairs<float>;

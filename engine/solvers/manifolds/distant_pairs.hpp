@@ -17,7 +17,7 @@ namespace carom {
 /// Candidate pairs of convex shapes that cannot touch in a step. The broadphase sees the disc around a shape:
 /// of planks most candidate pairs are planks that lie side by side. How far two shapes are apart is at least
 /// the gap between the rectangles around them, so a pair is not looked at again before the ways of its two
-/// bodies are together as long as that gap.
+/// bodies are together as long as that gap; nor does one count that cannot close in the step along a side.
 ///
 /// Cost: 1 ns a pair and step; 3 ns a pair that is looked at. docs/decisions/0036-distant-pairs.md.
 template <class Real>
@@ -32,8 +32,9 @@ class DistantPairs {
     /// Adds a pair that is to be looked at in the next step.
     void add(const WorldState<Real>& world, std::int32_t a, std::int32_t b);
     /// Takes out the pairs that may touch in this step, in the order of their coming.
+    /// @param dt  s, of the step
     /// @param poses  of the start of the step
-    std::span<const Pair> take_near(const WorldState<Real>& world, const PoseWatch<Real>& poses,
+    std::span<const Pair> take_near(const WorldState<Real>& world, double dt, const PoseWatch<Real>& poses,
                                     const ContactDistance& near, const ConvexKernels<Real>& kernels,
                                     const Executor& executor);
 
@@ -47,13 +48,14 @@ class DistantPairs {
 
   private:
     std::size_t count() const { return a_.size(); }
-    void describe_rows(const WorldState<Real>& world, const PoseWatch<Real>& poses);
+    void describe_rows(const WorldState<Real>& world, double dt, const PoseWatch<Real>& poses);
     void close_gaps();
 
     Column<std::int32_t> a_, b_;  // rows
     Column<Real> thickness_;      // m, that contacts between them are measured in
     Column<Real> until_;          // m, of what both have come and may come, before which no pair is looked at
     Column<Real> come_, way_;     // m, by row: since pairs were listed, this step included; in this step
+    Column<Real> motion_;         // kernels/manifolds/manifold_arguments.hpp
     Column<ShapeFrame<Real>> frame_;  // by row; none: to be made
     std::array<double, 2> within_{};  // ContactDistance of the last step
     std::vector<Pair> taken_;

@@ -74,10 +74,10 @@ void Manifolds<Real>::renew(const WorldState<Real>& world, const Candidates<Real
 }
 
 template <class Real>
-void Manifolds<Real>::take_near(const WorldState<Real>& world, const ContactDistance& near,
+void Manifolds<Real>::take_near(const WorldState<Real>& world, double dt, const ContactDistance& near,
                                 const StepLoops<Real>& loops) {
     const std::size_t before = bodies_.count();
-    const auto taken = distant_.take_near(world, poses_, near, *loops.kernels->convex, *loops.executor);
+    const auto taken = distant_.take_near(world, dt, poses_, near, *loops.kernels->convex, *loops.executor);
     if (shapes_of_boxes_ != world.shapes.revision()) list_boxes(world.shapes);
     // Boxes first: blocks of them alone have a quicker kernel.
     for (const bool boxes : {true, false})
@@ -256,7 +256,7 @@ bool Manifolds<Real>::find(const WorldState<Real>& world, const EdgeCandidates<R
     if (finds_all) first_new_block_ = 0;
     found_within_ = within;
     poses_.look(world, terms.dt, near, finds_all, loops.kernels->convex->turn_angles, *loops.executor);
-    take_near(world, near, loops);
+    take_near(world, terms.dt, near, loops);
     items_.add_poses(poses_.pose);
     surface_finder_.find(world, edges, terms, near, surfaces_);
     recall_surfaces();

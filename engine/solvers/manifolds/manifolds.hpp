@@ -97,7 +97,8 @@ class Manifolds {
     /// Notes a candidate pair if it can touch and not both are discs.
     void list_pair(const WorldState<Real>& world, std::int32_t a, std::int32_t b);
     /// Adds the pairs that have come near; those of before have what they had.
-    void take_near(const WorldState<Real>& world, const ContactDistance& near, const StepLoops<Real>& loops);
+    void take_near(const WorldState<Real>& world, double dt, const ContactDistance& near,
+                   const StepLoops<Real>& loops);
     void add_pair(const WorldState<Real>& world, std::int32_t a, std::int32_t b);
     bool are_boxes(const Bodies<Real>& bodies, std::int32_t a, std::int32_t b) const;
     void list_boxes(const ShapeStore<Real>& shapes);
