@@ -2,6 +2,7 @@
 // code, on the engine itself. The page that lists them is held to the numbers.
 #include <carom/carom.hpp>
 
+#include "support/effort.hpp"
 #include "support/seed_faults.hpp"
 #include "support/seed_scenes.hpp"
 
@@ -159,7 +160,8 @@ TEST_SUITE("pairwise/faults") {
     TEST_CASE("docs/seed-faults.md quotes the measured energies") {
         check_page_has(energy_rows());
     }
-    TEST_CASE("docs/seed-faults.md quotes the measured pressures of a gas") {
+    // States have the same bits on every instruction set and under sanitizers, so one look at the page does.
+    TEST_CASE("docs/seed-faults.md quotes the measured pressures of a gas" * doctest::skip(is_effort_reduced())) {
         check_page_has(gas_rows());
     }
 
