@@ -161,7 +161,8 @@ TEST_SUITE("pairwise/faults") {
         check_page_has(energy_rows());
     }
     // States have the same bits on every instruction set and under sanitizers, so one look at the page does.
-    TEST_CASE("docs/seed-faults.md quotes the measured pressures of a gas" * doctest::skip(is_effort_reduced())) {
+    TEST_CASE("docs/seed-faults.md quotes the measured pressures of a gas" *
+              doctest::skip(is_effort_reduced())) {
         check_page_has(gas_rows());
     }
 

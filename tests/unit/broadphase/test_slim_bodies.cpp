@@ -67,8 +67,8 @@ struct Planks {
         const Real rounded[] = {real(pose[0]), real(pose[1]), real(pose[2]), real(pose[3])};
         return place(world.shapes[b.shape[row]], rounded);
     }
-    /// Pairs that meet at the start, the middle or the end of the coming step, by the distance of their shapes;
-    /// those whose discs do not meet then need no look.
+    /// Pairs that meet at the start, the middle or the end of the coming step, by the distance of their
+    /// shapes; those whose discs do not meet then need no look.
     std::set<std::pair<std::int32_t, std::int32_t>> meetings() const {
         std::set<std::pair<std::int32_t, std::int32_t>> found;
         for (const double t : {0.0, 0.5 * kStep, kStep}) {
@@ -78,7 +78,8 @@ struct Planks {
                 for (std::size_t b = a + 1; b < kCount; ++b) {
                     const Vec2 d = centre(b, t) - centre(a, t);
                     const double reach = static_cast<double>(world.bodies.radius[a] + world.bodies.radius[b]);
-                    if (dot(d, d) > 1.001 * reach * reach || signed_distance(shapes[a], shapes[b]) > 0) continue;
+                    if (dot(d, d) > 1.001 * reach * reach || signed_distance(shapes[a], shapes[b]) > 0)
+                        continue;
                     found.insert({static_cast<std::int32_t>(a), static_cast<std::int32_t>(b)});
                 }
         }

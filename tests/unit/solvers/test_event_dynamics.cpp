@@ -86,7 +86,8 @@ TEST_SUITE("solvers/event dynamics") {
         }
     }
 
-    TEST_CASE("no two discs overlap, ever: dense and loose, equal and 1 : 100 in size, and folded far apart") {
+    TEST_CASE(
+        "no two discs overlap, ever: dense and loose, equal and 1 : 100 in size, and folded far apart") {
         struct Mix {
             double packing, smallest;
             int large;  // of radius 10 among them
