@@ -13,6 +13,24 @@ namespace {
 /// Islands are looked for at this interval while any body has been still for long enough.
 constexpr double kLookInterval = kTimeToSleep / 8;  // s
 
+template <class Real>
+Vec2 position_of(const Bodies<Real>& bodies, std::size_t row) {
+    return {bodies.position_x[row], bodies.position_y[row]};
+}
+
+template <class Real>
+Vec2 velocity_of(const Bodies<Real>& bodies, std::size_t row) {
+    return {bodies.velocity_x[row], bodies.velocity_y[row]};
+}
+
+/// Whether a body can come near a sleeper: one that does not move on its own cannot.
+template <class Real>
+bool can_come(const Bodies<Real>& bodies, std::size_t row) {
+    const std::uint8_t flags = bodies.flags_of(row);
+    return (flags & (kDisabled | kEdges | kSensor)) == 0 &&
+           ((flags & kImmovable) == 0 || (flags & kKinematic) != 0);
+}
+
 /// Calls fn(i) for every contact that carries an impulse.
 template <class Real, class Fn>
 void for_each_loaded(const ContactRows<Real>& contacts, const Fn& fn) {
@@ -33,6 +51,88 @@ bool is_steady(const WorldState<Real>& world, Partner support) {
 }
 
 }  // namespace
+
+template <class Real>
+void Sleepers<Real>::find_pairs(const WorldState<Real>& world, const Candidates<Real>& candidates,
+                                const KernelTable<Real>& kernels, const Executor& executor) {
+    if (pairs_of_rebuild_ == candidates.rebuild_count()) return;
+    pairs_of_rebuild_ = candidates.rebuild_count();
+    pairs_.clear();
+    const Bodies<Real>& bodies = world.bodies;
+    if (bodies.asleep == 0) return;
+    grid_.build(world, kernels, executor);
+    for (std::size_t row = 0; row < bodies.moving(); ++row) {
+        if (!can_come(bodies, row)) continue;
+        const double reach = static_cast<double>(candidates.reach()[row]) + candidates.largest_drift();
+        for (const std::int32_t sleeper : grid_.near(world, position_of(bodies, row), reach))
+            if ((bodies.flags_of(static_cast<std::size_t>(sleeper)) & kSensor) == 0)
+                pairs_.push_back({static_cast<std::int32_t>(row), sleeper});
+    }
+}
+
+template <class Real>
+bool Sleepers<Real>::is_near_any(const WorldState<Real>& world, const Candidates<Real>& candidates,
+                                 std::span<const std::int32_t> rows) {
+    for (const std::int32_t row : rows) {
+        const auto i = static_cast<std::size_t>(row);
+        if (can_come(world.bodies, i) &&
+            !grid_
+                 .near(world, position_of(world.bodies, i),
+                       static_cast<double>(candidates.reach()[i]) + candidates.largest_drift())
+                 .empty())
+            return true;
+    }
+    return false;
+}
+
+template <class Real>
+bool Sleepers<Real>::mark_hit(const WorldState<Real>& world, double dt, double substep) {
+    const Bodies<Real>& bodies = world.bodies;
+    const double gravity = std::sqrt(length_squared(world.gravity));
+    for (const SleeperPair pair : pairs_) {
+        const auto row = static_cast<std::size_t>(pair.row), sleeper = static_cast<std::size_t>(pair.sleeper);
+        if (world.has_filters() && !world.may_collide(row, sleeper)) continue;
+        const bool falls = !bodies.is_immovable(row);
+        // What is no disc counts as the disc around it: that wakes some that would not be hit, but misses
+        // none.
+        const double radius = bodies.radius[row],
+                     smaller = std::fmin(bodies.inradius(row), bodies.inradius(sleeper));
+        const Vec2 d = position_of(bodies, sleeper) - position_of(bodies, row), v = velocity_of(bodies, row);
+        const double rim = bodies.has_rotation ? std::fabs(bodies.angular_velocity[row]) * radius : 0;
+        const double speed = std::sqrt(length_squared(v));
+        const double slow = falls ? still_speed(gravity, substep, smaller) : 0;
+        if (speed <= slow && (falls || rim == 0)) continue;  // if it presses, its impulse wakes
+        // Speed that an impact would give the sleeper at most; a kinematic body gives its own.
+        const double mass = bodies.mass[row], other = bodies.mass[sleeper];
+        const double given = falls ? 2 * speed * mass / (mass + other) : speed;
+        if (falls && given <= kWakingShare * still_speed(gravity, substep, bodies.inradius(sleeper)))
+            continue;
+        // Time at which it comes nearest, flying on as it does now; gravity can bring it as far again.
+        const double squared = speed * speed;
+        const double t = squared > 0 ? std::fmin(std::fmax(dot(d, v) / squared, 0), dt) : 0;
+        const double reach = radius + static_cast<double>(bodies.radius[sleeper]) + kTouchingShare * smaller +
+                             (falls ? 0.5 * gravity * dt * dt : 0);
+        if (length_squared(d - t * v) < reach * reach) mark(bodies.island[sleeper]);
+    }
+    return !marked_.empty();
+}
+
+template <class Real>
+bool Sleepers<Real>::mark_near(const WorldState<Real>& world, Vec2 place, double reach,
+                               const KernelTable<Real>& kernels, const Executor& executor) {
+    if (world.bodies.asleep == 0) return false;
+    grid_.build(world, kernels, executor);
+    for (const std::int32_t sleeper : grid_.near(world, place, (1 + kTouchingShare) * reach))
+        mark(world.bodies.island[static_cast<std::size_t>(sleeper)]);
+    return !marked_.empty();
+}
+
+template <class Real>
+bool Sleepers<Real>::mark_all(const WorldState<Real>& world) {
+    for (std::size_t row = world.bodies.count; row < world.bodies.rows(); ++row)
+        mark(world.bodies.island[row]);
+    return !marked_.empty();
+}
 
 /// Counts for how long each body has been still. @return whether any has been so for long enough.
 template <class Real>
@@ -192,7 +292,7 @@ bool Sleepers<Real>::put_to_sleep(WorldState<Real>& world, ContactGraph<Real>& g
     }
     graph.trail.follow_sorted(order_.data(), bodies.count);
     world.list_immovable_rows();
-    is_grid_old_ = true, pairs_of_rebuild_ = -1;
+    grid_.forget(), pairs_of_rebuild_ = -1;
     pairs_.clear();
     return true;
 }
@@ -291,6 +391,13 @@ void Sleepers<Real>::restore_impulses(ContactGraph<Real>& graph, const WorldStat
     };
     restore(graph.pairs, false), restore(graph.pairs, true), restore(graph.supports, false);
     woken_.clear();
+}
+
+template <class Real>
+std::size_t Sleepers<Real>::bytes() const {
+    return (kept_.capacity() + woken_.capacity()) * sizeof(Kept) + islands_.bytes() +
+           pairs_.capacity() * sizeof(SleeperPair) + grid_.bytes() + stays_awake_.capacity() +
+           (label_.capacity() + order_.capacity() + marked_.capacity()) * sizeof(std::int32_t);
 }
 
 template class Sleepers<float>;

@@ -7,6 +7,7 @@
 #include "broadphase/candidates.hpp"
 #include "constraints/contact_graph.hpp"
 #include "sleeping/islands.hpp"
+#include "sleeping/sleeper_grid.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {
@@ -50,8 +51,8 @@ class Sleepers {
     std::span<const std::int32_t> around(const WorldState<Real>& world, Vec2 place, double reach,
                                          const KernelTable<Real>& kernels, const Executor& executor) {
         if (world.bodies.asleep == 0) return {};
-        build_grid(world, kernels, executor);
-        return find_near(world, place, reach);
+        grid_.build(world, kernels, executor);
+        return grid_.near(world, place, reach);
     }
 
     /// Marks the islands that something presses on.
@@ -87,9 +88,7 @@ class Sleepers {
     static void visit_state(Self& self, Archive& archive) {
         archive(self.kept_, self.woken_, self.marked_, self.pairs_, self.pairs_of_rebuild_,
                 self.next_island_);
-        archive(self.island_count_, self.woken_count_, self.since_look_, self.grid_, self.x_, self.y_);
-        archive(self.reach_, self.ids_, self.low_x_, self.low_y_, self.high_x_, self.high_y_,
-                self.is_grid_old_);
+        archive(self.island_count_, self.woken_count_, self.since_look_, self.grid_);
     }
     /// To be called after the state was read.
     void use(const KernelTable<Real>& kernels) { grid_.use(kernels); }
@@ -113,9 +112,6 @@ class Sleepers {
         std::int32_t row, island;
     };
 
-    void build_grid(const WorldState<Real>& world, const KernelTable<Real>& kernels,
-                    const Executor& executor);
-    std::span<const std::int32_t> find_near(const WorldState<Real>& world, Vec2 place, double reach);
     bool note_still(WorldState<Real>& world, double dt, double substep) const;
     void connect(const WorldState<Real>& world, const ContactGraph<Real>& graph,
                  std::span<const LoadedContact> others);
@@ -133,15 +129,7 @@ class Sleepers {
     std::int32_t next_island_ = 0;
     std::int64_t island_count_ = 0, woken_count_ = 0;
     double since_look_ = 0;  // s
-
-    // The grid of the bodies that slept when it was built.
-    UniformGrid<Real> grid_;
-    Column<Real> x_, y_, reach_;  // m
-    std::vector<BodyId> ids_;
-    double low_x_ = 0, low_y_ = 0, high_x_ = 0, high_y_ = 0;  // m, around all of them
-    bool is_grid_old_ = false;
-    Column<std::int32_t> places_;
-    std::vector<std::int32_t> near_;
+    SleeperGrid<Real> grid_;
 
     // Scratch of `connect` and `put_to_sleep`.
     Islands islands_;
