@@ -77,7 +77,11 @@ void PathSolver<Real>::find(const WorldState<Real>& world, const EdgeCandidates<
     const bool is_same = manifolds.find(world, edges, terms, near, loops);
     counters.contacts = static_cast<std::int64_t>(manifolds.live().size());
     if (manifolds.live().empty()) return rolling_.clear();
-    choose_paths(world, terms.dt, is_same, *loops.executor);
+    using Change = typename PathChoice<Real>::Change;
+    const Change change =
+        choice_.choose(world, manifolds, terms.dt, is_same, counters.unsettled, *loops.executor);
+    if (change != Change::none) links_hold_ = false;
+    if (change == Change::paths) ++counters.cuts;
     lay_out(world, edges, terms, records, loops);
     if (world.effects.rolling_resistance) rolling_.find(world, manifolds, row_of_far_);
 }
@@ -88,8 +92,8 @@ template <class Real>
 void PathSolver<Real>::lay_out(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
                                const SubstepTerms& terms, BodyRecords<Real>& records,
                                const StepLoops<Real>& loops) {
-    counters.bundles = static_cast<std::int64_t>(cut_.bundles());
-    counters.links = static_cast<std::int64_t>(cut_.links());
+    counters.bundles = static_cast<std::int64_t>(cut().bundles());
+    counters.links = static_cast<std::int64_t>(cut().links());
     if (first_still_row_ != records.rows()) links_hold_ = false;
     if (!links_hold_) name_rows(world, records);
     records.add_still_rows(still_rows_);
@@ -111,7 +115,7 @@ void PathSolver<Real>::name_rows(const WorldState<Real>& world, const BodyRecord
     const std::span<const std::int32_t> live = manifolds.live();
     row_of_far_.resize(live.size()), with_kinematic_.clear();
     first_still_row_ = records.rows();
-    std::size_t row = first_still_row_ + cut_.bundles();
+    std::size_t row = first_still_row_ + cut().bundles();
     for (std::size_t n = 0; n < live.size(); ++n) {
         const std::int32_t partner = manifolds.list_of(live[n]).b[Manifolds<Real>::place_of(live[n])];
         const auto b = static_cast<std::size_t>(partner);
@@ -121,36 +125,36 @@ void PathSolver<Real>::name_rows(const WorldState<Real>& world, const BodyRecord
             with_kinematic_.push_back(static_cast<std::int32_t>(n));
     }
     still_rows_ = row - first_still_row_;
-    heads_.resize_for_overwrite(kPathLanes * cut_.bundles());
-    for (std::size_t lane = 0; lane < kPathLanes * cut_.bundles(); ++lane) {
-        const std::int32_t first = cut_.first_contacts()[lane];
+    heads_.resize_for_overwrite(kPathLanes * cut().bundles());
+    for (std::size_t lane = 0; lane < kPathLanes * cut().bundles(); ++lane) {
+        const std::int32_t first = cut().first_contacts()[lane];
         heads_[lane] =
             first >= 0 ? head_row(first) : static_cast<std::int32_t>(first_still_row_ + lane / kPathLanes);
     }
-    closing_.resize(cut_.bundles());
-    scratch_.resize(path_scratch_bytes(cut_.longest()) * kShares);
+    closing_.resize(cut().bundles());
+    scratch_.resize(path_scratch_bytes(cut().longest()) * kShares);
     find_shares();
 }
 
 template <class Real>
 std::int32_t PathSolver<Real>::head_row(std::int32_t first) const {
     const auto n = static_cast<std::size_t>(first);
-    if (cut_.places()[n].is_reversed) return row_of_far_[n];
+    if (cut().places()[n].is_reversed) return row_of_far_[n];
     const std::int32_t contact = manifolds.live()[n];
     return manifolds.list_of(contact).a[Manifolds<Real>::place_of(contact)];
 }
 
 template <class Real>
 void PathSolver<Real>::lay_out_padding(const StepLoops<Real>& loops) {
-    links_.resize_for_overwrite(cut_.links());
-    restless_.resize_for_overwrite(kPathLanes * cut_.bundles());
+    links_.resize_for_overwrite(cut().links());
+    restless_.resize_for_overwrite(kPathLanes * cut().bundles());
     const auto none = static_cast<Real>(kNoPoint);
     loops.executor->for_each_chunk(
-        cut_.bundles(), kBundlesPerTask, kNanosecondsToFill * kPathLanes,
+        cut().bundles(), kBundlesPerTask, kNanosecondsToFill * kPathLanes,
         [&](std::size_t, std::size_t first, std::size_t last) {
             for (std::size_t bundle = first; bundle < last; ++bundle) {
                 const auto still = static_cast<std::int32_t>(first_still_row_ + bundle);
-                for (std::size_t i = cut_.first_link()[bundle]; i < cut_.first_link()[bundle + 1]; ++i) {
+                for (std::size_t i = cut().first_link()[bundle]; i < cut().first_link()[bundle + 1]; ++i) {
                     PathLink<Real>& link = links_[i];
                     link = {};
                     std::fill_n(link.body, kPathLanes, still);
@@ -159,7 +163,8 @@ void PathSolver<Real>::lay_out_padding(const StepLoops<Real>& loops) {
                 }
             }
         });
-    for (const PathCut::Jump& jump : cut_.jumps()) links_[jump.link].body[jump.lane] = head_row(jump.contact);
+    for (const PathCut::Jump& jump : cut().jumps())
+        links_[jump.link].body[jump.lane] = head_row(jump.contact);
 }
 
 /// Fills the links of the contacts that were found in this step, or of the others.
@@ -178,7 +183,7 @@ void PathSolver<Real>::carry_links(const SubstepTerms& terms, BodyRecords<Real>&
     SolvePaths<Real> k = arguments(terms, records);
     k.come = manifolds.poses().come(records.rows()), k.turned = manifolds.poses().turned();
     run(loops.kernels->convex->paths.carry, k, loops);
-    loops.kernels->convex->paths.carry(k, cut_.first_watched(), cut_.bundles());
+    loops.kernels->convex->paths.carry(k, cut().first_watched(), cut().bundles());
 }
 
 /// Velocities of kinematic bodies where they touch.
@@ -236,7 +241,7 @@ void PathSolver<Real>::fill_link(const WorldState<Real>& world, const BodyRecord
     const Bodies<Real>& bodies = world.bodies;
     ManifoldList<Real>& list = manifolds.list_of(manifolds.live()[number]);
     const std::size_t i = Manifolds<Real>::place_of(manifolds.live()[number]);
-    const typename PathCut::Place place = cut_.places()[number];
+    const typename PathCut::Place place = cut().places()[number];
     PathLink<Real>& link = links_[place.link];
     const std::size_t lane = place.lane;
     const auto none = static_cast<Real>(kNoPoint);
@@ -293,7 +298,7 @@ void PathSolver<Real>::fill_link(const WorldState<Real>& world, const BodyRecord
 template <class Real>
 SolvePaths<Real> PathSolver<Real>::arguments(const SubstepTerms& terms, BodyRecords<Real>& records) {
     SolvePaths<Real> k{};
-    k.links = links_.data(), k.first_link = cut_.first_link().data(), k.heads = heads_.data();
+    k.links = links_.data(), k.first_link = cut().first_link().data(), k.heads = heads_.data();
     k.velocity = records.velocity.data(), k.displacement = records.displacement.data();
     k.turn = records.turn();
     k.h = static_cast<Real>(terms.substep_dt), k.inverse_h = static_cast<Real>(1 / terms.substep_dt);
@@ -301,10 +306,10 @@ SolvePaths<Real> PathSolver<Real>::arguments(const SubstepTerms& terms, BodyReco
     k.slop = static_cast<Real>(kSlop), k.slow = static_cast<Real>(kSlowShare * terms.fall_speed());
     k.velocity_tolerance = static_cast<Real>(kTolerance * terms.fall_speed());
     k.closing = closing_.data();
-    k.restless = restless_.data(), k.is_slender = cut_.is_slender().data(), k.resting_speed = 0;
+    k.restless = restless_.data(), k.is_slender = cut().is_slender().data(), k.resting_speed = 0;
     k.resting_thickness =
         static_cast<Real>(kRestingSpeed * terms.fall_speed() * terms.substep_dt / kRestingShare);
-    const PathPlan& plan = kPlans[static_cast<std::size_t>(mood_of_cut_)];
+    const PathPlan& plan = kPlans[static_cast<std::size_t>(choice_.mood_of_cut())];
     k.bold_iterations = kBoldIterations;
     k.most_iterations = plan.most, k.most_of_slender = plan.most_of_slender;
     k.tries_pieces = plan.tries_pieces, k.sweeps_of_unsettled = kSweepsOfUnsettled;
@@ -315,10 +320,10 @@ SolvePaths<Real> PathSolver<Real>::arguments(const SubstepTerms& terms, BodyReco
 template <class Real>
 void PathSolver<Real>::find_shares() {
     first_of_share_.clear();
-    for (std::size_t colour = 0; colour < cut_.colours(); ++colour) {
-        const std::size_t first = cut_.first_bundle()[colour], last = cut_.first_bundle()[colour + 1];
-        const std::span<const std::size_t> starts = cut_.first_link().subspan(first, last - first);
-        const std::size_t links = cut_.first_link()[last] - starts.front();
+    for (std::size_t colour = 0; colour < cut().colours(); ++colour) {
+        const std::size_t first = cut().first_bundle()[colour], last = cut().first_bundle()[colour + 1];
+        const std::span<const std::size_t> starts = cut().first_link().subspan(first, last - first);
+        const std::size_t links = cut().first_link()[last] - starts.front();
         for (std::size_t share = 0; share <= kShares; ++share) {
             const std::size_t link = starts.front() + share * links / kShares;
             const auto at = std::lower_bound(starts.begin(), starts.end(), link);
@@ -337,10 +342,10 @@ typename PathSolver<Real>::BundleRange PathSolver<Real>::share_of(std::size_t co
 /// Colour after colour; the bundles of a colour side by side.
 template <class Real>
 void PathSolver<Real>::run(Pass pass, SolvePaths<Real> arguments, const StepLoops<Real>& loops) {
-    const std::size_t bytes = path_scratch_bytes(cut_.longest());
-    for (std::size_t colour = 0; colour < cut_.colours(); ++colour) {
-        const std::size_t first = cut_.first_bundle()[colour], last = cut_.first_bundle()[colour + 1];
-        const std::size_t links = cut_.first_link()[last] - cut_.first_link()[first];
+    const std::size_t bytes = path_scratch_bytes(cut().longest());
+    for (std::size_t colour = 0; colour < cut().colours(); ++colour) {
+        const std::size_t first = cut().first_bundle()[colour], last = cut().first_bundle()[colour + 1];
+        const std::size_t links = cut().first_link()[last] - cut().first_link()[first];
         const bool is_one = last - first < 2;  // bundle
         std::array<std::size_t, kShares> unsettled{};
         loops.executor->for_each_task(
@@ -359,7 +364,7 @@ void PathSolver<Real>::run(Pass pass, SolvePaths<Real> arguments, const StepLoop
 /// Contacts beside the paths: all are looked at, those that close are solved one by one.
 template <class Real>
 void PathSolver<Real>::solve_watched(const SolvePaths<Real>& arguments, const StepLoops<Real>& loops) {
-    const std::size_t begin = cut_.first_watched(), end = cut_.bundles();
+    const std::size_t begin = cut().first_watched(), end = cut().bundles();
     const PathKernels<Real>& kernels = loops.kernels->convex->paths;
     for (int sweep = 0; sweep < kSweepsOfWatched && begin < end; ++sweep) {
         loops.executor->for_each_chunk(end - begin, kWatchedPerTask, kNanosecondsToSolve * kPathLanes,
@@ -376,8 +381,8 @@ void PathSolver<Real>::warm_start(const SubstepTerms& terms, BodyRecords<Real>& 
     counters.unsettled = 0;
     if (!manifolds.live().empty()) {
         run(loops.kernels->convex->paths.warm_start, arguments(terms, records), loops);
-        for (const std::uint32_t n : cut_.watched()) {
-            const PathCut::Place place = cut_.places()[n];
+        for (const std::uint32_t n : cut().watched()) {
+            const PathCut::Place place = cut().places()[n];
             const PathLink<Real>& link = links_[place.link];
             if (link.normal1[place.lane] + link.normal2[place.lane] > 0)
                 give(link, place.lane, static_cast<std::size_t>(near_row(place)),
@@ -399,10 +404,10 @@ void PathSolver<Real>::solve(const SubstepTerms& terms, BodyRecords<Real>& recor
         links_[h.link].separation1[h.lane] = links_[h.link].separation2[h.lane] = none;
     for (int pass = 0; pass < passes; ++pass) run(kernels.solve, k, loops);
     solve_watched(k, loops);
-    solved_ += static_cast<std::int64_t>(cut_.paths()) * passes;
+    choice_.note_solved(static_cast<std::int64_t>(cut().paths()) * passes);
     for (int turn = 0; turn < kTurnsOfRolling && !rolling_.empty(); ++turn) {
         rolling_.solve(records, [&](std::size_t n) {
-            const PathCut::Place place = cut_.places()[n];
+            const PathCut::Place place = cut().places()[n];
             return links_[place.link].normal1[place.lane] + links_[place.link].normal2[place.lane];
         });
         run(kernels.solve, k, loops);
@@ -450,7 +455,7 @@ void PathSolver<Real>::give(const PathLink<Real>& link, std::size_t lane, std::s
 template <class Real>
 void PathSolver<Real>::take_back(const std::vector<std::uint8_t>& is_of, BodyRecords<Real>& records) {
     if (manifolds.live().empty()) return;  // then the cut is that of an earlier step
-    for (const PathCut::Place place : cut_.places()) {
+    for (const PathCut::Place place : cut().places()) {
         PathLink<Real>& link = links_[place.link];
         const std::size_t lane = place.lane;
         const auto near = static_cast<std::size_t>(near_row(place)),
@@ -464,7 +469,7 @@ void PathSolver<Real>::take_back(const std::vector<std::uint8_t>& is_of, BodyRec
 template <class Real>
 void PathSolver<Real>::end(const Executor& executor) {
     const auto keep = [&](std::size_t n) {
-        const PathCut::Place place = cut_.places()[n];
+        const PathCut::Place place = cut().places()[n];
         const PathLink<Real>& link = links_[place.link];
         const std::size_t lane = place.lane;
         ManifoldMemory<Real>& memory = manifolds.memory_of(manifolds.live()[n]);
@@ -485,9 +490,8 @@ template <class Real>
 std::size_t PathSolver<Real>::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
     return manifolds.bytes() + rolling_.bytes() + turning_edges_.bytes() + of(row_of_far_) +
-           of(with_kinematic_) + of(contact_links_) + of(slots_) + closing_.bytes() + cut_.bytes() +
-           links_.bytes() + heads_.bytes() + restless_.bytes() + scratch_.bytes() + of(hidden_) +
-           of(first_of_share_);
+           of(with_kinematic_) + closing_.bytes() + choice_.bytes() + links_.bytes() + heads_.bytes() +
+           restless_.bytes() + scratch_.bytes() + of(hidden_) + of(first_of_share_);
 }
 
 template class PathSolver<float>;

@@ -7,7 +7,7 @@
 #include "constraints/partner.hpp"
 #include "kernels/paths/path_arguments.hpp"
 #include "solvers/manifolds/manifolds.hpp"
-#include "solvers/paths/path_cut.hpp"
+#include "solvers/paths/path_choice.hpp"
 #include "solvers/paths/path_rolling.hpp"
 #include "solvers/paths/turning_edges.hpp"
 #include "solvers/substeps/body_records.hpp"
@@ -25,9 +25,6 @@ struct PathCounters {
     std::int64_t impacts = 0;    ///< so far
     std::int64_t cuts = 0;       ///< steps that cut the contacts into paths anew, so far
 };
-
-/// How paths are solved: what has settled, what settles, and where contacts come and go.
-enum class PathMood : std::uint8_t { calm, restless, wild };
 
 /// A contact in its place along a path.
 template <class Real>
@@ -67,7 +64,7 @@ class PathSolver {
     }
     void unhide() { hidden_.clear(); }
     /// To be called when bodies may have become others, that move or do not: paths are cut anew.
-    void forget_cut() { is_cut_forgotten_ = true; }
+    void forget_cut() { choice_.forget_cut(); }
     /// Moves the surfaces of kinematic bodies on by a substep.
     void advance(const SubstepTerms& terms, BodyRecords<Real>& records);
     const PathRolling<Real>& rolling() const { return rolling_; }
@@ -106,8 +103,7 @@ class PathSolver {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.counters, self.manifolds, self.rolling_, self.cut_, self.since_cut_, self.solved_,
-                self.mood_, self.mood_of_cut_, self.is_cut_forgotten_);
+        archive(self.counters, self.manifolds, self.rolling_, self.choice_);
         if constexpr (!std::is_const_v<Self>) self.links_hold_ = false;
     }
 
@@ -127,17 +123,13 @@ class PathSolver {
     BundleRange share_of(std::size_t colour, std::size_t share) const;
     void find_shares();
     void run(Pass pass, SolvePaths<Real> arguments, const StepLoops<Real>& loops);
-    void choose_paths(const WorldState<Real>& world, double dt, bool is_same, const Executor& executor);
-    void judge_mood();
+    const PathCut& cut() const { return choice_.cut(); }
     /// Row of the body where a link begins.
     std::int32_t near_row(PathCut::Place place) const {
-        const bool is_first = place.link == cut_.first_link()[place.bundle];
+        const bool is_first = place.link == cut().first_link()[place.bundle];
         return is_first ? heads_[kPathLanes * place.bundle + place.lane]
                         : links_[place.link - 1].body[place.lane];
     }
-    void cut_paths(const WorldState<Real>& world, double dt, const Executor& executor);
-    void keep_paths(const WorldState<Real>& world);
-    bool stays_apart(const WorldState<Real>& world, std::int32_t contact, double dt) const;
     static void give(const PathLink<Real>& link, std::size_t lane, std::size_t near, std::size_t far,
                      Real sign, BodyRecords<Real>& records);
     void solve_watched(const SolvePaths<Real>& arguments, const StepLoops<Real>& loops);
@@ -160,14 +152,8 @@ class PathSolver {
     PathRolling<Real> rolling_;
     TurningEdges<Real> turning_edges_;
     std::vector<std::int32_t> row_of_far_;  // of each contact: the row of b in the records
-    std::vector<ContactLink> contact_links_;
-    std::vector<PathCut::Slot> slots_;
-    Column<std::uint32_t> closing_;  // kernels/paths/path_arguments.hpp
-    PathCut cut_;
-    int since_cut_ = 0;              // steps
-    bool is_cut_forgotten_ = false;  // by the next step it is made anew
-    std::int64_t solved_ = 0;        // paths, in the substeps of the last step
-    PathMood mood_ = PathMood::calm, mood_of_cut_ = PathMood::calm;
+    Column<std::uint32_t> closing_;         // kernels/paths/path_arguments.hpp
+    PathChoice<Real> choice_;
     Column<PathLink<Real>> links_;
     std::vector<Hidden> hidden_;
     std::vector<std::size_t> first_of_share_;  // bundle, [colours][shares + 1]
@@ -187,7 +173,7 @@ void PathSolver<Real>::for_each_of(std::size_t first, std::size_t last, const Fn
     for (std::size_t n = first; n < last; ++n) {
         const ManifoldList<Real>& list = manifolds.list_of(live[n]);
         const std::size_t i = Manifolds<Real>::place_of(live[n]);
-        const typename PathCut::Place place = cut_.places()[n];
+        const typename PathCut::Place place = cut().places()[n];
         fn(PathContact<Real>{links_[place.link], place.lane, near_row(place),
                              links_[place.link].body[place.lane], Partner(list.b[i]),
                              static_cast<double>(list.restitution[i])});

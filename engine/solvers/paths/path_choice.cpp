@@ -1,9 +1,7 @@
-// Which contacts of a step are in paths and which stand beside them, and when contacts are cut into paths
-// anew.
+#include "solvers/paths/path_choice.hpp"
+
 #include <cstdint>
 #include <utility>
-
-#include "solvers/paths/path_solver.hpp"
 
 namespace carom {
 namespace {
@@ -31,40 +29,11 @@ bool is_nothing(const Bodies<Real>& bodies, std::int32_t b) {
     return b < 0 || row >= bodies.count || bodies.is_immovable(row);
 }
 
-}  // namespace
-
-/// @param is_same  whether the contacts are those of the step before
-template <class Real>
-void PathSolver<Real>::choose_paths(const WorldState<Real>& world, double dt, bool is_same,
-                                    const Executor& executor) {
-    judge_mood();
-    ++since_cut_;
-    const bool is_wild_crowd = mood_ == PathMood::wild && manifolds.live().size() >= kFewContacts;
-    if (is_wild_crowd && mood_of_cut_ == mood_ && since_cut_ < kStepsOfWildCut && !is_cut_forgotten_)
-        keep_paths(world);
-    else if (!is_same || is_wild_crowd || since_cut_ >= kStepsOfCut || mood_of_cut_ != mood_)
-        cut_paths(world, dt, executor);
-}
-
-/// Judges by the last step whether paths settle, and by this one whether contacts come and go.
-template <class Real>
-void PathSolver<Real>::judge_mood() {
-    const double share =
-        solved_ > 0 ? static_cast<double>(counters.unsettled) / static_cast<double>(solved_) : 0;
-    const bool was_solved = std::exchange(solved_, 0) > 0;
-    const double changed = manifolds.changed_share();
-    if (changed > (mood_ == PathMood::wild ? kTame : kWild) || (changed < 0 && mood_ == PathMood::wild))
-        mood_ = PathMood::wild;
-    else if (!was_solved)
-        mood_ = manifolds.live().size() < kFewContacts ? PathMood::calm : PathMood::restless;
-    else
-        mood_ = share < (mood_ == PathMood::calm ? kRestless : kCalm) ? PathMood::calm : PathMood::restless;
-}
-
 /// Whether a contact of two bodies carries nothing and, if both go on as they fly, does not close in the
 /// step.
 template <class Real>
-bool PathSolver<Real>::stays_apart(const WorldState<Real>& world, std::int32_t contact, double dt) const {
+bool stays_apart(const WorldState<Real>& world, const Manifolds<Real>& manifolds, std::int32_t contact,
+                 double dt) {
     const Bodies<Real>& bodies = world.bodies;
     if (contact < 0) return false;
     const ManifoldList<Real>& list = manifolds.list_of(contact);
@@ -87,9 +56,49 @@ bool PathSolver<Real>::stays_apart(const WorldState<Real>& world, std::int32_t c
            is_far(list.separation2[i], memory.separation2, list.lever_a2[i], list.lever_b2[i]);
 }
 
+}  // namespace
+
 template <class Real>
-void PathSolver<Real>::cut_paths(const WorldState<Real>& world, double dt, const Executor& executor) {
-    const bool is_wild_crowd = mood_ == PathMood::wild && manifolds.live().size() >= kFewContacts;
+typename PathChoice<Real>::Change PathChoice<Real>::choose(const WorldState<Real>& world,
+                                                           Manifolds<Real>& manifolds, double dt,
+                                                           bool is_same, std::int64_t unsettled,
+                                                           const Executor& executor) {
+    judge_mood(manifolds, unsettled);
+    ++since_cut_;
+    const bool is_wild = is_wild_crowd(manifolds);
+    if (is_wild && mood_of_cut_ == mood_ && since_cut_ < kStepsOfWildCut && !is_cut_forgotten_) {
+        keep_paths(world, manifolds);
+        return Change::contacts;
+    }
+    if (is_same && !is_wild && since_cut_ < kStepsOfCut && mood_of_cut_ == mood_) return Change::none;
+    cut_paths(world, manifolds, dt, executor);
+    return Change::paths;
+}
+
+/// Whether there are contacts that come and go among so many that their paths are kept meanwhile.
+template <class Real>
+bool PathChoice<Real>::is_wild_crowd(const Manifolds<Real>& manifolds) const {
+    return mood_ == PathMood::wild && manifolds.live().size() >= kFewContacts;
+}
+
+/// Judges by the last step whether paths settle, and by this one whether contacts come and go.
+template <class Real>
+void PathChoice<Real>::judge_mood(const Manifolds<Real>& manifolds, std::int64_t unsettled) {
+    const double share = solved_ > 0 ? static_cast<double>(unsettled) / static_cast<double>(solved_) : 0;
+    const bool was_solved = std::exchange(solved_, 0) > 0;
+    const double changed = manifolds.changed_share();
+    if (changed > (mood_ == PathMood::wild ? kTame : kWild) || (changed < 0 && mood_ == PathMood::wild))
+        mood_ = PathMood::wild;
+    else if (!was_solved)
+        mood_ = manifolds.live().size() < kFewContacts ? PathMood::calm : PathMood::restless;
+    else
+        mood_ = share < (mood_ == PathMood::calm ? kRestless : kCalm) ? PathMood::calm : PathMood::restless;
+}
+
+template <class Real>
+void PathChoice<Real>::cut_paths(const WorldState<Real>& world, Manifolds<Real>& manifolds, double dt,
+                                 const Executor& executor) {
+    const bool is_wild = is_wild_crowd(manifolds);
     const Bodies<Real>& bodies = world.bodies;
     contact_links_.clear();
     for (const std::int32_t contact : manifolds.live()) {
@@ -108,15 +117,14 @@ void PathSolver<Real>::cut_paths(const WorldState<Real>& world, double dt, const
         if (is_nothing(bodies, link.b)) link.b = ContactLink::kNothing;
         arm(list.lever_a1[i], list.lever_a2[i], list.lever_a_t[i], link.arm_a_x, link.arm_a_y);
         arm(list.lever_b1[i], list.lever_b2[i], list.lever_b_t[i], link.arm_b_x, link.arm_b_y);
-        link.is_watched = is_wild_crowd && stays_apart(world, contact, dt);
+        link.is_watched = is_wild && stays_apart(world, manifolds, contact, dt);
         contact_links_.push_back(link);
     }
     mood_of_cut_ = mood_;
     cut_.cut(contact_links_, bodies.moving(), kLongest[static_cast<std::size_t>(mood_)], executor);
-    since_cut_ = 0, ++counters.cuts;
-    links_hold_ = false;
-    is_cut_forgotten_ = !is_wild_crowd;  // no contact knows its place
-    if (!is_wild_crowd) return;
+    since_cut_ = 0;
+    is_cut_forgotten_ = !is_wild;  // no contact knows its place
+    if (!is_wild) return;
     for (std::size_t n = 0; n < contact_links_.size(); ++n) {
         const PathCut::Slot slot = cut_.slot_of(n);
         ManifoldMemory<Real>& memory = manifolds.memory_of(manifolds.live()[n]);
@@ -129,7 +137,7 @@ void PathSolver<Real>::cut_paths(const WorldState<Real>& world, double dt, const
 /// Contacts stay where the last cut has put them. Those that have come, and those with a body that has begun
 /// to move or to stand since, so that it may be in two paths of a colour, stand beside the paths.
 template <class Real>
-void PathSolver<Real>::keep_paths(const WorldState<Real>& world) {
+void PathChoice<Real>::keep_paths(const WorldState<Real>& world, Manifolds<Real>& manifolds) {
     slots_.clear();
     for (const std::int32_t contact : manifolds.live()) {
         ManifoldMemory<Real>& memory = manifolds.memory_of(contact);
@@ -138,18 +146,15 @@ void PathSolver<Real>::keep_paths(const WorldState<Real>& world) {
         slots_.push_back({memory.slot, (memory.slot_kind & kTurnedSlot) != 0});
     }
     cut_.keep(slots_);
-    links_hold_ = false;
 }
 
-template void PathSolver<float>::choose_paths(const WorldState<float>&, double, bool, const Executor&);
-template void PathSolver<float>::judge_mood();
-template bool PathSolver<float>::stays_apart(const WorldState<float>&, std::int32_t, double) const;
-template void PathSolver<float>::cut_paths(const WorldState<float>&, double, const Executor&);
-template void PathSolver<float>::keep_paths(const WorldState<float>&);
-template void PathSolver<double>::choose_paths(const WorldState<double>&, double, bool, const Executor&);
-template void PathSolver<double>::judge_mood();
-template bool PathSolver<double>::stays_apart(const WorldState<double>&, std::int32_t, double) const;
-template void PathSolver<double>::cut_paths(const WorldState<double>&, double, const Executor&);
-template void PathSolver<double>::keep_paths(const WorldState<double>&);
+template <class Real>
+std::size_t PathChoice<Real>::bytes() const {
+    return cut_.bytes() + contact_links_.capacity() * sizeof(ContactLink) +
+           slots_.capacity() * sizeof(PathCut::Slot);
+}
+
+template class PathChoice<float>;
+template class PathChoice<double>;
 
 }  // namespace carom
