@@ -44,6 +44,9 @@ class SoftStep final : public SoftSimulation<Real> {
         return sim.world.effects.gravity &&
                sim.world.bodies.moving() >= LoadCorrection<Real>::fewest_bodies(is_smooth_heap(sim.world));
     };
+    static constexpr auto has_wedged_bodies = [](const Sim& sim) {
+        return sim.can_touch() && sim.soft.has_wedged_bodies();
+    };
     static constexpr auto has_chains = [](const Sim& sim) {
         return sim.can_touch() && sim.soft.has_chains();
     };
@@ -123,6 +126,8 @@ class SoftStep final : public SoftSimulation<Real> {
          KernelChoice::contacts, "motion, contacts, velocity records", "impulses, velocity records"},
         {"solve_chains", [](Sim& sim) { sim.soft.solve_chains(); }, has_chains, KernelChoice::scalar_f64,
          "contacts, velocity records", "impulses, velocity records"},
+        {"solve_wedged_bodies", [](Sim& sim) { sim.soft.solve_wedged_bodies(); }, has_wedged_bodies,
+         KernelChoice::scalar_f64, "contacts, velocity records", "impulses, velocity records"},
         {"solve_uneven_contacts", [](Sim& sim) { sim.soft.solve_uneven_contacts(); }, has_masses,
          KernelChoice::scalar_f64, "contacts, velocity records", "impulses, velocity records, displacements"},
         {"solve_joints_and_contacts", [](Sim& sim) { sim.soft.solve_joints_and_contacts(sim.world); },

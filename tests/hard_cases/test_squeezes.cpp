@@ -16,4 +16,10 @@ TEST_SUITE("hard cases/squeezes") {
                        Real, float, double) {
         check_cases<Real>(torture::rooms_that_many_leave(extent()));
     }
+    TEST_CASE_TEMPLATE("B37: discs leave a wedge that closes at its limit speed", Real, float, double) {
+        check_cases<Real>(torture::discs_in_closing_wedges(extent()));
+    }
+    TEST_CASE_TEMPLATE("B37: a disc that is thrown into a wedge stays in it", Real, float, double) {
+        check_cases<Real>(torture::discs_thrown_into_wedges(extent()));
+    }
 }

@@ -63,6 +63,7 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const EdgeCa
     support_finder_.find(view(), world, edges);
     uneven_.begin_step(view(), world, masses_.are_mixed());
     chains_.begin_step(view());
+    wedged_.begin_step(view());
     counters.contacts = static_cast<std::int64_t>(
         std::accumulate(graph.pairs.live_count.begin(), graph.pairs.live_count.end(), supports_.contacts()));
     counters.colours = static_cast<std::int64_t>(graph.pairs.count.size());
@@ -124,6 +125,11 @@ void SoftSolver<Real>::solve_joints_and_contacts(WorldState<Real>& world) {
 }
 
 template <class Real>
+void SoftSolver<Real>::solve_wedged_bodies() {
+    wedged_.solve(view(), Sweeps::arguments(view(), supports_));
+}
+
+template <class Real>
 void SoftSolver<Real>::solve_uneven_contacts() {
     if (masses_.are_uneven())
         uneven_.solve(view(), Sweeps::arguments(view(), graph.pairs), Sweeps::arguments(view(), supports_));
@@ -173,7 +179,7 @@ std::size_t SoftSolver<Real>::bytes() const {
     return graph.bytes() + paths.bytes() + impacts.bytes() + joints.bytes() + masses_.bytes() +
            records_.bytes() + supports_.bytes() + support_finder_.bytes() + warm_start_.bytes() +
            warm_start_limit_.bytes() + sweeps_.bytes() + loads_.bytes() + uneven_.bytes() + chains_.bytes() +
-           projection_.bytes() + pair_finder_.bytes();
+           wedged_.bytes() + projection_.bytes() + pair_finder_.bytes();
 }
 
 template class SoftSolver<float>;

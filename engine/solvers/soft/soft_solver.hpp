@@ -20,6 +20,7 @@
 #include "solvers/soft/contacts/support_finder.hpp"
 #include "solvers/soft/contacts/uneven_contacts.hpp"
 #include "solvers/soft/contacts/warm_start.hpp"
+#include "solvers/soft/contacts/wedged_bodies.hpp"
 #include "solvers/soft/impacts/impacts.hpp"
 #include "solvers/soft/joints/soft_joints.hpp"
 #include "solvers/soft/project_positions.hpp"
@@ -115,6 +116,10 @@ class SoftSolver {
     bool has_chains() const { return !chains_.empty(); }
     /// Solves what the sweeps leave in columns of discs.
     void solve_chains() { chains_.solve(view()); }
+    /// Whether some bodies are between supports that face each other.
+    bool has_wedged_bodies() const { return !wedged_.empty(); }
+    /// Solves what the sweeps leave of their supports.
+    void solve_wedged_bodies();
     /// Solves what the sweeps leave where masses are uneven; nothing where they are not.
     void solve_uneven_contacts();
     /// What the impulses of this substep did; only the walls' impulses if the ledger is closed.
@@ -222,6 +227,7 @@ class SoftSolver {
     LoadCorrection<Real> loads_;
     UnevenContacts<Real> uneven_;
     ContactChains<Real> chains_;
+    WedgedBodies<Real> wedged_;
     EndProjection<Real> projection_;
     SubstepBooks<Real> books_;
     std::vector<Books> parts_of_books_;  // of some contacts of shapes each

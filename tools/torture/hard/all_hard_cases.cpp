@@ -52,6 +52,8 @@ HardCases all_hard_cases(Extent extent) {
                              shapes_under_a_plate,
                              shapes_in_a_room_that_is_left,
                              rooms_that_many_leave,
+                             discs_in_closing_wedges,
+                             discs_thrown_into_wedges,
                              overhangs,
                              piles_of_uneven_masses,
                              smooth_piles_of_uneven_masses,

@@ -160,7 +160,7 @@ Scene fast_drum(bool of_discs) {
     constexpr int kBodies = 4;
     constexpr double kCorner = 44;  // m, from the axis
     const Material material{.friction = 1};
-    Random random(5, 43);
+    Random random(43, 5);
     Scene scene;
     scene.gravity = {0, -9.81};
     Chain loop{.points = {}, .loop = true};
