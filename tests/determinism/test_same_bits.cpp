@@ -27,7 +27,7 @@ namespace {
 constexpr int kSteps = 90;
 
 constexpr Golden kGolden[] = {
-    {"mixed shapes", 0x92669ec7528ab3e6, 0x0226be39e3f228a7},
+    {"mixed shapes", 0x1683a42a0f631c83, 0x2aa6d0a4b1697e70},
     {"bouncing crowd", 0x32f5cf7cf7591ae8, 0x5d0e0f7fea4c8122},
     {"rough gas", 0xc009256aceff94e4, 0xb74961daf77a2622},
     {"gas", 0x680b8eec4001de52, 0x87bedad9b790c353},

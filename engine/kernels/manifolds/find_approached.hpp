@@ -73,7 +73,7 @@ std::size_t find_approached(const FindApproached<Real>& k, std::size_t first, st
         auto is_near = is_due & !(come <= now_until);
         // What is slow is in contact soon, and contacts that come late are the last in order.
         const auto is_swift = is_near & (way > reach);
-        if (simd::any(is_swift)) {
+        if (k.motion && simd::any(is_swift)) {
             const auto motion_a = L::load_rows4(k.motion, a), motion_b = L::load_rows4(k.motion, b);
             is_near = is_near & !(is_swift & stay_parted(of_a, of_b, motion_a, motion_b, reach + off));
         }

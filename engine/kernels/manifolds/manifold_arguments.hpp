@@ -34,9 +34,10 @@ inline constexpr std::size_t kAnglesOfBlock = 64;
 /// Pairs that wait until their bodies have come near enough.
 template <class Real>
 struct FindApproached {
-    const Real *pose, *frame;   // [rows][4]: x, y [m], cosine, sine of the angle; ShapeFrame
-    const Real *come, *way;     // m, by row: since pairs were listed, this step included; in this step
-    const Real* motion;         // [rows][4]: m in this step in x and y, m of the rim; restitution
+    const Real *pose, *frame;  // [rows][4]: x, y [m], cosine, sine of the angle; ShapeFrame
+    const Real *come, *way;    // m, by row: since pairs were listed, this step included; in this step
+    const Real*
+        motion;  // [rows][4]: m in this step in x and y, m of the rim; restitution. None: sides part none
     const std::int32_t *a, *b;  // rows
     const Real* thickness;      // m, by pair
     Real* until;                // in and out: m, of what both have come together

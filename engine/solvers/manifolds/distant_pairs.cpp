@@ -64,8 +64,8 @@ void DistantPairs<Real>::describe_rows(const WorldState<Real>& world, double dt,
 
 template <class Real>
 std::span<const typename DistantPairs<Real>::Pair> DistantPairs<Real>::take_near(
-    const WorldState<Real>& world, double dt, const PoseWatch<Real>& poses, const ContactDistance& near,
-    const ConvexKernels<Real>& kernels, const Executor& executor) {
+    const WorldState<Real>& world, double dt, bool sides_part, const PoseWatch<Real>& poses,
+    const ContactDistance& near, const ConvexKernels<Real>& kernels, const Executor& executor) {
     taken_.clear();
     if (empty()) return taken_;
     const std::array<double, 2> within{near.share, near.fall};
@@ -77,7 +77,7 @@ std::span<const typename DistantPairs<Real>::Pair> DistantPairs<Real>::take_near
                              &frame_.data()->x,
                              come_.data(),
                              way_.data(),
-                             motion_.data(),
+                             sides_part ? motion_.data() : nullptr,
                              a_.data(),
                              b_.data(),
                              thickness_.data(),

@@ -17,7 +17,8 @@ namespace carom {
 /// Candidate pairs of convex shapes that cannot touch in a step. The broadphase sees the disc around a shape:
 /// of planks most candidate pairs are planks that lie side by side. How far two shapes are apart is at least
 /// the gap between the rectangles around them, so a pair is not looked at again before the ways of its two
-/// bodies are together as long as that gap; nor does one count that cannot close in the step along a side.
+/// bodies are together as long as that gap; nor, where that is asked, does one count that cannot close in the
+/// step along a side.
 ///
 /// Cost: 1 ns a pair and step; 3 ns a pair that is looked at. docs/decisions/0036-distant-pairs.md.
 template <class Real>
@@ -33,10 +34,11 @@ class DistantPairs {
     void add(const WorldState<Real>& world, std::int32_t a, std::int32_t b);
     /// Takes out the pairs that may touch in this step, in the order of their coming.
     /// @param dt  s, of the step
+    /// @param sides_part  whether pairs wait, too, that have come near but cannot close along a side
     /// @param poses  of the start of the step
-    std::span<const Pair> take_near(const WorldState<Real>& world, double dt, const PoseWatch<Real>& poses,
-                                    const ContactDistance& near, const ConvexKernels<Real>& kernels,
-                                    const Executor& executor);
+    std::span<const Pair> take_near(const WorldState<Real>& world, double dt, bool sides_part,
+                                    const PoseWatch<Real>& poses, const ContactDistance& near,
+                                    const ConvexKernels<Real>& kernels, const Executor& executor);
 
     std::size_t bytes() const;
 

@@ -77,7 +77,9 @@ template <class Real>
 void Manifolds<Real>::take_near(const WorldState<Real>& world, double dt, const ContactDistance& near,
                                 const StepLoops<Real>& loops) {
     const std::size_t before = bodies_.count();
-    const auto taken = distant_.take_near(world, dt, poses_, near, *loops.kernels->convex, *loops.executor);
+    const bool is_crowd = kContactsOfBody * world.bodies.moving() >= kFewContacts;
+    const auto taken =
+        distant_.take_near(world, dt, is_crowd, poses_, near, *loops.kernels->convex, *loops.executor);
     if (shapes_of_boxes_ != world.shapes.revision()) list_boxes(world.shapes);
     // Boxes first: blocks of them alone have a quicker kernel.
     for (const bool boxes : {true, false})

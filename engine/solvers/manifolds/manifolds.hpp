@@ -18,6 +18,12 @@
 
 namespace carom {
 
+/// A world of fewer contacts is small: one contact that comes late, as in a row of dominoes, would change it.
+/// docs/decisions/0043-contacts-beside-paths.md, 0055-heaps-that-fall.md.
+inline constexpr std::size_t kFewContacts = 1024;
+/// Contacts for each body in a heap, about.
+inline constexpr std::size_t kContactsOfBody = 2;
+
 /// The contacts of convex shapes that are no discs: which can come about, which do in a step, and the
 /// impulses that they keep from step to step. A contact is known by the handles of its bodies, so that rows
 /// may change.

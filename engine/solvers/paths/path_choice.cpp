@@ -13,10 +13,6 @@ constexpr std::size_t kLongest[] = {128, 16, 12};
 constexpr double kCalm = 0.001, kRestless = 0.01;
 /// Share of contacts that come or go in a step, above which paths are wild and below which no longer.
 constexpr double kWild = 0.005, kTame = 0.002;
-/// Fewer contacts have long paths from the start; more begin with short ones, as heaps do that still settle,
-/// and only of more stand some beside the paths: one that comes in a row of dominoes would change a small
-/// world.
-constexpr std::size_t kFewContacts = 1024;
 /// Paths are cut anew after so many steps, since loads have changed.
 constexpr int kStepsOfCut = 30;
 /// Wild ones of many contacts are kept for so many, whatever contacts come and go: what comes stands beside
@@ -90,6 +86,7 @@ void PathChoice<Real>::judge_mood(const Manifolds<Real>& manifolds, std::int64_t
     if (changed > (mood_ == PathMood::wild ? kTame : kWild) || (changed < 0 && mood_ == PathMood::wild))
         mood_ = PathMood::wild;
     else if (!was_solved)
+        // Small worlds have long paths from the start; others short ones, as heaps do that still settle.
         mood_ = manifolds.live().size() < kFewContacts ? PathMood::calm : PathMood::restless;
     else
         mood_ = share < (mood_ == PathMood::calm ? kRestless : kCalm) ? PathMood::calm : PathMood::restless;

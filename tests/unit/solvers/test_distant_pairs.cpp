@@ -122,7 +122,7 @@ TEST_SUITE("solvers/manifolds/distant_pairs") {
         for (int step = 0; step < 120; ++step) {
             if (step % 40 == 0) list(), listed += waiting.size();
             poses.look(world, kStep, kNear, false, kernels.turn_angles, executor);
-            for (const auto& pair : distant.take_near(world, kStep, poses, kNear, kernels, executor))
+            for (const auto& pair : distant.take_near(world, kStep, true, poses, kNear, kernels, executor))
                 REQUIRE(waiting.erase({pair.a, pair.b}) == 1);
             for (const auto& [first, second] : waiting) {
                 const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
