@@ -77,7 +77,7 @@ template <class Real>
 void Manifolds<Real>::take_near(const WorldState<Real>& world, double dt, const ContactDistance& near,
                                 const StepLoops<Real>& loops) {
     const std::size_t before = bodies_.count();
-    const bool is_crowd = kContactsOfBody * world.bodies.moving() >= kFewContacts;
+    const bool is_crowd = kContactsOfBody * world.bodies.moving() >= kContactsOfSmallWorld;
     const auto taken =
         distant_.take_near(world, dt, is_crowd, poses_, near, *loops.kernels->convex, *loops.executor);
     if (shapes_of_boxes_ != world.shapes.revision()) list_boxes(world.shapes);

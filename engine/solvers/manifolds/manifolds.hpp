@@ -20,7 +20,7 @@ namespace carom {
 
 /// A world of fewer contacts is small: one contact that comes late, as in a row of dominoes, would change it.
 /// docs/decisions/0043-contacts-beside-paths.md, 0055-heaps-that-fall.md.
-inline constexpr std::size_t kFewContacts = 1024;
+inline constexpr std::size_t kContactsOfSmallWorld = 1024;
 /// Contacts for each body in a heap, about.
 inline constexpr std::size_t kContactsOfBody = 2;
 

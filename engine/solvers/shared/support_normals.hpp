@@ -23,7 +23,7 @@ struct SupportNormal {
 /// @param inverse_mass  1/kg, > 0
 /// @param tolerance  m/s, that velocities along supports which do not push may be off by
 /// @return false, and nothing has changed, if no impulses keep all laws, as where surfaces close on a body
-/// that are as good as parallel Cost: O(supports³)
+/// that are as good as parallel. Cost: O(supports³)
 bool solve_support_normals(Vec2& velocity, double inverse_mass, std::span<SupportNormal> supports,
                            double tolerance);
 
