@@ -38,7 +38,8 @@ TEST_SUITE("solvers/support normals") {
         std::mt19937 random(17);
         int solved = 0;
         for (int trial = 0; trial < 2000; ++trial) {
-            std::vector<SupportNormal> supports = random_supports(1 + trial % 4, random);
+            std::vector<SupportNormal> supports =
+                random_supports(1 + static_cast<std::size_t>(trial % 4), random);
             const double inverse_mass = std::pow(10, between(random, -3, 3));
             Vec2 velocity{between(random, -2, 2), between(random, -2, 2)};
             Vec2 free = velocity;
