@@ -170,7 +170,9 @@ Scene fast_drum(bool of_discs) {
     for (int i = 0; i < kBodies; ++i) {
         Body body{.shape = Disc{0.1}, .material = material};
         if (!of_discs) body.shape = Box{0.1, random.uniform(0.1, 0.3)};
-        body.position = turned(random.uniform(0, 6), {random.uniform(5, 20), 0});
+        // One after the other: which argument of a call is drawn first is the compiler's choice.
+        const double distance = random.uniform(5, 20), angle = random.uniform(0, 6);
+        body.position = turned(angle, {distance, 0});
         body.velocity = turned(random.uniform(0, 6), {10, 0});
         scene.add(body);
     }

@@ -13,7 +13,8 @@ namespace {
 constexpr double kFacing = 0.3;
 /// Supports are solved where sweeps leave a velocity off by more than this share of what gravity adds in a
 /// substep, and of the body's own.
-constexpr double kOfFall = 1e-3, kOfSpeed = 1e-5;
+constexpr double kOfFall = 1e-3;
+constexpr double kOfSpeed = 1e-5;
 /// Turns of normals and friction at most. Where friction holds what is squeezed they come to no end, and what
 /// the sweeps gave stays.
 constexpr int kMostTurns = 64;
