@@ -63,7 +63,7 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const EdgeCa
     support_finder_.find(view(), world, edges);
     uneven_.begin_step(view(), world, masses_.are_mixed());
     chains_.begin_step(view());
-    wedged_.begin_step(view());
+    wedged_.begin_step(view(), world.bodies);
     counters.contacts = static_cast<std::int64_t>(
         std::accumulate(graph.pairs.live_count.begin(), graph.pairs.live_count.end(), supports_.contacts()));
     counters.colours = static_cast<std::int64_t>(graph.pairs.count.size());

@@ -85,9 +85,11 @@ void WedgedBodies<Real>::list_shared(const ContactRows<Real>& supports) {
 }
 
 template <class Real>
-void WedgedBodies<Real>::begin_step(const StepView<Real>& step) {
+void WedgedBodies<Real>::begin_step(const StepView<Real>& step, const Bodies<Real>& bodies) {
     const ContactRows<Real>& supports = step.supports;
     supports_.clear(), bodies_.clear();
+    // Walls are parallel or at right angles. Static and kinematic bodies and edges have flags.
+    if (!bodies.has_flags && bodies.asleep == 0) return;
     latest_.resize(std::max(latest_.size(), step.records.count()), -1);
     list_shared(supports);
     const auto face_each_other = [&](std::uint32_t one, std::uint32_t other) {

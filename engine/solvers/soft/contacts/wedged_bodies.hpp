@@ -20,8 +20,9 @@ namespace carom {
 template <class Real>
 class WedgedBodies {
   public:
-    /// To be called when the supports of a step are found. Cost: O(supports).
-    void begin_step(const StepView<Real>& step);
+    /// To be called when the supports of a step are found. Cost: O(supports); nothing where walls are the
+    /// only ones.
+    void begin_step(const StepView<Real>& step, const Bodies<Real>& bodies);
     bool empty() const { return bodies_.empty(); }
     /// After the sweeps of a substep. Cost: O(bodies in a wedge), see docs/decisions/0054-wedges.md.
     void solve(const StepView<Real>& step, const SolveContacts<Real>& on_supports);
