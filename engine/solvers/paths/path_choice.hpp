@@ -31,7 +31,7 @@ class PathChoice {
     void forget_cut() { is_cut_forgotten_ = true; }
 
     const PathCut& cut() const { return cut_; }
-    /// That for which the paths were cut.
+    /// The mood for which the paths were cut.
     PathMood mood_of_cut() const { return mood_of_cut_; }
 
     std::size_t bytes() const;

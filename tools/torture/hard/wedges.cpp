@@ -83,35 +83,38 @@ Measures rebound_from_vee(HardRun& run) {
     return {{"m/s up", up.value(), 0.03}, {"overlap", run.overlap(), 0.01}, {"m/s down", down.value()}};
 }
 
+/// Calls fn(angle, friction) for every wedge.
+template <class Fn>
+void for_each_wedge(const Fn& fn) {
+    for (const double angle : kAngles)
+        for (const double share : kFrictions) fn(angle, share * std::tan(angle / 2));
+}
+
 }  // namespace
 
 HardCases discs_in_closing_wedges(Extent) {
     HardCases all;
-    for (const double angle : kAngles)
-        for (const double share : kFrictions)
-            for (const int discs : {1, 3}) {
-                const double friction = share * std::tan(angle / 2);
-                all.push_back({.code = "B37",
-                               .name = format("wedge of %g rad that closes, discs: %d, friction %.2g", angle,
-                                              discs, friction),
-                               .make = [=] { return closing_wedge(angle, discs, friction); },
-                               .run = speed_out_of_wedge});
-            }
+    for_each_wedge([&](double angle, double friction) {
+        for (const int discs : {1, 3})
+            all.push_back({.code = "B37",
+                           .name = format("wedge of %g rad that closes, discs: %d, friction %.2g", angle,
+                                          discs, friction),
+                           .make = [=] { return closing_wedge(angle, discs, friction); },
+                           .run = speed_out_of_wedge});
+    });
     return all;
 }
 
 HardCases discs_thrown_into_wedges(Extent) {
     HardCases all;
-    for (const double angle : kAngles)
-        for (const double share : kFrictions)
-            for (const double gravity : {0.0, 10.0}) {
-                const double friction = share * std::tan(angle / 2);
-                all.push_back({.code = "B37",
-                               .name = format("disc thrown into a V of %g rad, friction %.2g, gravity %g",
-                                              angle, friction, gravity),
-                               .make = [=] { return vee(angle, friction, gravity); },
-                               .run = rebound_from_vee});
-            }
+    for_each_wedge([&](double angle, double friction) {
+        for (const double gravity : {0.0, 10.0})
+            all.push_back({.code = "B37",
+                           .name = format("disc thrown into a V of %g rad, friction %.2g, gravity %g", angle,
+                                          friction, gravity),
+                           .make = [=] { return vee(angle, friction, gravity); },
+                           .run = rebound_from_vee});
+    });
     return all;
 }
 
