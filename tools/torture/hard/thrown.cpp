@@ -160,7 +160,7 @@ Scene fast_drum(bool of_discs) {
     constexpr int kBodies = 4;
     constexpr double kCorner = 44;  // m, from the axis
     const Material material{.friction = 1};
-    Random random(43, 5);
+    Random random(5, 43);
     Scene scene;
     scene.gravity = {0, -9.81};
     Chain loop{.points = {}, .loop = true};
@@ -171,7 +171,7 @@ Scene fast_drum(bool of_discs) {
         Body body{.shape = Disc{0.1}, .material = material};
         if (!of_discs) body.shape = Box{0.1, random.uniform(0.1, 0.3)};
         // One after the other: which argument of a call is drawn first is the compiler's choice.
-        const double distance = random.uniform(5, 20), angle = random.uniform(0, 6);
+        const double angle = random.uniform(0, 6), distance = random.uniform(5, 20);
         body.position = turned(angle, {distance, 0});
         body.velocity = turned(random.uniform(0, 6), {10, 0});
         scene.add(body);
