@@ -2,6 +2,7 @@
 
 #include <carom/scene.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -78,6 +79,11 @@ struct Enclosure {
     }
 
     bool is_outside(Real x, Real y) const { return (x < min_x) | (x > max_x) | (y < min_y) | (y > max_y); }
+
+    /// Distance to the nearest wall; negative behind it.
+    Real clearance(Real x, Real y) const {
+        return std::min(std::min(x - min_x, max_x - x), std::min(y - min_y, max_y - y));
+    }
 
     /// Calls fn(side) for the walls that something at (x, y) comes to within `reach`.
     template <class Fn>

@@ -8,10 +8,12 @@
 namespace carom {
 namespace {
 
-constexpr std::size_t kPairsPerTask = 4096;
-constexpr double kNanosecondsToScan = 2;  // a pair, on one thread, for the executor
+constexpr std::size_t kPairsPerTask = 4096, kRowsPerTask = 1024;
+// For the executor, on one thread: ns a pair; ns a row or a new pair.
+constexpr double kNanosecondsToScan = 2, kNanosecondsToDescribe = 2;
 
-constexpr std::int32_t kTaken = -1;  // row of a pair that was taken out
+constexpr int kTaken = -1;              // thickness of a pair that was taken out
+constexpr std::size_t kPairsOfGap = 8;  // gaps are closed when one pair in so many is one
 
 /// Share of the lengths in it by which a gap may be off through rounding.
 template <class Real>
@@ -22,27 +24,36 @@ constexpr Real kRounding = 16 * std::numeric_limits<Real>::epsilon();
 template <class Real>
 void DistantPairs<Real>::clear() {
     a_.clear(), b_.clear(), thickness_.clear(), until_.clear();
+    gaps_ = 0;
     frame_.clear();  // rows may have changed
 }
 
+/// Pairs that were added since the last step are to be looked at.
 template <class Real>
-void DistantPairs<Real>::add(const WorldState<Real>& world, std::int32_t a, std::int32_t b) {
-    a_.push_back(a), b_.push_back(b);
-    thickness_.push_back(
-        pair_thickness(world.bodies, static_cast<std::size_t>(a), static_cast<std::size_t>(b)));
-    until_.push_back(-std::numeric_limits<Real>::infinity());
+void DistantPairs<Real>::describe_new_pairs(const WorldState<Real>& world, const Executor& executor) {
+    const std::size_t known = thickness_.size();
+    thickness_.resize(count()), until_.resize(count());
+    executor.for_each_chunk(count() - known, kPairsPerTask, kNanosecondsToDescribe,
+                            [&](std::size_t, std::size_t first, std::size_t last) {
+                                for (std::size_t n = known + first; n < known + last; ++n) {
+                                    thickness_[n] =
+                                        pair_thickness(world.bodies, static_cast<std::size_t>(a_[n]),
+                                                       static_cast<std::size_t>(b_[n]));
+                                    until_[n] = -std::numeric_limits<Real>::infinity();
+                                }
+                            });
 }
 
 /// What rows have come since pairs were listed, and may come in this step; and their rectangles.
 template <class Real>
-void DistantPairs<Real>::describe_rows(const WorldState<Real>& world, double dt,
-                                       const PoseWatch<Real>& poses) {
+void DistantPairs<Real>::describe_rows(const WorldState<Real>& world, double dt, const PoseWatch<Real>& poses,
+                                       const Executor& executor) {
     const Bodies<Real>& bodies = world.bodies;
     const std::size_t rows = bodies.rows();
     come_.resize_for_overwrite(rows), way_.resize_for_overwrite(rows);
     motion_.resize_for_overwrite(4 * rows);
     const auto h = static_cast<Real>(dt);
-    for (std::size_t row = 0; row < rows; ++row) {
+    const auto describe = [&](std::size_t row) {
         way_[row] = poses.way(row);
         come_[row] = static_cast<Real>(poses.path(row)) + way_[row];
         const Real moving = way_[row] > 0 ? h : 0;  // what nothing moves may have a velocity all the same
@@ -52,7 +63,11 @@ void DistantPairs<Real>::describe_rows(const WorldState<Real>& world, double dt,
                         ? moving * std::fabs(bodies.angular_velocity[row]) * bodies.radius[row]
                         : Real(0);
         motion[3] = static_cast<Real>(bodies.restitution[row]);
-    }
+    };
+    executor.for_each_chunk(rows, kRowsPerTask, kNanosecondsToDescribe,
+                            [&](std::size_t, std::size_t first, std::size_t last) {
+                                for (std::size_t row = first; row < last; ++row) describe(row);
+                            });
     if (frame_.size() == rows) return;
     frames_.follow(world.shapes);
     frame_.resize_for_overwrite(rows);
@@ -68,10 +83,13 @@ std::span<const typename DistantPairs<Real>::Pair> DistantPairs<Real>::take_near
     const ContactDistance& near, const ConvexKernels<Real>& kernels, const Executor& executor) {
     taken_.clear();
     if (empty()) return taken_;
+    describe_new_pairs(world, executor);
     const std::array<double, 2> within{near.share, near.fall};
-    if (std::exchange(within_, within) != within)
+    if (std::exchange(within_, within) != within) {
+        close_gaps();
         std::fill(until_.begin(), until_.end(), -std::numeric_limits<Real>::infinity());
-    describe_rows(world, dt, poses);
+    }
+    describe_rows(world, dt, poses, executor);
     near_.prepare(count(), kPairsPerTask);
     FindApproached<Real> all{poses.pose.data(),
                              &frame_.data()->x,
@@ -95,22 +113,24 @@ std::span<const typename DistantPairs<Real>::Pair> DistantPairs<Real>::take_near
     near_.for_each_below(count(), [&](std::int32_t number) {
         const auto n = static_cast<std::size_t>(number);
         taken_.push_back({a_[n], b_[n]});
-        a_[n] = kTaken;
+        thickness_[n] = kTaken, until_[n] = std::numeric_limits<Real>::infinity();
     });
-    if (!taken_.empty()) close_gaps();
+    gaps_ += taken_.size();
+    if (kPairsOfGap * gaps_ > count()) close_gaps();
     return taken_;
 }
 
-/// Closes the gaps that pairs have left which were taken out.
+/// Closes the gaps that pairs have left which were taken out. Until then they are never looked at.
 template <class Real>
 void DistantPairs<Real>::close_gaps() {
     std::size_t kept = 0;
     for (std::size_t n = 0; n < count(); ++n) {
-        if (a_[n] == kTaken) continue;
+        if (thickness_[n] == kTaken) continue;
         a_[kept] = a_[n], b_[kept] = b_[n], thickness_[kept] = thickness_[n], until_[kept] = until_[n];
         ++kept;
     }
     a_.resize(kept), b_.resize(kept), thickness_.resize(kept), until_.resize(kept);
+    gaps_ = 0;
 }
 
 template <class Real>

@@ -31,7 +31,7 @@ class DistantPairs {
     bool empty() const { return a_.empty(); }
     void clear();
     /// Adds a pair that is to be looked at in the next step.
-    void add(const WorldState<Real>& world, std::int32_t a, std::int32_t b);
+    void add(std::int32_t a, std::int32_t b) { a_.push_back(a), b_.push_back(b); }
     /// Takes out the pairs that may touch in this step, in the order of their coming.
     /// @param dt  s, of the step
     /// @param sides_part  whether pairs wait, too, that have come near but cannot close along a side
@@ -44,18 +44,21 @@ class DistantPairs {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.a_, self.b_, self.thickness_, self.until_, self.within_);
+        archive(self.a_, self.b_, self.thickness_, self.until_, self.gaps_, self.within_);
         if constexpr (!std::is_const_v<Self>) self.frames_.forget(), self.frame_.clear();
     }
 
   private:
     std::size_t count() const { return a_.size(); }
-    void describe_rows(const WorldState<Real>& world, double dt, const PoseWatch<Real>& poses);
+    void describe_new_pairs(const WorldState<Real>& world, const Executor& executor);
+    void describe_rows(const WorldState<Real>& world, double dt, const PoseWatch<Real>& poses,
+                       const Executor& executor);
     void close_gaps();
 
     Column<std::int32_t> a_, b_;  // rows
     Column<Real> thickness_;      // m, that contacts between them are measured in
     Column<Real> until_;          // m, of what both have come and may come, before which no pair is looked at
+    std::size_t gaps_ = 0;        // among them, of pairs that were taken out
     Column<Real> come_, way_;     // m, by row: since pairs were listed, this step included; in this step
     Column<Real> motion_;         // kernels/manifolds/manifold_arguments.hpp
     Column<ShapeFrame<Real>> frame_;  // by row; none: to be made

@@ -12,23 +12,33 @@ namespace carom {
 namespace {
 
 // For the executor: ns a contact on one thread, and contacts of a task.
-constexpr double kNanosecondsToFind = 10;
+constexpr double kNanosecondsToFind = 10, kNanosecondsToRecall = 5, kNanosecondsToList = 1,
+                 kNanosecondsToJudge = 3;
 constexpr std::size_t kContactsPerTask = 256;
+
+template <class Real>
+bool moves(const Bodies<Real>& bodies, std::int32_t b) {
+    const auto row = static_cast<std::size_t>(b);
+    return row < bodies.count && !bodies.is_immovable(row);
+}
 
 }  // namespace
 
 template <class Real>
-void Manifolds<Real>::list_pair(const WorldState<Real>& world, std::int32_t a, std::int32_t b) {
+bool Manifolds<Real>::can_touch(const WorldState<Real>& world, std::int32_t a, std::int32_t b) const {
     const Bodies<Real>& bodies = world.bodies;
-    if (a > b) std::swap(a, b);
     const auto i = static_cast<std::size_t>(a), k = static_cast<std::size_t>(b);
-    if (bodies.is_disc(i) && bodies.is_disc(k)) return;
-    if (bodies.shape[i] < 0 || bodies.shape[k] < 0) return;  // edges
-    const bool a_moves = !bodies.is_immovable(i), b_moves = k < bodies.count && !bodies.is_immovable(k);
-    if (!a_moves && !b_moves) return;
-    if (world.has_filters() && !world.may_collide(i, k)) return;
-    if (!a_moves) std::swap(a, b);
-    distant_.add(world, a, b);
+    if (bodies.is_disc(i) && bodies.is_disc(k)) return false;
+    if (bodies.shape[i] < 0 || bodies.shape[k] < 0) return false;  // edges
+    if (!moves(bodies, a) && !moves(bodies, b)) return false;
+    return !world.has_filters() || world.may_collide(i, k);
+}
+
+template <class Real>
+void Manifolds<Real>::list_pair(const WorldState<Real>& world, std::int32_t a, std::int32_t b) {
+    if (a > b) std::swap(a, b);
+    if (!moves(world.bodies, a)) std::swap(a, b);
+    distant_.add(a, b);
 }
 
 template <class Real>
@@ -54,7 +64,8 @@ bool Manifolds<Real>::are_boxes(const Bodies<Real>& bodies, std::int32_t a, std:
 
 template <class Real>
 void Manifolds<Real>::renew(const WorldState<Real>& world, const Candidates<Real>& candidates,
-                            const EdgeCandidates<Real>& edges, std::span<const SleeperPair> sleepers) {
+                            const EdgeCandidates<Real>& edges, std::span<const SleeperPair> sleepers,
+                            const Executor& executor) {
     live_.clear(), found_within_ = {};
     distant_.clear();
     surface_finder_.renew(world, edges);
@@ -67,9 +78,15 @@ void Manifolds<Real>::renew(const WorldState<Real>& world, const Candidates<Real
             list.add(0, 0, kept.name), list.memory.back() = kept.memory, list.memory.back().slot = -1;
         }
     items_.list(world);
-    for (std::size_t p = 0; p < candidates.pair_count(); ++p)
-        list_pair(world, candidates.pair_a()[p], candidates.pair_b()[p]);
-    for (const SleeperPair& pair : sleepers) list_pair(world, pair.row, pair.sleeper);
+    const std::int32_t *pair_a = candidates.pair_a(), *pair_b = candidates.pair_b();
+    chosen_pairs_.choose(candidates.pair_count(), kNanosecondsToJudge, executor,
+                         [&](std::size_t p) { return can_touch(world, pair_a[p], pair_b[p]); });
+    chosen_pairs_.for_each([&](std::int32_t number) {
+        const auto p = static_cast<std::size_t>(number);
+        list_pair(world, pair_a[p], pair_b[p]);
+    });
+    for (const SleeperPair& pair : sleepers)
+        if (can_touch(world, pair.row, pair.sleeper)) list_pair(world, pair.row, pair.sleeper);
     poses_.begin_paths(), is_renewed_ = true;
 }
 
@@ -92,7 +109,7 @@ void Manifolds<Real>::take_near(const WorldState<Real>& world, double dt, const 
     }
     if (!is_renewed_) return;
     is_renewed_ = false;
-    recall(bodies_, old_);
+    recall(bodies_, old_, *loops.executor);
     if (world.bodies.asleep != asleep_then_) keep_of_sleepers(world);
     asleep_then_ = world.bodies.asleep;
 }
@@ -152,7 +169,8 @@ void Manifolds<Real>::add(const WorldState<Real>& world, const Candidates<Real>&
                           const EdgeCandidates<Real>& edges) {
     if (!world.bodies.has_shapes) return;
     surface_finder_.add(world, edges);
-    for (const auto& pair : candidates.new_pairs()) list_pair(world, pair.a, pair.b);
+    for (const auto& pair : candidates.new_pairs())
+        if (can_touch(world, pair.a, pair.b)) list_pair(world, pair.a, pair.b);
 }
 
 /// Files the contacts that carry something, or have a place along a path, by their body a.
@@ -171,7 +189,8 @@ void Manifolds<Real>::file_by_slot(const ManifoldList<Real>& old) {
 
 /// Gives the contacts of a list what those of the same name had in the old one.
 template <class Real>
-void Manifolds<Real>::recall(ManifoldList<Real>& list, const ManifoldList<Real>& old) {
+void Manifolds<Real>::recall(ManifoldList<Real>& list, const ManifoldList<Real>& old,
+                             const Executor& executor) {
     list.fit();
     file_by_slot(old);
     const std::size_t slots = first_of_slot_.size();
@@ -185,13 +204,17 @@ void Manifolds<Real>::recall(ManifoldList<Real>& list, const ManifoldList<Real>&
         }
         return nullptr;
     };
-    for (std::size_t i = 0; i < list.count(); ++i) {
+    const auto recall_one = [&](std::size_t i) {
         const ManifoldName& name = list.names[i];
         if (const auto* memory = find(name))
             list.memory[i] = *memory;
         else if (const auto* other = find(name.reversed()))
             list.memory[i] = other->reversed();
-    }
+    };
+    executor.for_each_chunk(list.count(), kContactsPerTask, kNanosecondsToRecall,
+                            [&](std::size_t, std::size_t first, std::size_t last) {
+                                for (std::size_t i = first; i < last; ++i) recall_one(i);
+                            });
 }
 
 /// A body may touch a chain in several places: each takes what the one before it had that faced the same way.
@@ -260,7 +283,7 @@ bool Manifolds<Real>::find(const WorldState<Real>& world, const EdgeCandidates<R
     poses_.look(world, terms.dt, near, finds_all, loops.kernels->convex->turn_angles, *loops.executor);
     take_near(world, terms.dt, near, loops);
     items_.add_poses(poses_.pose);
-    surface_finder_.find(world, edges, terms, near, surfaces_);
+    surface_finder_.find(world, edges, terms, near, surfaces_, *loops.executor);
     recall_surfaces();
     block_is_found_.assign(padded(bodies_.count()) / kRowPadding, 0);
     loops.executor->for_each_chunk(bodies_.count(), kContactsPerTask, kNanosecondsToFind,
@@ -270,7 +293,7 @@ bool Manifolds<Real>::find(const WorldState<Real>& world, const EdgeCandidates<R
     note_thicknesses(std::min(bodies_.count(), first_new_block_ * kRowPadding));
     first_new_block_ = block_is_found_.size();
     some_are_carried_ = std::find(block_is_found_.begin(), block_is_found_.end(), 0) != block_is_found_.end();
-    return list_live();
+    return list_live(*loops.executor);
 }
 
 /// @param first  a multiple of kRowPadding
@@ -362,15 +385,16 @@ void Manifolds<Real>::find_pairs(const WorldState<Real>& world, const ConvexKern
 
 /// @return whether they are those of the step before
 template <class Real>
-bool Manifolds<Real>::list_live() {
+bool Manifolds<Real>::list_live(const Executor& executor) {
     std::swap(live_, was_live_);
     live_.clear();
     const auto none = static_cast<Real>(kNoPoint);
-    for (std::size_t i = 0; i < bodies_.count(); ++i)
-        if (bodies_.separation1[i] < none)
-            live_.push_back(static_cast<std::int32_t>(i));
-        else
-            bodies_.memory[i] = {};
+    live_of_bodies_.choose(bodies_.count(), kNanosecondsToList, executor, [&](std::size_t i) {
+        const bool is_live = bodies_.separation1[i] < none;
+        if (!is_live) bodies_.memory[i] = {};
+        return is_live;
+    });
+    live_of_bodies_.for_each([&](std::int32_t i) { live_.push_back(i); });
     for (std::size_t i = 0; i < surfaces_.count(); ++i)
         if (surfaces_.separation1[i] < none)
             live_.push_back(~static_cast<std::int32_t>(i));
@@ -411,7 +435,8 @@ std::size_t Manifolds<Real>::bytes() const {
     return bodies_.bytes() + surfaces_.bytes() + old_.bytes() + old_surfaces_.bytes() +
            surface_finder_.bytes() + items_.bytes() + distant_.bytes() + of(asleep_) + of(is_recalled_) +
            of(loaded_) + of(is_box_of_) + of(blocks_are_boxes_) + of(first_of_slot_) + of(next_of_slot_) +
-           poses_.bytes() + of(block_is_found_) + of(live_) + of(was_live_);
+           poses_.bytes() + of(block_is_found_) + of(live_) + of(was_live_) + live_of_bodies_.bytes() +
+           chosen_pairs_.bytes();
 }
 
 template class Manifolds<float>;

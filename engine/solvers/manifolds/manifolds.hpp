@@ -14,6 +14,7 @@
 #include "solvers/manifolds/pose_watch.hpp"
 #include "solvers/manifolds/surface_finder.hpp"
 #include "solvers/substeps/step_terms.hpp"
+#include "state/chunked_list.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {
@@ -37,7 +38,8 @@ class Manifolds {
   public:
     /// Lists what can touch, when candidate pairs have been found anew.
     void renew(const WorldState<Real>& world, const Candidates<Real>& candidates,
-               const EdgeCandidates<Real>& edges, std::span<const SleeperPair> sleepers);
+               const EdgeCandidates<Real>& edges, std::span<const SleeperPair> sleepers,
+               const Executor& executor);
     /// Forgets all contacts.
     void clear() {
         distant_.clear(), bodies_.clear(), surfaces_.clear(), live_.clear(), surface_finder_.clear();
@@ -100,7 +102,9 @@ class Manifolds {
         return bodies_.count() == 0 && distant_.empty() && !is_renewed_ && surface_finder_.is_idle(world);
     }
     void keep_of_sleepers(const WorldState<Real>& world);
-    /// Notes a candidate pair if it can touch and not both are discs.
+    /// Whether a candidate pair can touch; not if both are discs.
+    bool can_touch(const WorldState<Real>& world, std::int32_t a, std::int32_t b) const;
+    /// Notes a candidate pair that can touch.
     void list_pair(const WorldState<Real>& world, std::int32_t a, std::int32_t b);
     /// Adds the pairs that have come near; those of before have what they had.
     void take_near(const WorldState<Real>& world, double dt, const ContactDistance& near,
@@ -110,7 +114,7 @@ class Manifolds {
     void list_boxes(const ShapeStore<Real>& shapes);
     void find_box_blocks(const Bodies<Real>& bodies, std::size_t first);
     void file_by_slot(const ManifoldList<Real>& old);
-    void recall(ManifoldList<Real>& list, const ManifoldList<Real>& old);
+    void recall(ManifoldList<Real>& list, const ManifoldList<Real>& old, const Executor& executor);
     void recall_surfaces();
     /// Finds the contacts of a chunk of pairs that must be found in this step.
     void find_chunk(const WorldState<Real>& world, double dt, const ContactDistance& near,
@@ -123,11 +127,12 @@ class Manifolds {
     void count_changes();
     void find_pairs(const WorldState<Real>& world, const ConvexKernels<Real>& kernels, std::size_t first,
                     std::size_t last);
-    bool list_live();
+    bool list_live(const Executor& executor);
 
     PieceItems<Real> items_;
     DistantPairs<Real> distant_;
     bool is_renewed_ = false;      // in this step
+    ChunkedList chosen_pairs_;     // of the candidates, those that can touch
     ManifoldList<Real> bodies_;    // contacts of two bodies
     ManifoldList<Real> surfaces_;  // of a body and a wall or an edge, of the last step
     ManifoldList<Real> old_, old_surfaces_;
@@ -136,6 +141,7 @@ class Manifolds {
     std::vector<KeptManifold<Real>> asleep_;
     std::size_t asleep_then_ = 0;  // bodies that slept then
     std::vector<std::int32_t> live_, was_live_;
+    ChunkedList live_of_bodies_;  // of them, those of two bodies
     double changed_share_ = -1;
     std::vector<LoadedContact> loaded_;
     std::vector<std::uint8_t> is_box_of_;         // by shape

@@ -14,6 +14,10 @@
 namespace carom {
 namespace {
 
+constexpr double kNanosecondsToLook = 2;  // a row, on one thread, for the executor
+/// Share by which a reach may be off through rounding.
+constexpr double kRoundingOfReach = 1e-6;
+
 /// How far a body can come in a step [m].
 template <class Real>
 double reach_in_step(const Bodies<Real>& bodies, std::size_t row, double dt) {
@@ -82,9 +86,12 @@ void SurfaceFinder<Real>::add(const WorldState<Real>& world, const EdgeCandidate
 template <class Real>
 void SurfaceFinder<Real>::find(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
                                const SubstepTerms& terms, const ContactDistance& near,
-                               ManifoldList<Real>& list) {
+                               ManifoldList<Real>& list, const Executor& executor) {
     list.clear(), manifolds_.clear(), pieces_.clear();
-    if (world.walls) find_walls(world, terms, near, list);
+    if (world.walls) {
+        list_near_walls(world, terms, near, executor);
+        find_walls(world, terms, near, list);
+    }
     find_edges(world, edges, terms, near, list);
     list.fit();
     const Bodies<Real>& bodies = world.bodies;
@@ -109,6 +116,21 @@ void SurfaceFinder<Real>::find(const WorldState<Real>& world, const EdgeCandidat
     }
 }
 
+/// Rows that may come near a wall in the step, by a bound that is cheaper than what `find_walls` asks: a body
+/// is no thicker than its radius.
+template <class Real>
+void SurfaceFinder<Real>::list_near_walls(const WorldState<Real>& world, const SubstepTerms& terms,
+                                          const ContactDistance& near, const Executor& executor) {
+    const Bodies<Real>& bodies = world.bodies;
+    const Enclosure<double> enclosure(&*world.walls);
+    rows_near_walls_.choose(bodies.moving(), kNanosecondsToLook, executor, [&](std::size_t row) {
+        const double radius = bodies.radius[row];
+        const double most = 2 * radius + near(radius) + reach_in_step(bodies, row, terms.dt);
+        return enclosure.clearance(bodies.position_x[row], bodies.position_y[row]) <
+               (1 + kRoundingOfReach) * most;
+    });
+}
+
 /// A wall is a wall everywhere: it is kept one thickness farther than others, as a crowd may yet throw a body
 /// there within the step.
 template <class Real>
@@ -117,9 +139,9 @@ void SurfaceFinder<Real>::find_walls(const WorldState<Real>& world, const Subste
     const Bodies<Real>& bodies = world.bodies;
     const Walls& walls = *world.walls;
     const Enclosure<double> enclosure(&walls);
-    for (std::size_t row = 0; row < bodies.moving(); ++row) {
-        if (bodies.is_disc(row) || bodies.shape[row] < 0 || bodies.is_immovable(row)) continue;
-        if (bodies.flags_of(row) & kSensor) continue;
+    const auto look_at = [&](std::size_t row) {
+        if (bodies.is_disc(row) || bodies.shape[row] < 0 || bodies.is_immovable(row)) return;
+        if (bodies.flags_of(row) & kSensor) return;
         const double way = reach_in_step(bodies, row, terms.dt), thickness = bodies.inradius(row);
         const double reach = static_cast<double>(bodies.radius[row]) + near(thickness) + thickness + way;
         const auto find_wall = [&](std::int32_t side) {
@@ -136,7 +158,8 @@ void SurfaceFinder<Real>::find_walls(const WorldState<Real>& world, const Subste
                 });
         };
         enclosure.for_each_side_within(bodies.position_x[row], bodies.position_y[row], reach, find_wall);
-    }
+    };
+    rows_near_walls_.for_each([&](std::int32_t row) { look_at(static_cast<std::size_t>(row)); });
 }
 
 template <class Real>
@@ -229,8 +252,9 @@ double SurfaceFinder<Real>::time_of_meeting_edges(const WorldState<Real>& world,
 
 template <class Real>
 std::size_t SurfaceFinder<Real>::bytes() const {
-    return pairs_.capacity() * sizeof(Near) + near_edges_.capacity() * sizeof(std::int32_t) +
-           found_.capacity() * sizeof(ChainManifold) + manifolds_.capacity() * sizeof(Manifold<double>);
+    return rows_near_walls_.bytes() + pairs_.capacity() * sizeof(Near) +
+           near_edges_.capacity() * sizeof(std::int32_t) + found_.capacity() * sizeof(ChainManifold) +
+           manifolds_.capacity() * sizeof(Manifold<double>);
 }
 
 template class SurfaceFinder<float>;

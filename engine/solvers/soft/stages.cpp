@@ -58,7 +58,8 @@ void update_contacts(SoftSimulation<Real>& sim) {
     } else {
         sim.edge_candidates.find(sim.world, sim.candidates);
         sim.soft.graph.renew(sim.candidates, sim.edge_candidates, sim.world.bodies, walls, sim.executor);
-        sim.soft.paths.manifolds.renew(sim.world, sim.candidates, sim.edge_candidates, sim.sleepers.pairs());
+        sim.soft.paths.manifolds.renew(sim.world, sim.candidates, sim.edge_candidates, sim.sleepers.pairs(),
+                                       sim.executor);
         sim.kinds_of_graph = sim.kinds_of_columns();
     }
     sim.graph_of_rebuild = sim.candidates.rebuild_count();
@@ -78,7 +79,8 @@ void undo_tunnelling(SoftSimulation<Real>& sim) {
     if (!sim.world.edges.empty())
         sim.tunnelling.undo(sim.world, sim.flight(), sim.soft.graph.supports, sim.executor);
     if (sim.world.bodies.has_shapes && sim.can_touch())
-        sim.shape_tunnelling.undo(sim.world, sim.flight(), sim.soft.records(), sim.soft.paths.manifolds);
+        sim.shape_tunnelling.undo(sim.world, sim.flight(), sim.soft.records(), sim.soft.paths.manifolds,
+                                  sim.executor);
 }
 
 template <class Real>

@@ -109,7 +109,7 @@ TEST_SUITE("solvers/manifolds/distant_pairs") {
                     const std::size_t first = bodies.is_immovable(a) ? b : a, second = a + b - first;
                     if (bodies.is_immovable(first)) continue;
                     const std::pair pair{static_cast<std::int32_t>(first), static_cast<std::int32_t>(second)};
-                    distant.add(world, pair.first, pair.second), waiting.insert(pair);
+                    distant.add(pair.first, pair.second), waiting.insert(pair);
                 }
         };
         const Executor executor(1);

@@ -21,6 +21,8 @@ constexpr int kRounds = 4;
 /// The core of a body, in inradii: where another one is in it, their contact may take the wrong side.
 constexpr double kCore = 0.5;
 
+constexpr double kNanosecondsToLook = 1;  // a body or a contact, on one thread, for the executor
+
 /// A disc that moves straight on for a time of 1.
 MovingConvex moving_disc(Vec2 from, Vec2 to, double radius) {
     ConvexShape<double> disc{};
@@ -86,36 +88,40 @@ void ShapeTunnelling<Real>::mark(std::size_t row) {
 /// their contacts were looked for: the velocity of the start takes them so far, and what they could not have
 /// reached then is an inradius beyond that.
 template <class Real>
-void ShapeTunnelling<Real>::list_swift(const Inputs& in, const Manifolds<Real>& manifolds) {
+void ShapeTunnelling<Real>::list_swift(const Inputs& in, const Manifolds<Real>& manifolds,
+                                       const Executor& executor) {
     const Bodies<Real>& bodies = in.world.bodies;
     const auto dt = static_cast<Real>(in.flight.dt);
     const auto least = static_cast<Real>(kSmallestWay);
     const Real* displacement = in.records.displacement.data();
     const Real* motion = in.flight.motion.data();
     swift_.clear(), is_swift_.resize(bodies.rows());
-    for (std::size_t row = 0; row < bodies.moving(); ++row) {
+    chosen_.choose(bodies.moving(), kNanosecondsToLook, executor, [&](std::size_t row) {
         const Real foreseen = dt * way_along_axes(motion + 4 * row + 2);
-        if (way_along_axes(displacement + 2 * row) > foreseen + bodies.inradius(row)) mark(row);
-    }
-    const auto look = [&](std::int32_t number, Real of_other) {
-        const auto row = static_cast<std::size_t>(number);
-        if (way_along_axes(displacement + 2 * row) + of_other > least * bodies.inradius(row)) mark(row);
+        return way_along_axes(displacement + 2 * row) > foreseen + bodies.inradius(row);
+    });
+    chosen_.for_each([&](std::int32_t row) { mark(static_cast<std::size_t>(row)); });
+    const auto comes_far = [&](std::size_t row, Real of_other) {
+        return way_along_axes(displacement + 2 * row) + of_other > least * bodies.inradius(row);
     };
-    for (const std::int32_t contact : manifolds.live()) {
-        const ManifoldList<Real>& list = manifolds.list_of(contact);
-        const std::size_t i = Manifolds<Real>::place_of(contact);
-        if (contact < 0) {  // an edge has one but where it faces a body; it tells who is pressed into it
-            const Real deepest = std::min(list.separation1[i], list.separation2[i]);
-            if (deepest < -least * list.thickness[i]) mark(static_cast<std::size_t>(list.a[i]));
-            continue;
-        }
+    const std::span<const std::int32_t> live = manifolds.live();
+    const auto is_swift = [&](std::size_t n) {
+        const ManifoldList<Real>& list = manifolds.list_of(live[n]);
+        const std::size_t i = Manifolds<Real>::place_of(live[n]);
+        if (live[n] < 0)  // an edge has one but where it faces a body; it tells who is pressed into it
+            return std::min(list.separation1[i], list.separation2[i]) < -least * list.thickness[i];
         const auto other = static_cast<std::size_t>(list.b[i]);
-        if (other < bodies.count && !bodies.is_immovable(other)) continue;
+        if (other < bodies.count && !bodies.is_immovable(other)) return false;
         Real of_other = dt * (std::fabs(bodies.velocity_x[other]) + std::fabs(bodies.velocity_y[other]));
         if (bodies.has_rotation)
             of_other += dt * std::fabs(bodies.angular_velocity[other]) * bodies.radius[other];
-        look(list.a[i], of_other);
-    }
+        return comes_far(static_cast<std::size_t>(list.a[i]), of_other);
+    };
+    chosen_.choose(live.size(), kNanosecondsToLook, executor, is_swift);
+    chosen_.for_each([&](std::int32_t n) {
+        const std::int32_t contact = live[static_cast<std::size_t>(n)];
+        mark(static_cast<std::size_t>(manifolds.list_of(contact).a[Manifolds<Real>::place_of(contact)]));
+    });
     edge_ways_.clear();
     for (const EdgeBody& body : in.world.edges.bodies) {
         const EdgePose& pose = in.flight.edges.pose_of(in.world.edges[body.first]);
@@ -124,8 +130,10 @@ void ShapeTunnelling<Real>::list_swift(const Inputs& in, const Manifolds<Real>& 
                                                std::fabs(pose.end_angle - pose.angle) * body.reach));
     }
     for (const EdgePair& pair : in.flight.edges.pairs()) {
-        look(pair.row, edge_ways_[static_cast<std::size_t>(in.world.edges[pair.edge].body)]);
-        if (begins_in_core(in, pair)) mark(static_cast<std::size_t>(pair.row));
+        const auto row = static_cast<std::size_t>(pair.row);
+        if (comes_far(row, edge_ways_[static_cast<std::size_t>(in.world.edges[pair.edge].body)]) ||
+            begins_in_core(in, pair))
+            mark(row);
     }
     for (const std::int32_t row : swift_) is_swift_[static_cast<std::size_t>(row)] = 0;
     std::sort(swift_.begin(), swift_.end());
@@ -147,9 +155,10 @@ bool ShapeTunnelling<Real>::begins_in_core(const Inputs& in, const EdgePair& pai
 
 template <class Real>
 void ShapeTunnelling<Real>::undo(WorldState<Real>& world, const StepFlight<Real>& flight,
-                                 const BodyRecords<Real>& records, const Manifolds<Real>& manifolds) {
+                                 const BodyRecords<Real>& records, const Manifolds<Real>& manifolds,
+                                 const Executor& executor) {
     const Inputs in{world, flight, records};
-    list_swift(in, manifolds);
+    list_swift(in, manifolds, executor);
     for (const std::int32_t row : swift_) look_at(in, static_cast<std::size_t>(row));
 }
 

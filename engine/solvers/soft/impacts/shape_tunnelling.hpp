@@ -7,6 +7,7 @@
 #include "solvers/manifolds/manifolds.hpp"
 #include "solvers/substeps/body_records.hpp"
 #include "solvers/substeps/step_terms.hpp"
+#include "state/chunked_list.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {
@@ -24,11 +25,11 @@ class ShapeTunnelling {
     /// farther than half its inradius while it had such a contact, or farther than its speed at the start
     /// tells.
     void undo(WorldState<Real>& world, const StepFlight<Real>& flight, const BodyRecords<Real>& records,
-              const Manifolds<Real>& manifolds);
+              const Manifolds<Real>& manifolds, const Executor& executor);
 
     std::size_t bytes() const {
-        return swift_.capacity() * sizeof(std::int32_t) + is_swift_.capacity() + near_.bytes() +
-               edge_ways_.capacity() * sizeof(Real);
+        return swift_.capacity() * sizeof(std::int32_t) + chosen_.bytes() + is_swift_.capacity() +
+               near_.bytes() + edge_ways_.capacity() * sizeof(Real);
     }
 
   private:
@@ -57,7 +58,7 @@ class ShapeTunnelling {
         Vec2 point, normal;              // m, in its frame: where; into it, of length 1
         ConvexShape<double> obstacle{};  // in its frame
     };
-    void list_swift(const Inputs& in, const Manifolds<Real>& manifolds);
+    void list_swift(const Inputs& in, const Manifolds<Real>& manifolds, const Executor& executor);
     void mark(std::size_t row);
     bool begins_in_core(const Inputs& in, const EdgePair& pair) const;
     void look_at(const Inputs& in, std::size_t row);
@@ -70,6 +71,7 @@ class ShapeTunnelling {
     void stop(const Inputs& in, const Way& way, const Passed& passed);
 
     std::vector<std::int32_t> swift_;     // rows that may have passed something
+    ChunkedList chosen_;                  // of rows, then of contacts, before they are marked
     std::vector<std::uint8_t> is_swift_;  // by row; all zero but within undo()
     std::vector<Real> edge_ways_;         // m, of what edges belong to, in the step
     Column<std::int32_t> near_;
