@@ -1,5 +1,6 @@
 #include "broadphase/candidates.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "math/vec2_math.hpp"
@@ -88,8 +89,8 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
     if (rule_ == MarginRule::own && is_valid_) {
         strays_.assign(displaced.begin(), displaced.end());
         slim_.add_turned(bodies, end.s, strays_);
-        if (may_renew(strays_.size() + fresh_rows_.size(), bodies.moving())) {
-            add_fresh_strays();
+        if (may_renew(strays_.size() + names_.fresh_count(), bodies.moving())) {
+            names_.take_fresh(strays_);
             renew_margins(bodies, end, gravity);
             return;
         }
@@ -113,7 +114,7 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
         choose_own_margins(bodies, end, gravity, shapes, executor);
     else
         choose_margins(bodies, end, gravity, fastest);
-    if (is_renamed()) forget_names();
+    if (!names_.empty()) names_.forget();
     grid_.build({bodies.count, bodies.position_x.data(), bodies.position_y.data(), reach_.data(),
                  bodies.has_flags ? bodies.flags.data() : nullptr, bodies.standing, is_standing_known_},
                 kernels, executor);
@@ -130,8 +131,28 @@ void Candidates<Real>::update(const Bodies<Real>& bodies, const FlightClock& end
 }
 
 template <class Real>
+void Candidates<Real>::follow_rows(const Bodies<Real>& bodies, std::span<const std::int32_t> now,
+                                   std::span<const std::uint8_t> is_elsewhere) {
+    is_standing_known_ = false;
+    renewed_count_ += names_.follow(bodies.count, now, is_elsewhere);
+    for (Column<Real>* column : {&first_reach_, &drift_x_, &drift_y_, &flow_x_, &flow_y_, &rate_})
+        names_.move(*column, [](std::size_t) { return Real(0); });
+    names_.move(own_x_, [&](std::size_t row) { return bodies.position_x[row]; });
+    names_.move(own_y_, [&](std::size_t row) { return bodies.position_y[row]; });
+    names_.move(reach_, [&](std::size_t row) { return bodies.radius[row]; });
+    std::erase_if(added_pairs_, [&](Pair& pair) {
+        const std::int32_t a = now[static_cast<std::size_t>(pair.a)],
+                           b = now[static_cast<std::size_t>(pair.b)];
+        pair = {std::min(a, b), std::max(a, b)};
+        return pair.a < 0 || is_elsewhere[static_cast<std::size_t>(a)] ||
+               is_elsewhere[static_cast<std::size_t>(b)];
+    });
+    std::sort(added_pairs_.begin(), added_pairs_.end());
+}
+
+template <class Real>
 std::size_t Candidates<Real>::bytes() const {
-    return grid_.bytes() + stray_rows_.bytes() + bytes_of_names() + reach_.bytes() + own_x_.bytes() +
+    return grid_.bytes() + stray_rows_.bytes() + names_.bytes() + reach_.bytes() + own_x_.bytes() +
            own_y_.bytes() + first_reach_.bytes() + drift_x_.bytes() + drift_y_.bytes() + flow_x_.bytes() +
            flow_y_.bytes() + rate_.bytes() + flow_.bytes() + slim_.bytes() +
            (new_pairs_.capacity() + added_pairs_.capacity() + spare_pairs_.capacity()) * sizeof(Pair);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "broadphase/mean_flow.hpp"
+#include "broadphase/row_names.hpp"
 #include "broadphase/slim_bodies.hpp"
 #include "broadphase/uniform_grid.hpp"
 #include "effects/flight.hpp"
@@ -59,7 +60,7 @@ class Candidates {
     /// @param count  bodies, but for standing ones
     bool may_follow(std::size_t changed, std::size_t count) const {
         return rule_ == MarginRule::own && is_valid_ && changed * count <= kMostComparisons &&
-               may_renew(changed, count) && loose_rows_.size() + changed <= kMostLoose;
+               may_renew(changed, count) && names_.loose_count() + changed <= kMostLoose;
     }
 
     /// Finds the pairs anew if they are void or if too many bodies leave their margins on the flights that
@@ -121,10 +122,10 @@ class Candidates {
         return std::sqrt(x * x + y * y) + static_cast<double>(reach_[row] - first_reach_[row]);
     }
     /// Where a row was when the pairs were found anew [m]; not of one that came since.
-    Real first_x(std::size_t row) const { return grid_.built_x()[name_of(row)]; }
-    Real first_y(std::size_t row) const { return grid_.built_y()[name_of(row)]; }
+    Real first_x(std::size_t row) const { return grid_.built_x()[names_.name_of(row)]; }
+    Real first_y(std::size_t row) const { return grid_.built_y()[names_.name_of(row)]; }
     /// Whether a body came, or was put elsewhere, since the pairs were found anew.
-    bool is_loose(std::size_t row) const { return !loose_rows_.empty() && is_loose_[row]; }
+    bool is_loose(std::size_t row) const { return names_.is_loose(row); }
     /// How far places may have drifted since then [m].
     double largest_drift_so_far() const { return largest_drift() - drift_left_; }
     /// Rule `own`: rows of all bodies whose margins are within `reach` of a place, and some besides.
@@ -170,9 +171,11 @@ class Candidates {
     /// To be called when rows were sorted.
     void note_sorted_rows();
     /// Row of each place in the order of the cells; rows that came since the pairs were found are the last.
-    const std::int32_t* order() const { return is_renamed() ? sorted_rows_.data() : grid_.order().data(); }
+    const std::int32_t* order() const {
+        return names_.empty() ? grid_.order().data() : names_.sorted_rows().data();
+    }
     /// To be called before `order` where rows have changed.
-    void prepare_order(std::size_t count);
+    void prepare_order(std::size_t count) { names_.sort(grid_.order(), count); }
 
     std::int64_t rebuild_count() const { return rebuild_count_; }
     std::size_t bytes() const;
@@ -184,8 +187,8 @@ class Candidates {
         archive(self.new_pairs_, self.added_pairs_, self.renewed_count_, self.farthest_, self.steepness_);
         archive(self.drift_left_, self.largest_reach_, self.flow_, self.since_flow_, self.may_flow_);
         archive(self.flows_, self.flow_is_local_, self.failed_follows_, self.follows_left_out_, self.radii_);
-        archive(self.row_of_name_, self.name_of_, self.is_loose_, self.loose_rows_, self.fresh_rows_);
-        archive(self.is_valid_, self.radii_are_known_, self.rebuild_count_, self.rebuilds_until_sorted_);
+        archive(self.names_, self.is_valid_, self.radii_are_known_, self.rebuild_count_,
+                self.rebuilds_until_sorted_);
         archive(self.is_standing_known_, self.largest_standing_reach_, self.largest_drift_);
         archive(self.slim_);
     }
@@ -204,19 +207,13 @@ class Candidates {
     /// Bodies that come in a step are compared with all others, and later, while the pairs last, with all
     /// that leave their margins: at most so many comparisons and bodies.
     static constexpr std::size_t kMostComparisons = 2'000'000, kMostLoose = 2048;
-    static constexpr std::int32_t kNoName = -1;
     /// Bodies that are near each other now were at most this many times as far apart when they drifted.
     static constexpr double kSteepnessThen = 1.5;
 
-    /// Rows have changed since the grid was built: it knows bodies by the rows they had then, their names.
-    bool is_renamed() const { return !row_of_name_.empty(); }
-    std::size_t name_of(std::size_t row) const {
-        return is_renamed() ? static_cast<std::size_t>(name_of_[row]) : row;
+    /// As find_near, of today's rows, with all that the grid does not know.
+    std::size_t find_rows_near(Vec2 place, double reach, Column<std::int32_t>& out) const {
+        return names_.to_rows(out, find_near(place, reach, out));
     }
-    std::size_t find_rows_near(Vec2 place, double reach, Column<std::int32_t>& out) const;
-    std::size_t bytes_of_names() const;
-    void add_fresh_strays();
-    void forget_names();
 
     /// Rows whose margins are found with the pairs: all, unless those of standing bodies are known.
     std::size_t rows_to_find(const Bodies<Real>& bodies) const {
@@ -267,11 +264,7 @@ class Candidates {
     Column<Real> drift_x_, drift_y_;            // m, way of a place up to where it began to follow this flow
     Column<Real> flow_x_, flow_y_, rate_;       // m/s, velocity of a place; 1/s, share of reach it loses
     std::vector<Pair> new_pairs_, added_pairs_, spare_pairs_;
-    // Rows that changed since the grid was built; empty if none did.
-    std::vector<std::int32_t> row_of_name_, name_of_;    // negative: gone; came since
-    std::vector<std::uint8_t> is_loose_;                 // a row
-    std::vector<std::int32_t> loose_rows_, fresh_rows_;  // of the fresh ones pairs are yet to be found
-    std::vector<std::int32_t> old_rows_, sorted_rows_;
+    RowNames names_;
     std::size_t renewed_count_ = 0;
     double farthest_ = 0;   // m, most that a renewed margin reaches beyond the first one, drift aside
     double steepness_ = 0;  // no unit: difference of the drifts of two places over their distance, at most

@@ -183,7 +183,7 @@ bool Candidates<Real>::follow_flow(const Bodies<Real>& bodies, const FlightClock
     strays_.clear();
     stray_rows_.for_each_below(bodies.count, [&](std::int32_t row) { strays_.push_back(row); });
     slim_.add_turned(bodies, end.s, strays_);
-    add_fresh_strays();
+    names_.take_fresh(strays_);
     if (!may_renew(strays_.size(), bodies.count)) return false;
     failed_follows_ = 0;
     renew_margins(bodies, end, gravity);
