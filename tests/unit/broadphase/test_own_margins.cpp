@@ -50,9 +50,11 @@ struct Swarm {
             static_cast<double>(bodies.position_x[row]) + t * static_cast<double>(bodies.velocity_x[row]),
             static_cast<double>(bodies.position_y[row]) + t * static_cast<double>(bodies.velocity_y[row])};
     }
-    /// Whether two discs touch at some moment of [0, h].
-    bool meet(std::size_t a, std::size_t b, double h) const {
-        const Vec2 from = place(b, 0) - place(a, 0), to = place(b, h) - place(a, h), way = to - from;
+    /// Whether two discs touch at some moment of a step.
+    /// @param starts, ends  places of all discs at its start and end
+    bool meet(std::size_t a, std::size_t b, const std::vector<Vec2>& starts,
+              const std::vector<Vec2>& ends) const {
+        const Vec2 from = starts[b] - starts[a], to = ends[b] - ends[a], way = to - from;
         const double length = dot(way, way);
         const double t = length > 0 ? std::clamp(-dot(from, way) / length, 0.0, 1.0) : 0;
         const Vec2 nearest = from + t * way;
@@ -105,18 +107,20 @@ Counts fly(Swarm<Real>& swarm, const std::function<Vec2(Vec2, int)>& flow) {
             CHECK(known.insert({pair.a, pair.b}).second);
             ++counts.added;
         }
+        std::vector<Vec2> starts, ends;
+        for (std::size_t row = 0; row < kCount; ++row)
+            starts.push_back(swarm.place(row, 0)), ends.push_back(swarm.place(row, kStep));
         std::size_t missed = 0;
         for (std::size_t a = 0; a < kCount; ++a)
             for (std::size_t b = a + 1; b < kCount; ++b) {
-                if (!swarm.meet(a, b, kStep)) continue;
+                if (!swarm.meet(a, b, starts, ends)) continue;
                 ++counts.meetings;
                 missed += known.count({static_cast<std::int32_t>(a), static_cast<std::int32_t>(b)}) == 0;
             }
         CHECK(missed == 0);
         for (std::size_t row = 0; row < kCount; ++row) {
-            const Vec2 to = swarm.place(row, kStep);
-            bodies.position_x[row] = static_cast<Real>(to.x),
-            bodies.position_y[row] = static_cast<Real>(to.y);
+            bodies.position_x[row] = static_cast<Real>(ends[row].x),
+            bodies.position_y[row] = static_cast<Real>(ends[row].y);
             if (swarm.uniform(0, 1) < 0.02) swarm.kick(row);
         }
     }

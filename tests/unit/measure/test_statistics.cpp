@@ -1,4 +1,5 @@
 #include "measure/statistics.hpp"
+#include "support/effort.hpp"
 
 #include <doctest/doctest.h>
 
@@ -30,7 +31,7 @@ TEST_SUITE("measure/statistics") {
         std::mt19937 random(5);
         std::lognormal_distribution<double> times(0, 0.3);  // skewed, as times are; its median is 1
         int held = 0;
-        constexpr int kExperiments = 400;
+        const int kExperiments = carom::test::scaled(400, 100);
         for (int i = 0; i < kExperiments; ++i) {
             std::vector<double> values(15);
             for (double& value : values) value = times(random);

@@ -2,6 +2,7 @@
 
 #include "math/angle.hpp"
 #include "shapes/convex_geometry.hpp"
+#include "support/effort.hpp"
 
 #include <doctest/doctest.h>
 
@@ -101,7 +102,7 @@ TEST_CASE("a capsule is a box and two half discs") {
 
 TEST_CASE("area, centroid and moment of rounded polygons are those of a boundary with 200,000 corners") {
     std::mt19937_64 random(7);
-    for (int round = 0; round < 60; ++round) {
+    for (int round = 0; round < carom::test::scaled(60, 6); ++round) {
         CAPTURE(round);
         const Shape shape = random_polygon(random);
         check_properties(shape, integrate(boundary_of(outline_of(shape), 200000)), 2e-9);
