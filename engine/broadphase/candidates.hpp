@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "broadphase/mean_flow.hpp"
+#include "broadphase/moving_places.hpp"
 #include "broadphase/row_names.hpp"
 #include "broadphase/slim_bodies.hpp"
 #include "broadphase/uniform_grid.hpp"
@@ -13,7 +13,6 @@
 #include "isa/kernel_table.hpp"
 #include "parallel/executor.hpp"
 #include "state/bodies.hpp"
-#include "state/chunked_list.hpp"
 #include "state/radii.hpp"
 
 namespace carom {
@@ -89,7 +88,7 @@ class Candidates {
 
     /// Rule `own`: how far a body at `place` is out of its margin at the end of the step [m]; 0 if it is not.
     double outside_of_margin(std::size_t row, double radius, Vec2 at) const {
-        const Vec2 way = at - Vec2{own_x_[row], own_y_[row]};
+        const Vec2 way = at - places_.place(row);
         return std::fmax(0, std::sqrt(length_squared(way)) - (static_cast<double>(reach_[row]) - radius));
     }
     /// Rule `own`: rows of all bodies within their margins that can touch, at the end of the step, one of
@@ -117,8 +116,8 @@ class Candidates {
     /// How far a body's place and reach go beyond those it had first, but for what it drifted [m].
     double farther_than_first(std::size_t row) const {
         if (is_loose(row)) return HUGE_VAL;
-        const Vec2 drift = drift_of(row);
-        const double x = own_x_[row] - drift.x - first_x(row), y = own_y_[row] - drift.y - first_y(row);
+        const Vec2 from = places_.place(row) - places_.drift_of(row);
+        const double x = from.x - first_x(row), y = from.y - first_y(row);
         return std::sqrt(x * x + y * y) + static_cast<double>(reach_[row] - first_reach_[row]);
     }
     /// Where a row was when the pairs were found anew [m]; not of one that came since.
@@ -126,21 +125,19 @@ class Candidates {
     Real first_y(std::size_t row) const { return grid_.built_y()[names_.name_of(row)]; }
     /// Whether a body came, or was put elsewhere, since the pairs were found anew.
     bool is_loose(std::size_t row) const { return names_.is_loose(row); }
-    /// How far places may have drifted since then [m].
-    double largest_drift_so_far() const { return largest_drift() - drift_left_; }
     /// Rule `own`: rows of all bodies whose margins are within `reach` of a place, and some besides.
     /// @return how many rows are in `out`.
     std::size_t find_margins_near(Vec2 place, double reach, Column<std::int32_t>& out) const {
-        return find_rows_near(place, reach + farthest_ + largest_drift_so_far(), out);
+        return find_rows_near(place, reach + farthest_ + places_.largest_drift_so_far(), out);
     }
 
     /// How far places, built_x and built_y, may go with the mean flow of the bodies before the pairs are void
     /// [m]. Lists of what a body reaches besides other bodies, as walls and edges, have to look farther by
     /// that.
-    double largest_drift() const { return rule_ == MarginRule::own ? largest_drift_ : 0; }
+    double largest_drift() const { return places_.largest_drift(); }
 
     /// Whether a good part of the bodies fly so fast together that places may go farther than they else do.
-    bool flies_together() const { return flows_ && largest_drift_ > kLargestDrift * radii_.usual; }
+    bool flies_together() const { return places_.flies_together(radii_.usual); }
 
     /// Rule `own`: moves the places with the mean flow. To be called first in every step of length dt [s].
     /// A body that has used up its margin by that has a reach of its radius; it is to be taken for a stray.
@@ -154,8 +151,8 @@ class Candidates {
     bool is_valid() const { return is_valid_; }
     /// m, what a body's margin is around, at the end of the step: where it got it, or where the bodies
     /// around it have gone since; if valid
-    const Column<Real>& built_x() const { return rule_ == MarginRule::own ? own_x_ : grid_.built_x(); }
-    const Column<Real>& built_y() const { return rule_ == MarginRule::own ? own_y_ : grid_.built_y(); }
+    const Column<Real>& built_x() const { return rule_ == MarginRule::own ? places_.x() : grid_.built_x(); }
+    const Column<Real>& built_y() const { return rule_ == MarginRule::own ? places_.y() : grid_.built_y(); }
     const Column<Real>& reach() const { return reach_; }  ///< m, radius plus margin
     const UniformGrid<Real>& grid() const { return grid_; }
     /// The radii of the discs [m], as they were when the pairs were found last.
@@ -182,23 +179,17 @@ class Candidates {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.grid_, self.strays_, self.overshoot_, self.reach_, self.own_x_, self.own_y_);
-        archive(self.first_reach_, self.drift_x_, self.drift_y_, self.flow_x_, self.flow_y_, self.rate_);
-        archive(self.new_pairs_, self.added_pairs_, self.renewed_count_, self.farthest_, self.steepness_);
-        archive(self.drift_left_, self.largest_reach_, self.flow_, self.since_flow_, self.may_flow_);
-        archive(self.flows_, self.flow_is_local_, self.failed_follows_, self.follows_left_out_, self.radii_);
+        archive(self.grid_, self.strays_, self.overshoot_, self.reach_, self.first_reach_, self.places_);
+        archive(self.new_pairs_, self.added_pairs_, self.renewed_count_, self.farthest_, self.radii_);
         archive(self.names_, self.is_valid_, self.radii_are_known_, self.rebuild_count_,
                 self.rebuilds_until_sorted_);
-        archive(self.is_standing_known_, self.largest_standing_reach_, self.largest_drift_);
-        archive(self.slim_);
+        archive(self.is_standing_known_, self.largest_standing_reach_, self.slim_);
     }
     /// To be called after the state was read.
     void use(const KernelTable<Real>& kernels) { grid_.use(kernels); }
 
   private:
-    static constexpr double kRoundingUp =
-        1 + 1e-6;                               // factor on a reach: it and the place are rounded to Real
-    static constexpr double kLargestDrift = 6;  // usual radii that a place may drift by, if few are faster
+    static constexpr double kRoundingUp = 1 + 1e-6;  // factor on a reach: it and the place are rounded
     /// Rule `own`: pairs are found anew when one body in this many has got a new margin.
     static constexpr std::size_t kBodiesPerRenewal = 8;
     /// A body's own margin is at most this many of the largest radius, unless 1.25 steps of it are more.
@@ -207,8 +198,6 @@ class Candidates {
     /// Bodies that come in a step are compared with all others, and later, while the pairs last, with all
     /// that leave their margins: at most so many comparisons and bodies.
     static constexpr std::size_t kMostComparisons = 2'000'000, kMostLoose = 2048;
-    /// Bodies that are near each other now were at most this many times as far apart when they drifted.
-    static constexpr double kSteepnessThen = 1.5;
 
     /// As find_near, of today's rows, with all that the grid does not know.
     std::size_t find_rows_near(Vec2 place, double reach, Column<std::int32_t>& out) const {
@@ -228,54 +217,33 @@ class Candidates {
     Real own_reach(const Bodies<Real>& bodies, std::size_t row, const FlightClock& end, double fall) const;
     void choose_own_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
                             const ShapeStore<Real>* shapes, const Executor& executor);
-    void measure_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity, bool is_new);
-    void set_velocity(std::size_t row, const MeanFlow::At& flow);
-    void note_reach(double reach);
-    MeanFlow::At flow_here(std::size_t row, Vec2 place) const;
-    double drift_with_flow(const Bodies<Real>& bodies, double dt) const;
-    void begin_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
-                    const Executor& executor);
     bool follow_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
                      const Executor& executor);
     void renew_margins(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity);
     void add_pairs_of(const Bodies<Real>& bodies, std::int32_t row);
     void set_rectangle(const Bodies<Real>& bodies, std::size_t row, double dt) {
         const auto reach = static_cast<double>(reach_[row]);
-        slim_.set(bodies, row, {own_x_[row], own_y_[row]}, reach - static_cast<double>(bodies.radius[row]),
-                  reach, dt);
+        slim_.set(bodies, row, places_.place(row), reach - static_cast<double>(bodies.radius[row]), reach,
+                  dt);
     }
-    bool has_spread() const { return !slim_.empty() && kSteepnessThen * steepness_ > slim_.spread(); }
+    /// Share of their distance by which places may come nearer by their drifts.
+    double most_spread() const { return slim_.empty() ? HUGE_VAL : slim_.spread(); }
     bool was_pair(std::size_t a, std::size_t b) const;
     bool is_pair(std::size_t a, std::size_t b) const;
-
-    /// How far a place has gone with the flow since the pairs were found anew [m].
-    Vec2 drift_of(std::size_t row) const {
-        return {drift_x_[row] + since_flow_ * flow_x_[row], drift_y_[row] + since_flow_ * flow_y_[row]};
-    }
 
     MarginRule rule_;
     UniformGrid<Real> grid_;
     std::vector<std::int32_t> strays_;
-    ChunkedList stray_rows_;
     double overshoot_ = 0;
     Column<Real> reach_;
-    // The columns of rule `own` hold what has happened since the pairs were found anew.
-    Column<Real> own_x_, own_y_, first_reach_;  // m
-    Column<Real> drift_x_, drift_y_;            // m, way of a place up to where it began to follow this flow
-    Column<Real> flow_x_, flow_y_, rate_;       // m/s, velocity of a place; 1/s, share of reach it loses
+    // Of rule `own`: what has happened since the pairs were found anew.
+    MovingPlaces<Real> places_;
+    Column<Real> first_reach_;  // m
     std::vector<Pair> new_pairs_, added_pairs_, spare_pairs_;
     RowNames names_;
     std::size_t renewed_count_ = 0;
-    double farthest_ = 0;   // m, most that a renewed margin reaches beyond the first one, drift aside
-    double steepness_ = 0;  // no unit: difference of the drifts of two places over their distance, at most
-    double largest_drift_ = 0;  // m, way that places may go with the flow
-    double drift_left_ = 0;     // m, way that places may still drift before the pairs are void
-    double largest_reach_ = 0;  // m, of renewed margins, and of all when the flow was followed last
-    MeanFlow flow_;
-    double since_flow_ = 0;  // s, time for which places have followed this flow
-    bool may_flow_ = false, flows_ = false, flow_is_local_ = true;
-    // Attempts to follow the flow that failed in a row, and occasions left out since the last attempt.
-    int failed_follows_ = 0, follows_left_out_ = 0;
+    /// m, most that a renewed margin reaches beyond the first one, drift aside
+    double farthest_ = 0;
     SlimBodies<Real> slim_;  // rule `own`
     Column<std::int32_t> near_;
     Radii radii_;

@@ -1,16 +1,10 @@
-// Places that move with the mean flow (MarginRule::own): a pile that heaves or turns carries its bodies out
-// of their margins together, and the same bodies stay near each other. So a body's place moves at the
-// velocity of the bodies around it, its margin is for what it does beside that, and pairs last longer.
-//
-// Let two bodies be at places p and reach R each, and be no candidates: |p_j - p_i| >= R_i + R_j. If both
-// places follow a field that brings points nearer by less than a share c of their distance, the same holds
-// for the new places with (1 - c) R: the pairs stay complete while bodies stay within the margins that are
-// left of these. docs/decisions/0016-moving-places.md has the measurements.
+#include "broadphase/moving_places.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "broadphase/candidates.hpp"
+#include "math/vec2_math.hpp"
 
 namespace carom {
 namespace {
@@ -55,11 +49,8 @@ bool takes_part(std::uint8_t flags) {
 
 /// Mean velocities, and the mean of how far bodies will be from their places at the end of the step.
 template <class Real>
-void Candidates<Real>::measure_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
-                                    bool is_new) {
-    if (is_new)  // so large that the usual margins are within it
-        flow_.lay_out(bodies.count, bodies.position_x.data(), bodies.position_y.data(),
-                      kCellInReaches * (1 + kLargestOwnMargin) * radii_.largest);
+void MovingPlaces<Real>::measure_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
+                                      bool is_new) {
     flow_.begin();
     const Vec2 fall = end.q * gravity;
     for (std::size_t row = 0; row < bodies.count; ++row) {
@@ -70,8 +61,7 @@ void Candidates<Real>::measure_flow(const Bodies<Real>& bodies, const FlightCloc
             flow_.add(x, {}, v);
             continue;
         }
-        const Vec2 place{own_x_[row], own_y_[row]};
-        flow_.add(place, x + end.s * v + fall - place, v);
+        flow_.add(place(row), x + end.s * v + fall - place(row), v);
     }
     flow_.finish();
 }
@@ -79,7 +69,7 @@ void Candidates<Real>::measure_flow(const Bodies<Real>& bodies, const FlightCloc
 /// The velocity of a row's place, and what its reach loses by that. Of how far it has drifted the part since
 /// the flow was measured is left to drift_of.
 template <class Real>
-void Candidates<Real>::set_velocity(std::size_t row, const MeanFlow::At& flow) {
+void MovingPlaces<Real>::set_velocity(std::size_t row, const MeanFlow::At& flow) {
     drift_x_[row] += static_cast<Real>(since_flow_) * (flow_x_[row] - static_cast<Real>(flow.velocity.x));
     drift_y_[row] += static_cast<Real>(since_flow_) * (flow_y_[row] - static_cast<Real>(flow.velocity.y));
     flow_x_[row] = static_cast<Real>(flow.velocity.x), flow_y_[row] = static_cast<Real>(flow.velocity.y);
@@ -89,7 +79,7 @@ void Candidates<Real>::set_velocity(std::size_t row, const MeanFlow::At& flow) {
 /// The flow around a body says nothing of bodies farther away than a cell. If a reach is as large as that,
 /// all reaches shrink at the rate of the place where the flow closes fastest.
 template <class Real>
-void Candidates<Real>::note_reach(double reach) {
+void MovingPlaces<Real>::note_reach(double reach) {
     largest_reach_ = std::max(largest_reach_, reach);
     if (!flows_ || !flow_is_local_ || flow_.side() >= kCellInReaches * reach) return;
     flow_is_local_ = false;
@@ -98,33 +88,30 @@ void Candidates<Real>::note_reach(double reach) {
 
 /// The flow at a place that bodies around it have reached by following it.
 template <class Real>
-MeanFlow::At Candidates<Real>::flow_here(std::size_t row, Vec2 place) const {
+MeanFlow::At MovingPlaces<Real>::flow_here(std::size_t row, Vec2 at) const {
     // The fields are over where places were when they were measured: each guess is better than the one before
     // by the stretch.
-    Vec2 before = place - since_flow_ * Vec2{flow_x_[row], flow_y_[row]};
+    Vec2 before = at - since_flow_ * velocity(row);
     for (int guess = 0; guess < kGuesses; ++guess) {
         const MeanFlow::At flow = flow_.at(before);
-        before = place - flow.jump - since_flow_ * flow.velocity;
+        before = at - flow.jump - since_flow_ * flow.velocity;
     }
     return flow_.at(before);
 }
 
-/// To be called at the start of a step, before anything is asked about it.
 template <class Real>
-void Candidates<Real>::move_places(const Bodies<Real>& bodies, double dt, const Executor& executor) {
-    if (rule_ != MarginRule::own || !is_valid_ || !flows_) return;
+bool MovingPlaces<Real>::move(const Bodies<Real>& bodies, double dt, double most_spread,
+                              Column<Real>& reach_of_row, const Executor& executor) {
+    if (!flows_) return true;
     const MeanFlow::Most& most = flow_.most();
     drift_left_ -= dt * most.speed, steepness_ += dt * most.gradient_of_velocity;
     since_flow_ += dt;
-    if (drift_left_ < 0 || since_flow_ * most.rate > kLargestStretch || has_spread()) {
-        is_valid_ = false;
-        return;
-    }
+    if (drift_left_ < 0 || since_flow_ * most.rate > kLargestStretch || spread() > most_spread) return false;
     const auto h = static_cast<Real>(dt), rounding = static_cast<Real>(kRounding<Real>);
-    Real *const x = own_x_.data(), *const y = own_y_.data(), *const reach = reach_.data();
+    Real *const x = x_.data(), *const y = y_.data(), *const reach = reach_of_row.data();
     const Real *const flow_x = flow_x_.data(), *const flow_y = flow_y_.data(), *const rate = rate_.data();
     const Real *const radius = bodies.radius.data(), uniform_radius = bodies.radius.uniform_value();
-    executor.for_each_chunk(reach_.size(), kRowsPerChunk, kNanosecondsToMove,
+    executor.for_each_chunk(reach_of_row.size(), kRowsPerChunk, kNanosecondsToMove,
                             [&](std::size_t, std::size_t first, std::size_t last) {
                                 // One column at a time: compilers then use their widest registers.
                                 for (std::size_t row = first; row < last; ++row) x[row] += h * flow_x[row];
@@ -135,65 +122,78 @@ void Candidates<Real>::move_places(const Bodies<Real>& bodies, double dt, const 
                                     reach[row] = std::max(left, radius ? radius[row] : uniform_radius);
                                 }
                             });
+    return true;
 }
 
-/// All places jump to where their bodies are on the whole, and go on with the flow of now.
 template <class Real>
-bool Candidates<Real>::follow_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
-                                   const Executor& executor) {
-    // After failures most occasions are left out: bodies that whirl, each on its own, have no flow.
+bool MovingPlaces<Real>::follow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
+                                double most_spread, Column<Real>& reach_of_row,
+                                std::vector<std::int32_t>& strays, const Executor& executor) {
+    // Bodies that whirl, each on its own, have no flow.
     if (!may_flow_ || ++follows_left_out_ < std::min(failed_follows_, kMostLeftOut)) return false;
     follows_left_out_ = 0, ++failed_follows_;
     measure_flow(bodies, end, gravity, false);
     const MeanFlow::Most& most = flow_.most();
     drift_left_ -= most.jump, steepness_ += most.gradient;
-    if (drift_left_ < 0 || most.stretch > kLargestStretch || has_spread()) return false;
+    if (drift_left_ < 0 || most.stretch > kLargestStretch || spread() > most_spread) return false;
     flows_ = true;
     const double since_flow = std::exchange(since_flow_, 0);
     flow_is_local_ = flow_.side() >= kCellInReaches * largest_reach_;
     const Vec2 fall = end.q * gravity;
     // Whether the body is left outside of its margin.
-    const auto follow = [&](std::size_t row) {
+    const auto jump = [&](std::size_t row) {
         if (!takes_part(bodies.flags_of(row))) return false;
-        const MeanFlow::At flow = flow_.at({own_x_[row], own_y_[row]});
+        const MeanFlow::At flow = flow_.at(place(row));
         const auto since = static_cast<Real>(since_flow);
         drift_x_[row] += since * flow_x_[row] + static_cast<Real>(flow.jump.x);
         drift_y_[row] += since * flow_y_[row] + static_cast<Real>(flow.jump.y);
         set_velocity(row, flow);
-        const double x = own_x_[row] + flow.jump.x, y = own_y_[row] + flow.jump.y;
+        const double x = x_[row] + flow.jump.x, y = y_[row] + flow.jump.y;
         const double stretch = flow_is_local_ ? flow.stretch : most.stretch;
-        const double reach = (1 - stretch - kRounding<Real>)*static_cast<double>(reach_[row]) -
+        const double reach = (1 - stretch - kRounding<Real>)*static_cast<double>(reach_of_row[row]) -
                              kRounding<Real> * (std::fabs(x) + std::fabs(y));
         const double off_x = bodies.position_x[row] + end.s * bodies.velocity_x[row] + fall.x - x,
                      off_y = bodies.position_y[row] + end.s * bodies.velocity_y[row] + fall.y - y;
-        own_x_[row] = static_cast<Real>(x), own_y_[row] = static_cast<Real>(y);
-        reach_[row] = static_cast<Real>(reach);
+        x_[row] = static_cast<Real>(x), y_[row] = static_cast<Real>(y);
+        reach_of_row[row] = static_cast<Real>(reach);
         const double margin = reach - static_cast<double>(bodies.radius[row]);
         return !(margin > 0) || off_x * off_x + off_y * off_y > margin * margin;
     };
     stray_rows_.prepare(bodies.count, kRowsPerChunk);
     executor.for_each_chunk(bodies.count, kRowsPerChunk, kNanosecondsToFollow,
                             [&](std::size_t chunk, std::size_t first, std::size_t last) {
-                                std::int32_t* strays = stray_rows_.part(chunk);
+                                std::int32_t* part = stray_rows_.part(chunk);
                                 std::size_t count = 0;
                                 for (std::size_t row = first; row < last; ++row)
-                                    if (follow(row)) strays[count++] = static_cast<std::int32_t>(row);
+                                    if (jump(row)) part[count++] = static_cast<std::int32_t>(row);
                                 stray_rows_.set_count(chunk, count);
                             });
-    strays_.clear();
-    stray_rows_.for_each_below(bodies.count, [&](std::int32_t row) { strays_.push_back(row); });
-    slim_.add_turned(bodies, end.s, strays_);
-    names_.take_fresh(strays_);
-    if (!may_renew(strays_.size(), bodies.count)) return false;
-    failed_follows_ = 0;
-    renew_margins(bodies, end, gravity);
+    strays.clear();
+    stray_rows_.for_each_below(bodies.count, [&](std::int32_t row) { strays.push_back(row); });
     return true;
+}
+
+template <class Real>
+void MovingPlaces<Real>::put(std::size_t row, Vec2 at, double dt) {
+    if (flows_) {
+        set_velocity(row, flow_here(row, at + dt * velocity(row)));
+        at += dt * velocity(row);
+    }
+    x_[row] = static_cast<Real>(at.x), y_[row] = static_cast<Real>(at.y);
+}
+
+template <class Real>
+void MovingPlaces<Real>::follow_rows(const RowNames& names, const Bodies<Real>& bodies) {
+    for (Column<Real>* column : {&drift_x_, &drift_y_, &flow_x_, &flow_y_, &rate_})
+        names.move(*column, [](std::size_t) { return Real(0); });
+    names.move(x_, [&](std::size_t row) { return bodies.position_x[row]; });
+    names.move(y_, [&](std::size_t row) { return bodies.position_y[row]; });
 }
 
 /// How far places may go with the flow that was measured [m].
 template <class Real>
-double Candidates<Real>::drift_with_flow(const Bodies<Real>& bodies, double dt) const {
-    const double usual = kLargestDrift * radii_.usual;
+double MovingPlaces<Real>::drift_with_flow(const Bodies<Real>& bodies, double usual_radius, double dt) const {
+    const double usual = kLargestDrift * usual_radius;
     const double way = dt * flow_.most().speed, swift = usual / (kFewestFlowSteps * dt);  // m, m/s
     if (kFewestFlowSteps * way < usual || dt * flow_.most().rate >= kLargestStretch) return usual;
     std::size_t count = 0;
@@ -205,18 +205,21 @@ double Candidates<Real>::drift_with_flow(const Bodies<Real>& bodies, double dt) 
     return count * kBodiesPerSwift >= bodies.count ? kStepsOfSwiftFlow * way : usual;
 }
 
-/// Measures the flow for pairs that are to be found anew, and sets the places to drift with it from now on.
 template <class Real>
-void Candidates<Real>::begin_flow(const Bodies<Real>& bodies, const FlightClock& end, Vec2 gravity,
-                                  const Executor& executor) {
-    for (Column<Real>* column : {&drift_x_, &drift_y_, &flow_x_, &flow_y_, &rate_}) {
+void MovingPlaces<Real>::begin(const Bodies<Real>& bodies, std::size_t rows, Lengths usual,
+                               const FlightClock& end, Vec2 gravity, const Executor& executor) {
+    for (Column<Real>* column : {&x_, &y_, &drift_x_, &drift_y_, &flow_x_, &flow_y_, &rate_})
         column->resize(bodies.count);
-        std::fill_n(column->begin(), rows_to_find(bodies), Real(0));
-    }
-    steepness_ = since_flow_ = 0, drift_left_ = largest_drift_ = kLargestDrift * radii_.usual;
+    std::copy_n(bodies.position_x.data(), rows, x_.data());
+    std::copy_n(bodies.position_y.data(), rows, y_.data());
+    for (Column<Real>* column : {&drift_x_, &drift_y_, &flow_x_, &flow_y_, &rate_})
+        std::fill_n(column->begin(), rows, Real(0));
+    steepness_ = since_flow_ = 0, drift_left_ = largest_drift_ = kLargestDrift * usual.radius;
     may_flow_ = flows_ = false, flow_is_local_ = true, largest_reach_ = 0;
-    if (!(radii_.largest > 0)) return;  // no discs
-    if (bodies.standing > 0) return;    // they are strays in any flow, as below
+    if (!(usual.reach > 0)) return;   // no discs
+    if (bodies.standing > 0) return;  // they are strays in any flow, as below
+    flow_.lay_out(bodies.count, bodies.position_x.data(), bodies.position_y.data(),
+                  kCellInReaches * usual.reach);
     measure_flow(bodies, end, gravity, true);
     const MeanFlow::Most& most = flow_.most();
     // An immovable body is a stray in any flow.
@@ -224,8 +227,8 @@ void Candidates<Real>::begin_flow(const Bodies<Real>& bodies, const FlightClock&
     for (std::size_t row = 0; row < bodies.count && bodies.has_flags; ++row)
         immovable += takes_part(bodies.flags_of(row)) && bodies.is_immovable(row);
     may_flow_ = immovable * kBodiesPerImmovable <= bodies.count;
-    if (may_flow_) drift_left_ = largest_drift_ = drift_with_flow(bodies, end.s);
-    flows_ = may_flow_ && end.s * most.speed > kStill * radii_.usual && end.s * most.rate < kLargestStretch &&
+    if (may_flow_) drift_left_ = largest_drift_ = drift_with_flow(bodies, usual.radius, end.s);
+    flows_ = may_flow_ && end.s * most.speed > kStill * usual.radius && end.s * most.rate < kLargestStretch &&
              kFewestFlowSteps * end.s * most.speed < drift_left_;
     if (!flows_) return;
     executor.for_each_chunk(
@@ -236,23 +239,13 @@ void Candidates<Real>::begin_flow(const Bodies<Real>& bodies, const FlightClock&
         });
 }
 
-template void Candidates<float>::measure_flow(const Bodies<float>&, const FlightClock&, Vec2, bool);
-template void Candidates<double>::measure_flow(const Bodies<double>&, const FlightClock&, Vec2, bool);
-template double Candidates<float>::drift_with_flow(const Bodies<float>&, double) const;
-template double Candidates<double>::drift_with_flow(const Bodies<double>&, double) const;
-template void Candidates<float>::note_reach(double);
-template MeanFlow::At Candidates<float>::flow_here(std::size_t, Vec2) const;
-template void Candidates<double>::note_reach(double);
-template MeanFlow::At Candidates<double>::flow_here(std::size_t, Vec2) const;
-template void Candidates<float>::set_velocity(std::size_t, const MeanFlow::At&);
-template void Candidates<double>::set_velocity(std::size_t, const MeanFlow::At&);
-template void Candidates<float>::move_places(const Bodies<float>&, double, const Executor&);
-template void Candidates<double>::move_places(const Bodies<double>&, double, const Executor&);
-template bool Candidates<float>::follow_flow(const Bodies<float>&, const FlightClock&, Vec2, const Executor&);
-template bool Candidates<double>::follow_flow(const Bodies<double>&, const FlightClock&, Vec2,
-                                              const Executor&);
-template void Candidates<float>::begin_flow(const Bodies<float>&, const FlightClock&, Vec2, const Executor&);
-template void Candidates<double>::begin_flow(const Bodies<double>&, const FlightClock&, Vec2,
-                                             const Executor&);
+template <class Real>
+std::size_t MovingPlaces<Real>::bytes() const {
+    return x_.bytes() + y_.bytes() + drift_x_.bytes() + drift_y_.bytes() + flow_x_.bytes() + flow_y_.bytes() +
+           rate_.bytes() + flow_.bytes() + stray_rows_.bytes();
+}
+
+template class MovingPlaces<float>;
+template class MovingPlaces<double>;
 
 }  // namespace carom

@@ -32,7 +32,7 @@ class RowNames {
     /// A column's values go with their bodies, as the last `follow` found them to go.
     /// @param of_fresh  value of a row that is loose since then, of its number
     template <class ColumnOfRows, class OfFresh>
-    void move(ColumnOfRows& column, const OfFresh& of_fresh) {
+    void move(ColumnOfRows& column, const OfFresh& of_fresh) const {
         using Value = std::remove_cvref_t<decltype(column[0])>;
         std::vector<Value> moved(changed_rows_.size());
         for (std::size_t k = 0; k < changed_rows_.size(); ++k) {
