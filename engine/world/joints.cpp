@@ -1,4 +1,4 @@
-#include <carom/world.hpp>
+#include "world/joints.hpp"
 
 #include <cmath>
 #include <limits>
@@ -9,8 +9,6 @@
 #include "scene/wording.hpp"
 #include "world/implementation.hpp"
 #include "world/set_up.hpp"
-
-// What a world does with joints between steps.
 
 namespace carom {
 namespace {
@@ -43,20 +41,19 @@ JointPose pose_of(const WorldState<Real>& world, BodyId id) {
 }  // namespace
 
 template <class Real>
-JointId BasicWorld<Real>::add(const Joint& joint) {
+JointId WorldJoints<Real>::add(const Joint& joint) {
     constexpr std::string_view kWhere = "World::add";
-    Implementation& own = *implementation_;
     raise_if(kWhere, find_joint_problem(kJoint, joint));
     bool moves[2] = {false, false};
     for (int end = 0; end < 2; ++end) {
         const std::optional<BodyId>& id = end == 0 ? joint.a : joint.b;
         if (!id) continue;
-        const std::size_t row = own.row_of(*id, kWhere);
-        moves[end] = !own.bodies().is_immovable(row);
+        const std::size_t row = own_.row_of(*id, kWhere);
+        moves[end] = !own_.bodies().is_immovable(row);
     }
     if (const auto* gear = std::get_if<GearJoint>(&joint.kind); gear && gear->first) {
         for (const JointId coupled : {*gear->first, *gear->second}) {
-            const StoredJoint& of = own.world().joints[own.world().joints.slot_of(coupled, kWhere)];
+            const StoredJoint& of = own_.world().joints[own_.world().joints.slot_of(coupled, kWhere)];
             if (of.is_exchanged || (of.type != JointType::revolute && of.type != JointType::prismatic &&
                                     of.type != JointType::wheel))
                 refuse(kWhere, "coordinate that a gear could couple",
@@ -65,113 +62,109 @@ JointId BasicWorld<Real>::add(const Joint& joint) {
     } else {
         raise_if(kWhere, find_joint_mobility_problem(kJoint, moves[0], moves[1]));
     }
-    if (own.world().joints.count() >= kLargestJointCount)
-        throw Error(ErrorCode::too_large, join(kWhere, ": the world has ", own.world().joints.count(),
+    if (own_.world().joints.count() >= kLargestJointCount)
+        throw Error(ErrorCode::too_large, join(kWhere, ": the world has ", own_.world().joints.count(),
                                                " joints, which is the limit. Remove some first."));
-    const StoredJoint stored = joint_of(own.world(), joint);
+    const StoredJoint stored = joint_of(own_.world(), joint);
     if (stored.type == JointType::distance && stored.is_held && !(stored.length >= kShortestRod))
         throw Error(ErrorCode::out_of_range,
                     join(kWhere, ": the joint has no length and its ends are ", stored.length,
                          " m apart; expected at least ", kShortestRod,
                          " m. Give a length, move an anchor, or use a revolute joint."));
-    SolverFacts facts = own.facts;
+    SolverFacts facts = own_.facts;
     facts.joined = "a joint that was added";
-    SolverChoice choice{own.sim().solver(), own.called.solver_reason};
-    if (own.asked_for == Solver::automatic && choice.solver != Solver::soft) choice = choose_solver(facts);
+    SolverChoice choice{own_.sim().solver(), own_.called.solver_reason};
+    if (own_.asked_for == Solver::automatic && choice.solver != Solver::soft) choice = choose_solver(facts);
     raise_if(kWhere, find_joint_solver_problem(1, choice.solver));
-    own.facts = std::move(facts);
-    own.change_solver(choice.solver, choice.reason);
-    if (turns_bodies(joint)) own.turn_rotation_on();
-    own.world().effects.joints = true;
-    own.report_on("joints", "a joint was added");
+    own_.facts = std::move(facts);
+    own_.change_solver(choice.solver, choice.reason);
+    if (turns_bodies(joint)) own_.turn_rotation_on();
+    own_.world().effects.joints = true;
+    own_.report_on("joints", "a joint was added");
     for (const BodyId id : {stored.a, stored.b})
-        if (id != BodyId{}) own.wake_around(own.row_of(id, kWhere));
-    const JointId id = own.world().joints.add(stored);
-    own.sim().forget_derived_state();
+        if (id != BodyId{}) own_.wake_around(own_.row_of(id, kWhere));
+    const JointId id = own_.world().joints.add(stored);
+    own_.sim().forget_derived_state();
     return id;
 }
 
 template <class Real>
-void BasicWorld<Real>::remove(JointId joint) {
-    Implementation& own = *implementation_;
-    const std::size_t slot = own.world().joints.slot_of(joint, "World::remove");
-    own.wake_joint(slot);
-    own.world().joints.remove(slot);
-    own.sim().forget_derived_state();
+void WorldJoints<Real>::remove(JointId joint) {
+    const std::size_t slot = own_.world().joints.slot_of(joint, "World::remove");
+    own_.wake_joint(slot);
+    own_.world().joints.remove(slot);
+    own_.sim().forget_derived_state();
 }
 
 template <class Real>
-std::size_t BasicWorld<Real>::joint_count() const noexcept {
-    return implementation_->sim().world.joints.count();
+std::size_t WorldJoints<Real>::count() const {
+    return own_.sim().world.joints.count();
 }
 
 template <class Real>
-bool BasicWorld<Real>::is_alive(JointId joint) const noexcept {
-    return implementation_->sim().world.joints.is_alive(joint);
+bool WorldJoints<Real>::is_alive(JointId joint) const {
+    return own_.sim().world.joints.is_alive(joint);
 }
 
 template <class Real>
-void BasicWorld<Real>::set_motor(JointId joint, double speed, double most) {
+void WorldJoints<Real>::set_motor(JointId joint, double speed, double most) {
     constexpr std::string_view kWhere = "World::set_motor";
-    Implementation& own = *implementation_;
-    const std::size_t slot = own.world().joints.slot_of(joint, kWhere);
+    const std::size_t slot = own_.world().joints.slot_of(joint, kWhere);
     check_number(kWhere, "speed", speed, -kLargestSpeed, kLargestSpeed);
     check_number(kWhere, "most", most, 0, kNoLimit);
-    StoredJoint& stored = own.world().joints[slot];
+    StoredJoint& stored = own_.world().joints[slot];
     if (stored.type == JointType::distance || stored.type == JointType::weld ||
         stored.type == JointType::target || stored.type == JointType::gear)
         refuse(kWhere, "motor", "revolute, prismatic or wheel");
-    own.wake_joint(slot);
+    own_.wake_joint(slot);
     stored.has_motor = most > 0, stored.motor_speed = stored.as_kept(speed), stored.max_motor = most;
-    ++own.world().joints.version;
+    ++own_.world().joints.version;
 }
 
 template <class Real>
-void BasicWorld<Real>::set_limits(JointId joint, double lower, double upper) {
+void WorldJoints<Real>::set_limits(JointId joint, double lower, double upper) {
     constexpr std::string_view kWhere = "World::set_limits";
-    Implementation& own = *implementation_;
-    const std::size_t slot = own.world().joints.slot_of(joint, kWhere);
-    StoredJoint& stored = own.world().joints[slot];
+    const std::size_t slot = own_.world().joints.slot_of(joint, kWhere);
+    StoredJoint& stored = own_.world().joints[slot];
     if (stored.type != JointType::distance && stored.type != JointType::revolute &&
         stored.type != JointType::prismatic)
         refuse(kWhere, "limits", "distance, revolute or prismatic");
     const double most = stored.type == JointType::revolute ? kLargestAngle : kLargestPosition;
     check_number(kWhere, "lower", lower, stored.type == JointType::distance ? 0 : -most, most);
     check_number(kWhere, "upper", upper, lower, most);
-    own.wake_joint(slot);
+    own_.wake_joint(slot);
     stored.has_lower = stored.has_upper = true;
     stored.set_limits(lower, upper);
     if (stored.type == JointType::distance) stored.is_held = stored.is_spring();
-    ++own.world().joints.version;
+    ++own_.world().joints.version;
 }
 
 template <class Real>
-void BasicWorld<Real>::set_target(JointId joint, Vec2 target) {
+void WorldJoints<Real>::set_target(JointId joint, Vec2 target) {
     constexpr std::string_view kWhere = "World::set_target";
-    Implementation& own = *implementation_;
-    const std::size_t slot = own.world().joints.slot_of(joint, kWhere);
+    const std::size_t slot = own_.world().joints.slot_of(joint, kWhere);
     check_number(kWhere, "target x", target.x, -kLargestPosition, kLargestPosition);
     check_number(kWhere, "target y", target.y, -kLargestPosition, kLargestPosition);
-    if (own.world().joints[slot].type != JointType::target) refuse(kWhere, "target", "target");
-    own.wake_joint(slot);
-    own.world().joints[slot].target = target;
+    if (own_.world().joints[slot].type != JointType::target) refuse(kWhere, "target", "target");
+    own_.wake_joint(slot);
+    own_.world().joints[slot].target = target;
 }
 
 template <class Real>
-Vec2 BasicWorld<Real>::joint_force(JointId joint) const {
-    const JointStore& joints = implementation_->sim().world.joints;
+Vec2 WorldJoints<Real>::force(JointId joint) const {
+    const JointStore& joints = own_.sim().world.joints;
     return joints[joints.slot_of(joint, "World::joint_force")].force;
 }
 
 template <class Real>
-double BasicWorld<Real>::joint_torque(JointId joint) const {
-    const JointStore& joints = implementation_->sim().world.joints;
+double WorldJoints<Real>::torque(JointId joint) const {
+    const JointStore& joints = own_.sim().world.joints;
     return joints[joints.slot_of(joint, "World::joint_torque")].torque;
 }
 
 template <class Real>
-std::array<Vec2, 2> BasicWorld<Real>::joint_anchors(JointId joint) const {
-    const WorldState<Real>& world = implementation_->sim().world;
+std::array<Vec2, 2> WorldJoints<Real>::anchors(JointId joint) const {
+    const WorldState<Real>& world = own_.sim().world;
     const StoredJoint& stored = world.joints[world.joints.slot_of(joint, "World::joint_anchors")];
     const JointPose a = pose_of(world, stored.a), b = pose_of(world, stored.b);
     const Vec2 from =
@@ -182,8 +175,8 @@ std::array<Vec2, 2> BasicWorld<Real>::joint_anchors(JointId joint) const {
 }
 
 template <class Real>
-JointErrors BasicWorld<Real>::joint_errors() const {
-    const WorldState<Real>& world = implementation_->sim().world;
+JointErrors WorldJoints<Real>::errors() const {
+    const WorldState<Real>& world = own_.sim().world;
     JointErrors errors;
     double sum = 0;
     world.joints.for_each([&](std::size_t, const StoredJoint& joint) {
@@ -210,38 +203,15 @@ JointErrors BasicWorld<Real>::joint_errors() const {
 }
 
 template <class Real>
-std::vector<JointId> BasicWorld<Real>::broken_joints() const {
-    const WorldState<Real>& world = implementation_->sim().world;
+std::vector<JointId> WorldJoints<Real>::broken() const {
+    const WorldState<Real>& world = own_.sim().world;
     std::vector<JointId> broken;
     for (const JointBreak& each : world.joints.broken)
         if (each.time == world.time) broken.push_back(each.joint);  // others are kept events
     return broken;
 }
 
-// The class is instantiated in world.cpp, without what is defined here.
-template JointId BasicWorld<float>::add(const Joint&);
-template void BasicWorld<float>::remove(JointId);
-template std::size_t BasicWorld<float>::joint_count() const noexcept;
-template bool BasicWorld<float>::is_alive(JointId) const noexcept;
-template void BasicWorld<float>::set_motor(JointId, double, double);
-template void BasicWorld<float>::set_limits(JointId, double, double);
-template void BasicWorld<float>::set_target(JointId, Vec2);
-template Vec2 BasicWorld<float>::joint_force(JointId) const;
-template double BasicWorld<float>::joint_torque(JointId) const;
-template std::array<Vec2, 2> BasicWorld<float>::joint_anchors(JointId) const;
-template JointErrors BasicWorld<float>::joint_errors() const;
-template std::vector<JointId> BasicWorld<float>::broken_joints() const;
-template JointId BasicWorld<double>::add(const Joint&);
-template void BasicWorld<double>::remove(JointId);
-template std::size_t BasicWorld<double>::joint_count() const noexcept;
-template bool BasicWorld<double>::is_alive(JointId) const noexcept;
-template void BasicWorld<double>::set_motor(JointId, double, double);
-template void BasicWorld<double>::set_limits(JointId, double, double);
-template void BasicWorld<double>::set_target(JointId, Vec2);
-template Vec2 BasicWorld<double>::joint_force(JointId) const;
-template double BasicWorld<double>::joint_torque(JointId) const;
-template std::array<Vec2, 2> BasicWorld<double>::joint_anchors(JointId) const;
-template JointErrors BasicWorld<double>::joint_errors() const;
-template std::vector<JointId> BasicWorld<double>::broken_joints() const;
+template class WorldJoints<float>;
+template class WorldJoints<double>;
 
 }  // namespace carom

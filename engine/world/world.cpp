@@ -14,6 +14,7 @@
 #include "step/make_simulation.hpp"
 #include "step/plan.hpp"
 #include "world/implementation.hpp"
+#include "world/joints.hpp"
 #include "world/measure.hpp"
 #include "world/report.hpp"
 #include "world/set_up.hpp"
@@ -372,6 +373,66 @@ OverlapReport BasicWorld<Real>::overlaps() const {
 template <class Real>
 std::vector<BodyId> BasicWorld<Real>::quarantined() const {
     return implementation_->quarantined();
+}
+
+template <class Real>
+JointId BasicWorld<Real>::add(const Joint& joint) {
+    return WorldJoints<Real>(*implementation_).add(joint);
+}
+
+template <class Real>
+void BasicWorld<Real>::remove(JointId joint) {
+    WorldJoints<Real>(*implementation_).remove(joint);
+}
+
+template <class Real>
+std::size_t BasicWorld<Real>::joint_count() const noexcept {
+    return WorldJoints<Real>(*implementation_).count();
+}
+
+template <class Real>
+bool BasicWorld<Real>::is_alive(JointId joint) const noexcept {
+    return WorldJoints<Real>(*implementation_).is_alive(joint);
+}
+
+template <class Real>
+void BasicWorld<Real>::set_motor(JointId joint, double speed, double most) {
+    WorldJoints<Real>(*implementation_).set_motor(joint, speed, most);
+}
+
+template <class Real>
+void BasicWorld<Real>::set_limits(JointId joint, double lower, double upper) {
+    WorldJoints<Real>(*implementation_).set_limits(joint, lower, upper);
+}
+
+template <class Real>
+void BasicWorld<Real>::set_target(JointId joint, Vec2 target) {
+    WorldJoints<Real>(*implementation_).set_target(joint, target);
+}
+
+template <class Real>
+Vec2 BasicWorld<Real>::joint_force(JointId joint) const {
+    return WorldJoints<Real>(*implementation_).force(joint);
+}
+
+template <class Real>
+double BasicWorld<Real>::joint_torque(JointId joint) const {
+    return WorldJoints<Real>(*implementation_).torque(joint);
+}
+
+template <class Real>
+std::array<Vec2, 2> BasicWorld<Real>::joint_anchors(JointId joint) const {
+    return WorldJoints<Real>(*implementation_).anchors(joint);
+}
+
+template <class Real>
+JointErrors BasicWorld<Real>::joint_errors() const {
+    return WorldJoints<Real>(*implementation_).errors();
+}
+
+template <class Real>
+std::vector<JointId> BasicWorld<Real>::broken_joints() const {
+    return WorldJoints<Real>(*implementation_).broken();
 }
 
 template <class Real>
