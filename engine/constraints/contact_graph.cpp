@@ -4,7 +4,6 @@
 #include <bit>
 #include <cstdlib>
 
-#include "math/random.hpp"
 #include "shapes/walls.hpp"
 
 namespace carom {
@@ -19,14 +18,6 @@ constexpr std::size_t kFewestRowsOfChunk = 1024;  // fewer: too many short colou
 constexpr double kNanosecondsToGroup = 2, kNanosecondsToColour = 3, kNanosecondsToSort = 5;
 
 constexpr std::size_t kOverflow = 64;  // the colour of what found none
-
-/// Candidates a body, all in all and of one body, from which on a heap of bodies in one place is thinned out.
-constexpr std::size_t kCrowdedMean = 8;
-constexpr std::size_t kCrowded = 128;
-/// Of the smaller radius: an overlap that is not one of bodies that merely lie on each other.
-constexpr double kDeep = 0.2;
-/// Of that many candidates of such a body are kept, on average, among those that overlap deeply.
-constexpr std::uint64_t kKept = 48;
 
 /// Whether one of the bodies that may move is a disc.
 template <class Real>
@@ -91,36 +82,6 @@ void ContactGraph<Real>::choose_groups(const Candidates<Real>& candidates, std::
     }
 }
 
-/// Counts the candidates of each body, if they are many.
-template <class Real>
-void ContactGraph<Real>::find_crowds(const Candidates<Real>& candidates, const Bodies<Real>& bodies) {
-    crowd_.clear();
-    if (!has_discs_ || candidates.pair_count() < kCrowdedMean * bodies.moving()) return;
-    crowd_.assign(bodies.count, 0);
-    for (std::size_t p = 0; p < candidates.pair_count(); ++p) {
-        const std::int32_t a = candidates.pair_a()[p], b = candidates.pair_b()[p];
-        if (!bodies.are_discs(a, b)) continue;
-        ++crowd_[static_cast<std::size_t>(a)], ++crowd_[static_cast<std::size_t>(b)];
-    }
-    if (*std::max_element(crowd_.begin(), crowd_.end()) <= kCrowded) crowd_.clear();
-}
-
-/// In a crowd each body needs only some of the others to be pushed out of it: of pairs that overlap deeply a
-/// share is looked at, another one whenever pairs are found anew. What merely touches is always looked at.
-template <class Real>
-bool ContactGraph<Real>::is_left_out(std::int32_t a, std::int32_t b, const Bodies<Real>& bodies) const {
-    const auto i = static_cast<std::size_t>(a), k = static_cast<std::size_t>(b);
-    const std::uint64_t crowd = std::min(crowd_[i], crowd_[k]);
-    if (crowd <= kCrowded) return false;
-    const Real dx = bodies.position_x[k] - bodies.position_x[i],
-               dy = bodies.position_y[k] - bodies.position_y[i];
-    const Real of_a = bodies.radius[i], of_b = bodies.radius[k];
-    const Real deep = of_a + of_b - static_cast<Real>(kDeep) * std::min(of_a, of_b);
-    if (!(dx * dx + dy * dy < deep * deep)) return false;
-    const auto name = static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b);
-    return Random(Random(name).next() + static_cast<std::uint64_t>(version)).next() % crowd >= kKept;
-}
-
 /// Calls pair(piece, group, a, b) for all pairs, a < b; the group of pairs with an immovable body is the one
 /// beyond the last.
 template <class Real>
@@ -136,7 +97,8 @@ void ContactGraph<Real>::for_each_piece(const Candidates<Real>& candidates, cons
         for (std::size_t p = piece * piece_size; p < last; ++p) {
             const std::int32_t a = std::min(pair_a[p], pair_b[p]), b = std::max(pair_a[p], pair_b[p]);
             if (!bodies.are_discs(a, b)) continue;
-            if (is_forbidden(a, b) || (!crowd_.empty() && is_left_out(a, b, bodies))) continue;
+            if (is_forbidden(a, b) || (!crowds_.empty() && crowds_.leave_out(a, b, bodies, version)))
+                continue;
             if (bodies.has_flags && bodies.is_immovable(static_cast<std::size_t>(a)))
                 pair(piece, groups.count(), b, a);
             else if (bodies.has_flags && bodies.is_immovable(static_cast<std::size_t>(b)))
@@ -243,8 +205,7 @@ void ContactGraph<Real>::colour_group(Found& found, std::size_t group, std::uint
         const std::size_t carries = impulses.normal > 0;
         front += carries, back -= 1 - carries;
     }
-    for (std::size_t k = first; k < front; ++k) colour(order[k]);
-    for (std::size_t k = last; k-- > front;) colour(order[k]);
+    for (std::size_t k = first; k < last; ++k) colour(order[k < front ? k : front + last - 1 - k]);
 }
 
 template <class Real>
@@ -278,19 +239,6 @@ void ContactGraph<Real>::colour_supports(std::size_t rows) {
         colour_group(found_supports_, group, taken, nullptr);
 }
 
-/// Fills what is no contact in the colours [first, last).
-template <class Real>
-void pad_colours(ContactRows<Real>& sorted, std::size_t first, std::size_t last, std::int32_t row) {
-    for (std::size_t c = first; c < last; ++c) {
-        const std::size_t stride = sorted.stride(c), used = stride * sorted.count[c];
-        for (std::size_t k = stride > 1 ? 0 : used; k < padded(used); ++k) {
-            if (k < used && k % stride == 0) continue;
-            const std::size_t i = sorted.begin[c] + k;
-            sorted.a[i] = sorted.b[i] = row, sorted.normal_impulse[i] = sorted.friction_impulse[i] = 0;
-        }
-    }
-}
-
 /// Places of all colours, and their padding.
 /// @param first_padding_row  of the first group; the others' follow
 template <class Real>
@@ -319,8 +267,8 @@ void ContactGraph<Real>::lay_out_colours(const Found& found, ContactRows<Real>& 
     sorted.a.resize_for_overwrite(place), sorted.b.resize_for_overwrite(place);
     sorted.normal_impulse.resize_for_overwrite(place), sorted.friction_impulse.resize_for_overwrite(place);
     for (std::size_t group = 0; group < group_count; ++group)
-        pad_colours(sorted, sorted.first_colour[group], sorted.first_colour[group + 1],
-                    static_cast<std::int32_t>(first_padding_row + group));
+        sorted.pad_colours(sorted.first_colour[group], sorted.first_colour[group + 1],
+                           static_cast<std::int32_t>(first_padding_row + group));
 }
 
 /// Stable, so that bodies near each other stay near each other within a colour.
@@ -358,7 +306,8 @@ void ContactGraph<Real>::renew(const Candidates<Real>& candidates, const EdgeCan
 
     has_discs_ = !bodies.has_shapes || has_disc(bodies);
     choose_groups(candidates, rows);
-    find_crowds(candidates, bodies);
+    crowds_.clear();
+    if (has_discs_) crowds_.find(candidates, bodies);
     group_pairs(candidates, bodies, executor);
     if (walls) list_walls(candidates, bodies, *walls);
     for (const EdgePair pair : edges.pairs())
@@ -428,7 +377,7 @@ void ContactGraph<Real>::add_late(ContactRows<Real>& sorted, std::int32_t paddin
         sorted.a[i] = late.a, sorted.b[i] = late.b;
         sorted.normal_impulse[i] = late.normal_impulse, sorted.friction_impulse[i] = late.friction_impulse;
     }
-    pad_colours(sorted, first, sorted.colours(), padding_row);
+    sorted.pad_colours(first, sorted.colours(), padding_row);
 }
 
 template <class Real>
@@ -484,12 +433,63 @@ void ContactGraph<Real>::add(const Candidates<Real>& candidates, const EdgeCandi
 }
 
 template <class Real>
+void ContactGraph<Real>::follow_rows(const Bodies<Real>& bodies, std::span<const std::uint8_t> is_elsewhere) {
+    const std::vector<std::int32_t>& now = trail.new_rows();
+    sort_former_places();
+    lost.clear();
+    const auto row_now = [&](std::int32_t row) {
+        const std::int32_t present = now[static_cast<std::size_t>(row)];
+        const bool is_gone = present < 0 || is_elsewhere[static_cast<std::size_t>(present)];
+        return is_gone ? Partner::gone().stored() : present;
+    };
+    for (ContactRows<Real>* contacts : {&pairs, &supports}) {
+        late_.clear();
+        const auto drop = [&](std::size_t i, std::size_t last) {
+            ContactRows<Real>::for_each_column(*contacts, [&](auto& column, const ColumnUse& use) {
+                if (last >= column.size() || use.holds == ColumnUse::Holds::in_a_step) return;
+                column[i] = column[last], column[last] = {};
+            });
+        };
+        for (std::size_t c = 0; c < contacts->colours(); ++c) {
+            const std::size_t stride = contacts->stride(c), begin = contacts->begin[c];
+            for (std::size_t n = 0; n < contacts->count[c];) {
+                const std::size_t i = begin + n * stride;
+                const std::int32_t a = contacts->a[i], b = contacts->b[i];
+                const bool is_body = Partner(b).is_body();
+                const std::int32_t new_a = row_now(a), new_b = is_body ? row_now(b) : b;
+                if (new_a == a && new_b == b) {
+                    ++n;
+                    continue;
+                }
+                const Partner side_a(new_a), side_b(new_b);
+                if (side_a.is_gone() || side_b.is_gone()) {
+                    if (side_a.is_body()) lose_contact(*contacts, i, b, new_a, bodies);
+                    if (side_b.is_body()) lose_contact(*contacts, i, a, new_b, bodies);
+                } else {
+                    const bool turns = contacts == &pairs && new_a > new_b;
+                    late_.push_back({turns ? new_b : new_a, turns ? new_a : new_b,
+                                     contacts->normal_impulse[i], contacts->friction_impulse[i], 0});
+                }
+                drop(i, begin + --contacts->count[c] * stride);
+            }
+        }
+        contacts->pad_groups(bodies.count);
+        if (!late_.empty())
+            add_late(*contacts,
+                     static_cast<std::int32_t>(bodies.count + (contacts == &pairs ? groups.far() : 0)),
+                     contacts == &pairs);
+    }
+    trail.start(bodies.count), former_places.clear();
+    ++version;
+}
+
+template <class Real>
 std::size_t ContactGraph<Real>::bytes() const {
     return pairs.bytes() + supports.bytes() + found_pairs_.bytes() + found_supports_.bytes() +
            memory_.bytes() + rolling_of_pairs_.bytes() + rolling_of_supports_.bytes() +
            colours_of_[0].bytes() + colours_of_[1].bytes() + trail.bytes() +
-           (listed_a_.capacity() + listed_b_.capacity()) * sizeof(std::int32_t) +
-           (crowd_.capacity() + piece_counts_.capacity() + colour_counts_.capacity()) * sizeof(std::uint32_t);
+           (listed_a_.capacity() + listed_b_.capacity()) * sizeof(std::int32_t) + crowds_.bytes() +
+           (piece_counts_.capacity() + colour_counts_.capacity()) * sizeof(std::uint32_t);
 }
 
 template class ContactGraph<float>;

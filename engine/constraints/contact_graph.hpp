@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
-#include <tuple>
 #include <vector>
 
 #include "broadphase/candidates.hpp"
 #include "broadphase/edge_candidates.hpp"
 #include "constraints/contact_rows.hpp"
+#include "constraints/crowds.hpp"
 #include "constraints/impulse_memory.hpp"
+#include "constraints/lost_contacts.hpp"
 #include "constraints/rolling_memory.hpp"
 #include "constraints/row_renaming.hpp"
 #include "constraints/task_groups.hpp"
@@ -22,23 +23,6 @@ namespace carom {
 /// A body that is awake, or kinematic, and one that sleeps, near enough to touch before the pairs are void.
 struct SleeperPair {
     std::int32_t row, sleeper;
-};
-
-/// A body pushed another one that was removed, or put elsewhere.
-struct LostContact {
-    std::int32_t gone, row;         // a number for what is not there any more; of what is
-    bool is_impulse_known = false;  // not where edges were removed
-    Vec2 impulse = {};              // N s, that `row` had from the other one in a substep
-
-    friend bool operator<(const LostContact& left, const LostContact& right) {
-        return std::tie(left.gone, left.row) < std::tie(right.gone, right.row);
-    }
-};
-
-/// Where a body was when it was removed or put elsewhere.
-struct FormerPlace {
-    std::int32_t row;  // that it had when the pairs were renewed
-    Vec2 place;        // m
 };
 
 /// Which discs can touch which, and what supports discs, in groups and colours, until the candidate pairs
@@ -68,9 +52,6 @@ class ContactGraph {
     /// last groups).
     /// @param is_elsewhere  a present row, whether its body was put elsewhere: its contacts are gone
     void follow_rows(const Bodies<Real>& bodies, std::span<const std::uint8_t> is_elsewhere);
-
-    /// Edges were removed; later ones moved up. Cost: O(supports).
-    void follow_removed_edges(EdgeStore::Removed gone);
 
     bool keeps_rolling = false;                ///< rolling impulses, too
     const WorldState<Real>* filter = nullptr;  ///< pairs that it forbids are left out; null: none
@@ -131,15 +112,17 @@ class ContactGraph {
                   [](const FormerPlace& left, const FormerPlace& right) { return left.row < right.row; });
     }
     void rename_rows(const Bodies<Real>& bodies);
+    /// Notes what a body had from one that is gone.
     void lose_contact(const ContactRows<Real>& contacts, std::size_t i, std::int32_t gone, std::int32_t row,
-                      const Bodies<Real>& bodies);
+                      const Bodies<Real>& bodies) {
+        if (contacts.normal_impulse[i] > 0)
+            lost.push_back(lost_contact<Real>(contacts, i, gone, row, former_places, bodies));
+    }
     double far_share(const Candidates<Real>& candidates, const TaskGroups& tried) const;
     void choose_groups(const Candidates<Real>& candidates, std::size_t rows);
-    void find_crowds(const Candidates<Real>& candidates, const Bodies<Real>& bodies);
     bool is_forbidden(std::int32_t a, std::int32_t b) const {
         return filter && !filter->may_collide(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
     }
-    bool is_left_out(std::int32_t a, std::int32_t b, const Bodies<Real>& bodies) const;
     void group_pairs(const Candidates<Real>& candidates, const Bodies<Real>& bodies,
                      const Executor& executor);
     template <class Pair>
@@ -152,14 +135,13 @@ class ContactGraph {
     void colour_group(Found& found, std::size_t group, std::uint64_t* of_a, std::uint64_t* of_b);
     void sort_by_colour(const Found& found, ContactRows<Real>& sorted, std::size_t first_padding_row,
                         const Executor& executor);
-    void pad_all(ContactRows<Real>& sorted, std::size_t first_padding_row);
     void add_late(ContactRows<Real>& sorted, std::int32_t padding_row, bool both_move);
     void lay_out_colours(const Found& found, ContactRows<Real>& sorted, std::size_t first_padding_row);
 
     Found found_pairs_, found_supports_;
     std::vector<std::int32_t> listed_a_, listed_b_;  // supports as they are found
     std::vector<Late> late_, new_pairs_, new_supports_;
-    std::vector<std::uint32_t> crowd_;          // candidates of each row; empty where no body has many
+    Crowds<Real> crowds_;
     bool has_discs_ = true;                     // that move: else no pair is one of discs
     std::vector<std::uint32_t> piece_counts_;   // by piece of the pair list and group
     Column<std::uint64_t> colours_of_[2];       // a row, bit a colour: inside or as a, as b of a border

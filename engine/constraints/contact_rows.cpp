@@ -101,6 +101,44 @@ std::size_t ContactRows<Real>::close_colour(std::size_t colour, std::size_t firs
     return first + apart * contacts;
 }
 
+/// What is no contact in a colour, up to the place `end`.
+template <class Real>
+void ContactRows<Real>::pad_colour(std::size_t colour, std::size_t end, std::int32_t padding_row) {
+    const std::size_t apart = stride(colour), used = apart * count[colour];
+    for (std::size_t k = apart > 1 ? 0 : used; begin[colour] + k < end; ++k) {
+        if (k < used && k % apart == 0) continue;
+        const std::size_t i = begin[colour] + k;
+        a[i] = b[i] = padding_row, normal_impulse[i] = friction_impulse[i] = 0;
+    }
+}
+
+template <class Real>
+void ContactRows<Real>::pad_colours(std::size_t first, std::size_t last, std::int32_t padding_row) {
+    for (std::size_t c = first; c < last; ++c) pad_colour(c, begin[c] + padded(length(c)), padding_row);
+}
+
+template <class Real>
+void ContactRows<Real>::pad_groups(std::size_t first_padding_row) {
+    for (std::size_t group = 0; group < groups(); ++group)
+        for (std::size_t c = first_colour[group]; c < first_colour[group + 1]; ++c)
+            pad_colour(c, c + 1 < colours() ? begin[c + 1] : a.size(),
+                       static_cast<std::int32_t>(first_padding_row + group));
+}
+
+template <class Real>
+void ContactRows<Real>::follow_removed_edges(EdgeStore::Removed gone) {
+    if (gone.count == 0) return;
+    for_each([&](std::size_t i) {
+        const Partner support = partner(i);
+        if (!support.is_edge()) return;
+        const std::int32_t edge = support.edge_number();
+        if (edge >= gone.first + gone.count)
+            b[i] = Partner::edge(edge - gone.count).stored();
+        else if (edge >= gone.first)
+            b[i] = Partner::gone().stored();
+    });
+}
+
 template struct ContactRows<float>;
 template struct ContactRows<double>;
 

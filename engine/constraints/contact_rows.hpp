@@ -8,6 +8,7 @@
 #include "constraints/partner.hpp"
 #include "kernels/contacts/contact_arguments.hpp"
 #include "state/column.hpp"
+#include "state/edges.hpp"
 
 namespace carom {
 
@@ -165,11 +166,20 @@ struct ContactRows {
     /// @return the place of the next colour of the group.
     std::size_t close_colour(std::size_t colour, std::size_t first, std::size_t contacts, std::int32_t dummy);
 
+    /// Whatever is no contact in the colours [first, last) names a padding row, and pushes nothing.
+    void pad_colours(std::size_t first, std::size_t last, std::int32_t padding_row);
+    /// As pad_colours in all groups, where contacts may have been taken out.
+    /// @param first_padding_row  of the first group; the others' follow
+    void pad_groups(std::size_t first_padding_row);
+    /// Edges were removed; later ones moved up. Supports alone.
+    void follow_removed_edges(EdgeStore::Removed gone);
+
     ContactColumns<Real> columns();
     std::size_t bytes() const;
 
   private:
     void pad(std::size_t first, std::size_t count, std::int32_t dummy);
+    void pad_colour(std::size_t colour, std::size_t end, std::int32_t padding_row);
 };
 
 extern template struct ContactRows<float>;

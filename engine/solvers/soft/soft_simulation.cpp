@@ -43,7 +43,7 @@ void SoftSimulation<Real>::remove(std::size_t row) {
     const bool may_follow =
         bodies.is_disc(row) && radii && (bodies.radius.is_uniform() || bodies.radius[row] > radii->usual);
     const EdgeStore::Removed edges = this->world.remove(row);
-    soft.graph.follow_removed_edges(edges);
+    soft.graph.supports.follow_removed_edges(edges);
     if (edges.count > 0) sleepers.forget_woken();
     note_change(may_follow);
 }
