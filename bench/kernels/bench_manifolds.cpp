@@ -62,6 +62,7 @@ struct ConvexRow {
     FindManifolds<Real> arguments() {
         const auto at = [&](std::size_t i) { return out[i].data(); };
         return {.pose = pose.data(),
+                .come = nullptr,
                 .shape = shape_of.data(),
                 .shapes = shapes.data(),
                 .a = a.data(),

@@ -84,7 +84,7 @@ void ShapeSeparations<Real>::find(const KernelTable<Real>& kernels) {
         others[0].data(), others[1].data(), others[2].data(), others[3].data(),    others[4].data(),
         others[5].data(), others[6].data(), others[7].data(), separation1_.data(), separation2_.data()};
     kernels.convex->find_manifolds(
-        {pose_.data(), shape_.data(), shapes_.data(), a_.data(), b_.data(), margin.data(), out}, 0,
+        {pose_.data(), nullptr, shape_.data(), shapes_.data(), a_.data(), b_.data(), margin.data(), out}, 0,
         padded(pairs));
 }
 

@@ -10,6 +10,8 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <numbers>
+#include <random>
 
 using namespace carom;
 using namespace carom::test;
@@ -33,6 +35,36 @@ Scene pile(std::int64_t discs, double smallest, double restitution) {
     gas.body.material = bouncy(restitution);
     add_gas(scene, gas);
     scene.accuracy.solver = Solver::soft;
+    return scene;
+}
+
+/// Boxes, or polygons of 3 to 8 vertices, that turn as they fall into a box, without friction.
+Scene heap_of_shapes(int bodies, bool of_boxes, unsigned seed) {
+    std::mt19937 random(seed);
+    const auto draw = [&](double low, double high) {
+        return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
+    };
+    const int columns = static_cast<int>(1.3 * std::sqrt(bodies));
+    Scene scene;
+    scene.gravity = {0, -kGravity};
+    scene.walls = Walls{.min = {0, 0}, .max = {1.03 * columns + 2, 200}};
+    scene.effects.sleep = true;
+    for (int i = 0; i < bodies; ++i) {
+        Body body{.shape = Box{0.8, 0.6}};
+        if (!of_boxes) {
+            Polygon polygon;
+            const int vertices = 3 + static_cast<int>(random() % 6);
+            const double turn = draw(0, 6);
+            for (int k = 0; k < vertices; ++k) {
+                const double angle = turn + 2 * std::numbers::pi * k / vertices;
+                polygon.vertices.push_back({0.45 * std::cos(angle), 0.45 * std::sin(angle)});
+            }
+            body.shape = polygon;
+        }
+        body.position = {1 + 1.03 * (i % columns), 3 + 1.03 * (i / columns)};
+        body.angular_velocity = draw(-3, 3);
+        scene.add(body);
+    }
     return scene;
 }
 
@@ -88,6 +120,25 @@ TEST_SUITE("hard cases/frictionless heaps") {
             for (int i = 0; i < 2400 && world.profile().asleep < 1000; ++i) world.step(kStep);
             CHECK(world.profile().asleep == 1000);
         }
+    }
+
+    // With contacts of the start of each step none of these heaps sleeps.
+    TEST_CASE("B33: heaps of smooth boxes and polygons that fell and turned sleep") {
+        const int seeds = scaled(3, 1);
+        int heaps = 0, asleep = 0;
+        for (const int bodies : {200, scaled(600, 300)})
+            for (int seed = 1; seed <= seeds; ++seed)
+                for (const bool of_boxes : {true, false}) {
+                    World world(heap_of_shapes(bodies, of_boxes, static_cast<unsigned>(seed)),
+                                {.threads = 1});
+                    int steps = 0;
+                    while (steps < 3600 && world.profile().asleep < bodies) world.step(kStep), ++steps;
+                    report(bodies, of_boxes ? " boxes" : " polygons", ", seed ", seed, ": ",
+                           world.profile().asleep, " sleep after ", steps, " steps, overlap ",
+                           world.overlaps().mean, ", ", world.overlaps().max);
+                    ++heaps, asleep += world.profile().asleep == bodies;
+                }
+        CHECK(4 * asleep >= 3 * heaps);
     }
 
     TEST_CASE_TEMPLATE("B33: a column of 100 lies still after 20 s, alone and in a shaft", Real, float,

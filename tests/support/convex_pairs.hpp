@@ -73,13 +73,10 @@ class ConvexPairs {
 
     FindManifolds<Real> arguments() {
         const auto at = [&](std::size_t i) { return out_[i].data(); };
-        return {pose_.data(),
-                shape_.data(),
-                shapes_.data(),
-                a_.data(),
-                b_.data(),
-                margin_.data(),
-                {at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7), at(8), at(9)}};
+        return {pose_.data(),   nullptr,
+                shape_.data(),  shapes_.data(),
+                a_.data(),      b_.data(),
+                margin_.data(), {at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7), at(8), at(9)}};
     }
     FoundManifold found(std::size_t i) const {
         const auto at = [&](std::size_t column) { return static_cast<double>(out_[column][i]); };

@@ -68,6 +68,15 @@ template <class F, class Pose>
             a[2] * dy - a[3] * dx};
 }
 
+/// Separations of where bodies were before, along the rows that have been found.
+template <class Real, class Lanes, class F>
+[[gnu::always_inline]] inline void move_back(const FindManifolds<Real>& k, std::size_t p, Manifold<F>& m) {
+    const auto a = Lanes::load_rows4(k.come, k.a + p), b = Lanes::load_rows4(k.come, k.b + p);
+    const F along = (b[0] - a[0]) * m.normal_x + (b[1] - a[1]) * m.normal_y;
+    m.separation1 -= along + b[2] * m.lever_b1 - a[2] * m.lever_a1;
+    m.separation2 -= along + b[2] * m.lever_b2 - a[2] * m.lever_a2;  // of no point: lost in rounding
+}
+
 /// @return how many are live.
 template <class Real, class Lanes, class F>
 [[gnu::always_inline]] inline std::size_t store_manifolds(const FindManifolds<Real>& k, std::size_t p,
@@ -107,8 +116,11 @@ template <bool kRounded, class Pair, class Real, class Lanes, class Load>
             face->normal_x = a[2] * x - a[3] * y, face->normal_y = a[3] * x + a[2] * y;
         }
         face = faced;
-        for (std::size_t p = begin; p < end; p += Lanes::size, ++face)
-            live += store_manifolds<Real, Lanes>(k, p, manifold_of<kRounded, Real>(*face));
+        for (std::size_t p = begin; p < end; p += Lanes::size, ++face) {
+            Manifold<F> m = manifold_of<kRounded, Real>(*face);
+            if (k.come) move_back<Real, Lanes>(k, p, m);
+            live += store_manifolds<Real, Lanes>(k, p, m);
+        }
     }
     return live;
 }

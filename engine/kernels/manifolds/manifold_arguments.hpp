@@ -49,7 +49,10 @@ struct FindApproached {
 /// Contacts of pairs of convex shapes.
 template <class Real>
 struct FindManifolds {
-    const Real* pose;                 // [rows][4]: x, y [m], cosine and sine of the angle
+    const Real* pose;  // [rows][4]: x, y [m], cosine and sine of the angle
+    // [rows][4], or none: m in x and y, rad that each has come by to be there; unused. Separations become
+    // those of before, as normals and levers are.
+    const Real* come;
     const std::int32_t* shape;        // by row: number in `shapes`
     const ConvexShape<Real>* shapes;  //
     const std::int32_t *a, *b;        // rows of the bodies of each pair

@@ -1,6 +1,7 @@
 #include "solvers/manifolds/manifolds.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "effects/friction.hpp"
@@ -242,6 +243,20 @@ void Manifolds<Real>::recall_surfaces() {
     }
 }
 
+/// What presses on a wall or an edge is looked for ahead, as in place_block().
+template <class Real>
+void Manifolds<Real>::look_ahead_at_surfaces(const WorldState<Real>& world, const SubstepTerms& terms) {
+    const Bodies<Real>& bodies = world.bodies;
+    ahead_on_surfaces_.assign(bodies.rows(), 0);
+    for (std::size_t i = 0; i < old_surfaces_.count(); ++i) {
+        const BodyId id = old_surfaces_.names[i].a;
+        if (!world.handles.is_alive(id)) continue;
+        const std::size_t row = world.handles.row_of_slot(id.index);
+        if (looks_ahead(old_surfaces_.memory[i], bodies.inradius(row), bodies.mass[row], terms))
+            ahead_on_surfaces_[row] = ahead_.time(row);
+    }
+}
+
 template <class Real>
 void Manifolds<Real>::rescale(double factor) {
     if (factor == 1) return;
@@ -282,13 +297,15 @@ bool Manifolds<Real>::find(const WorldState<Real>& world, const EdgeCandidates<R
     found_within_ = within;
     poses_.look(world, terms.dt, near, finds_all, loops.kernels->convex->turn_angles, *loops.executor);
     take_near(world, terms.dt, near, loops);
-    items_.add_poses(poses_.pose);
-    surface_finder_.find(world, edges, terms, near, surfaces_, *loops.executor);
+    ahead_.look(world, terms.dt, poses_, items_, *loops.executor);
+    look_ahead_at_surfaces(world, terms);
+    surface_finder_.find(world, edges, terms, near, ahead_on_surfaces_, surfaces_, *loops.executor);
     recall_surfaces();
     block_is_found_.assign(padded(bodies_.count()) / kRowPadding, 0);
+    pose_a_.resize(padded(bodies_.count())), pose_b_.resize(padded(bodies_.count()));
     loops.executor->for_each_chunk(bodies_.count(), kContactsPerTask, kNanosecondsToFind,
                                    [&](std::size_t, std::size_t first, std::size_t last) {
-                                       find_chunk(world, terms.dt, near, *loops.kernels->convex, first, last);
+                                       find_chunk(world, terms, near, *loops.kernels->convex, first, last);
                                    });
     note_thicknesses(std::min(bodies_.count(), first_new_block_ * kRowPadding));
     first_new_block_ = block_is_found_.size();
@@ -298,9 +315,10 @@ bool Manifolds<Real>::find(const WorldState<Real>& world, const EdgeCandidates<R
 
 /// @param first  a multiple of kRowPadding
 template <class Real>
-void Manifolds<Real>::find_chunk(const WorldState<Real>& world, double dt, const ContactDistance& near,
-                                 const ConvexKernels<Real>& kernels, std::size_t first, std::size_t last) {
-    Gaps<Real> gaps({world, items_, poses_, near, dt}, bodies_);
+void Manifolds<Real>::find_chunk(const WorldState<Real>& world, const SubstepTerms& terms,
+                                 const ContactDistance& near, const ConvexKernels<Real>& kernels,
+                                 std::size_t first, std::size_t last) {
+    Gaps<Real> gaps({world, items_, poses_, near, terms.dt}, bodies_);
     for (std::size_t begin = first; begin < last;) {
         std::size_t end = begin;  // of the blocks from `begin` on that must be found
         while (end < last && must_find(end / kRowPadding)) {
@@ -309,7 +327,7 @@ void Manifolds<Real>::find_chunk(const WorldState<Real>& world, double dt, const
         }
         if (end > begin) {
             describe_pairs(world, near, begin, end);
-            find_pairs(world, kernels, begin, end);
+            find_pairs(world, terms, kernels, begin, end);
             gaps.look_at(begin, end);
         }
         begin = end + kRowPadding;  // that block need not
@@ -365,21 +383,53 @@ void Manifolds<Real>::describe_pieces(const WorldState<Real>& world, const Conta
     bodies_.restitution[i] = static_cast<Real>(pair_restitution(at_a.restitution, at_b.restitution));
 }
 
+/// Notes where the bodies of each contact of a block are looked for.
+/// @return whether some are looked for ahead; if not, nothing is noted
+template <class Real>
+bool Manifolds<Real>::place_block(const Bodies<Real>& bodies, const SubstepTerms& terms, std::size_t first) {
+    const std::size_t last = std::min(bodies_.count(), first + kRowPadding);
+    std::array<bool, kRowPadding> is_ahead{};
+    const bool were_found = first / kRowPadding < first_new_block_;  // what was none then carries nothing
+    bool any = false;
+    for (std::size_t i = first; i < last; ++i) {
+        if (were_found && !(bodies_.separation1[i] < static_cast<Real>(kNoPoint))) continue;
+        if (!bodies_.memory[i].is_loaded()) continue;
+        const auto a = static_cast<std::size_t>(bodies_.a[i]), b = static_cast<std::size_t>(bodies_.b[i]);
+        const bool b_moves = b < bodies.count && !bodies.is_immovable(b);
+        const Real mass = b_moves ? std::min(bodies.mass[a], bodies.mass[b]) : bodies.mass[a];
+        is_ahead[i - first] = looks_ahead(bodies_.memory[i], bodies_.thickness[i], mass, terms);
+        any = any || is_ahead[i - first];
+    }
+    if (!any) return false;
+    const bool all_rows = items_.empty();
+    const Column<std::int32_t>&a = all_rows ? bodies_.a : bodies_.item_a,
+          &b = all_rows ? bodies_.b : bodies_.item_b;
+    for (std::size_t k = 0; k < kRowPadding; ++k) {
+        const std::int32_t ahead = is_ahead[k] ? ahead_.items() : 0;
+        pose_a_[first + k] = a[first + k] + ahead, pose_b_[first + k] = b[first + k] + ahead;
+    }
+    return true;
+}
+
 /// @param first  a multiple of kRowPadding
 template <class Real>
-void Manifolds<Real>::find_pairs(const WorldState<Real>& world, const ConvexKernels<Real>& kernels,
-                                 std::size_t first, std::size_t last) {
+void Manifolds<Real>::find_pairs(const WorldState<Real>& world, const SubstepTerms& terms,
+                                 const ConvexKernels<Real>& kernels, std::size_t first, std::size_t last) {
     const bool all_rows = items_.empty();
-    const FindManifolds<Real> k{poses_.pose.data(),
-                                all_rows ? world.bodies.shape.data() : items_.shapes(),
-                                world.shapes.data(),
-                                all_rows ? bodies_.a.data() : bodies_.item_a.data(),
-                                all_rows ? bodies_.b.data() : bodies_.item_b.data(),
-                                bodies_.margin.data(),
-                                bodies_.columns()};
+    const FindManifolds<Real> now{ahead_.pose.data(),
+                                  nullptr,
+                                  ahead_.shape.data(),
+                                  world.shapes.data(),
+                                  all_rows ? bodies_.a.data() : bodies_.item_a.data(),
+                                  all_rows ? bodies_.b.data() : bodies_.item_b.data(),
+                                  bodies_.margin.data(),
+                                  bodies_.columns()};
+    FindManifolds<Real> ahead = now;
+    ahead.come = ahead_.come.data(), ahead.a = pose_a_.data(), ahead.b = pose_b_.data();
     for (std::size_t i = first; i < last; i += kRowPadding) {
         const bool are_boxes = blocks_are_boxes_[i / kRowPadding] != 0;
-        (are_boxes ? kernels.find_box_manifolds : kernels.find_manifolds)(k, i, i + kRowPadding);
+        const auto find = are_boxes ? kernels.find_box_manifolds : kernels.find_manifolds;
+        find(place_block(world.bodies, terms, i) ? ahead : now, i, i + kRowPadding);
     }
 }
 
@@ -435,8 +485,8 @@ std::size_t Manifolds<Real>::bytes() const {
     return bodies_.bytes() + surfaces_.bytes() + old_.bytes() + old_surfaces_.bytes() +
            surface_finder_.bytes() + items_.bytes() + distant_.bytes() + of(asleep_) + of(is_recalled_) +
            of(loaded_) + of(is_box_of_) + of(blocks_are_boxes_) + of(first_of_slot_) + of(next_of_slot_) +
-           poses_.bytes() + of(block_is_found_) + of(live_) + of(was_live_) + live_of_bodies_.bytes() +
-           chosen_pairs_.bytes();
+           poses_.bytes() + of(ahead_on_surfaces_) + ahead_.bytes() + pose_a_.bytes() + pose_b_.bytes() +
+           of(block_is_found_) + of(live_) + of(was_live_) + live_of_bodies_.bytes() + chosen_pairs_.bytes();
 }
 
 template class Manifolds<float>;

@@ -12,6 +12,7 @@
 #include "solvers/manifolds/manifold_list.hpp"
 #include "solvers/manifolds/piece_items.hpp"
 #include "solvers/manifolds/pose_watch.hpp"
+#include "solvers/manifolds/poses_ahead.hpp"
 #include "solvers/manifolds/surface_finder.hpp"
 #include "solvers/substeps/step_terms.hpp"
 #include "state/chunked_list.hpp"
@@ -116,17 +117,19 @@ class Manifolds {
     void file_by_slot(const ManifoldList<Real>& old);
     void recall(ManifoldList<Real>& list, const ManifoldList<Real>& old, const Executor& executor);
     void recall_surfaces();
+    void look_ahead_at_surfaces(const WorldState<Real>& world, const SubstepTerms& terms);
     /// Finds the contacts of a chunk of pairs that must be found in this step.
-    void find_chunk(const WorldState<Real>& world, double dt, const ContactDistance& near,
+    void find_chunk(const WorldState<Real>& world, const SubstepTerms& terms, const ContactDistance& near,
                     const ConvexKernels<Real>& kernels, std::size_t first, std::size_t last);
+    bool place_block(const Bodies<Real>& bodies, const SubstepTerms& terms, std::size_t first);
     bool must_find(std::size_t block) const;
     void note_thicknesses(std::size_t first);
     void describe_pairs(const WorldState<Real>& world, const ContactDistance& near, std::size_t first,
                         std::size_t last);
     void describe_pieces(const WorldState<Real>& world, const ContactDistance& near, std::size_t i);
     void count_changes();
-    void find_pairs(const WorldState<Real>& world, const ConvexKernels<Real>& kernels, std::size_t first,
-                    std::size_t last);
+    void find_pairs(const WorldState<Real>& world, const SubstepTerms& terms,
+                    const ConvexKernels<Real>& kernels, std::size_t first, std::size_t last);
     bool list_live(const Executor& executor);
 
     PieceItems<Real> items_;
@@ -148,6 +151,9 @@ class Manifolds {
     std::uint64_t shapes_of_boxes_ = 0;           // ShapeStore::revision of these shapes
     std::vector<std::uint8_t> blocks_are_boxes_;  // by block of kRowPadding contacts of bodies_
     PoseWatch<Real> poses_;
+    PosesAhead<Real> ahead_;
+    Column<std::int32_t> pose_a_, pose_b_;   // by contact of bodies_: where its bodies are in ahead_
+    std::vector<double> ahead_on_surfaces_;  // s, by row
     /// What contacts are found within, by block of the last step; all zero: all are to be found anew.
     struct Within {
         double share = 0, fall = 0, dt = 0;  // ContactDistance; s

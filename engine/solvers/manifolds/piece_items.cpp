@@ -21,15 +21,6 @@ void PieceItems<Real>::list(const WorldState<Real>& world) {
     first_[rows] = static_cast<std::int32_t>(shape_.size());
 }
 
-template <class Real>
-void PieceItems<Real>::add_poses(Column<Real>& poses) const {
-    if (empty()) return;
-    const std::size_t rows = shape_.size() - row_.size();
-    poses.resize(4 * shape_.size());
-    for (std::size_t i = 0; i < row_.size(); ++i)
-        std::copy_n(&poses[4 * static_cast<std::size_t>(row_[i])], 4, &poses[4 * (rows + i)]);
-}
-
 template class PieceItems<float>;
 template class PieceItems<double>;
 

@@ -25,8 +25,6 @@ class PieceItems {
         if (first_[i] == first_[i + 1]) fn(row, 0);
         for (std::int32_t item = first_[i]; item < first_[i + 1]; ++item) fn(item, item - first_[i]);
     }
-    /// The number in the ShapeStore of the geometry of each item.
-    const std::int32_t* shapes() const { return shape_.data(); }
     /// The piece that an item of a row is; null: the item is the body.
     const StoredPiece* piece_of(const WorldState<Real>& world, std::int32_t row, std::int32_t item) const {
         if (item == row) return nullptr;
@@ -38,8 +36,15 @@ class PieceItems {
         const StoredPiece* piece = empty() ? nullptr : piece_of(world, row, item);
         return piece ? piece->number : world.bodies.shape[static_cast<std::size_t>(row)];
     }
-    /// Adds the poses of the pieces to those of the rows.
-    void add_poses(Column<Real>& poses) const;
+    /// Pieces, which are the items behind the rows.
+    std::size_t count() const { return row_.size(); }
+    /// Calls fn(item, row of its body, number of its geometry) for each piece.
+    template <class Fn>
+    void for_each_piece(const Fn& fn) const {
+        const std::size_t rows = shape_.size() - row_.size();
+        for (std::size_t i = 0; i < row_.size(); ++i)
+            fn(rows + i, static_cast<std::size_t>(row_[i]), shape_[rows + i]);
+    }
 
     std::size_t bytes() const {
         return first_.bytes() + shape_.bytes() + row_.capacity() * sizeof(std::int32_t);

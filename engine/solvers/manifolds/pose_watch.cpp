@@ -29,7 +29,6 @@ void PoseWatch<Real>::look(const WorldState<Real>& world, double dt, const Conta
                            bool forgets, const TurnAngles& turn_angles, const Executor& executor) {
     const Bodies<Real>& bodies = world.bodies;
     const std::size_t rows = bodies.rows();
-    pose.resize(4 * angle_.size());  // poses of pieces are none of rows
     pose.resize(4 * rows), angle_.resize(rows), base_.resize(4 * rows), has_moved_.resize(rows);
     come_.resize(2 * rows), turned_.resize(rows), thinnest_.resize(rows), way_.resize(rows);
     path_.resize(rows);

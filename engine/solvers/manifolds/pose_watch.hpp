@@ -21,7 +21,7 @@ class PoseWatch {
   public:
     using TurnAngles = decltype(ConvexKernels<Real>::turn_angles);
 
-    Column<Real> pose;  ///< [rows][4]: x, y [m], cosine, sine of the angle. More may follow, of pieces
+    Column<Real> pose;  ///< [rows][4]: x, y [m], cosine, sine of the angle
 
     /// Reads the poses at the start of a step.
     /// @param near  of the contacts
@@ -41,6 +41,9 @@ class PoseWatch {
         Real& thinnest = thinnest_[static_cast<std::size_t>(row)];
         thinnest = std::min(thinnest, thickness);
     }
+
+    /// m, of the thinnest contact that a row has had since all were found; infinite: none is known.
+    Real thinnest(std::size_t row) const { return thinnest_[row]; }
 
     /// [rows][2], m, what each body that is awake has come in the step before, and m of its rim. Rows up to
     /// `rows`, of what else there is, have zero.

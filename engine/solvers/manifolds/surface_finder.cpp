@@ -86,13 +86,14 @@ void SurfaceFinder<Real>::add(const WorldState<Real>& world, const EdgeCandidate
 template <class Real>
 void SurfaceFinder<Real>::find(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
                                const SubstepTerms& terms, const ContactDistance& near,
-                               ManifoldList<Real>& list, const Executor& executor) {
+                               std::span<const double> ahead, ManifoldList<Real>& list,
+                               const Executor& executor) {
     list.clear(), manifolds_.clear(), pieces_.clear();
     if (world.walls) {
         list_near_walls(world, terms, near, executor);
-        find_walls(world, terms, near, list);
+        find_walls(world, terms, near, ahead, list);
     }
-    find_edges(world, edges, terms, near, list);
+    find_edges(world, edges, terms, near, ahead, list);
     list.fit();
     const Bodies<Real>& bodies = world.bodies;
     const auto real = [](double value) { return static_cast<Real>(value); };
@@ -135,7 +136,8 @@ void SurfaceFinder<Real>::list_near_walls(const WorldState<Real>& world, const S
 /// there within the step.
 template <class Real>
 void SurfaceFinder<Real>::find_walls(const WorldState<Real>& world, const SubstepTerms& terms,
-                                     const ContactDistance& near, ManifoldList<Real>& list) {
+                                     const ContactDistance& near, std::span<const double> ahead,
+                                     ManifoldList<Real>& list) {
     const Bodies<Real>& bodies = world.bodies;
     const Walls& walls = *world.walls;
     const Enclosure<double> enclosure(&walls);
@@ -149,8 +151,11 @@ void SurfaceFinder<Real>::find_walls(const WorldState<Real>& world, const Subste
                 bodies.shape[row],
                 [&](const ConvexShape<Real>& shape, std::int32_t number, const StoredPiece* piece) {
                     const double thick = shape.inradius, margin = near(thick) + thick + way;
-                    const Manifold<double> m = manifold_on_plane(placed_row(world, row, shape),
-                                                                 wall_normal(side), wall_corner(walls, side));
+                    const std::int32_t shape_number = piece ? piece->number : bodies.shape[row];
+                    const MovingConvex moving = moving_row(world, row, shape_number);
+                    Manifold<double> m = manifold_on_plane(at_time(moving, ahead[row]), wall_normal(side),
+                                                           wall_corner(walls, side));
+                    move_back(m, moving, {}, ahead[row]);
                     if (m.separation1 > margin && m.separation2 > margin) return;
                     list.add(static_cast<std::int32_t>(row), Partner::wall(side).stored(),
                              {bodies.id[row], BodyId{}, ManifoldName::place_of_side(side, number)});
@@ -165,7 +170,7 @@ void SurfaceFinder<Real>::find_walls(const WorldState<Real>& world, const Subste
 template <class Real>
 void SurfaceFinder<Real>::find_edges(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
                                      const SubstepTerms& terms, const ContactDistance& near,
-                                     ManifoldList<Real>& list) {
+                                     std::span<const double> ahead, ManifoldList<Real>& list) {
     const Bodies<Real>& bodies = world.bodies;
     for (std::size_t first = 0, last = 0; first < pairs_.size(); first = last) {
         near_edges_.clear();
@@ -178,7 +183,7 @@ void SurfaceFinder<Real>::find_edges(const WorldState<Real>& world, const EdgeCa
         if (!pose.takes_part) continue;
         world.shapes.for_each_piece(bodies.shape[row], [&](const ConvexShape<Real>& shape,
                                                            std::int32_t number, const StoredPiece* piece) {
-            find_on_chain(world, pose, terms, near, row, shape, number, piece, list);
+            find_on_chain(world, pose, terms, near, ahead[row], row, shape, number, piece, list);
         });
     }
 }
@@ -186,7 +191,7 @@ void SurfaceFinder<Real>::find_edges(const WorldState<Real>& world, const EdgeCa
 /// Finds where a body, or a piece of it, touches the near edges, which are of one chain.
 template <class Real>
 void SurfaceFinder<Real>::find_on_chain(const WorldState<Real>& world, const EdgePose& pose,
-                                        const SubstepTerms& terms, const ContactDistance& near,
+                                        const SubstepTerms& terms, const ContactDistance& near, double ahead,
                                         std::size_t row, const ConvexShape<Real>& shape, std::int32_t number,
                                         const StoredPiece* piece, ManifoldList<Real>& list) {
     const Bodies<Real>& bodies = world.bodies;
@@ -210,19 +215,18 @@ void SurfaceFinder<Real>::find_on_chain(const WorldState<Real>& world, const Edg
         (rotate_back(pose.end_turn, centre + terms.dt * moving.velocity - pose.end_position) - body.centre);
     moving.spin -= (pose.end_angle - pose.angle) / terms.dt;
     const double met = time_of_meeting_edges(world, moving, angle_in_chain, terms.dt, thickness);
+    // What an edge that turns does in the step is in turning_edges.hpp.
+    const double time = met > 0 ? met : pose.angle == pose.end_angle ? ahead : 0;
     PlacedConvex then = body;
-    if (met > 0)
-        then.centre = body.centre + met * moving.velocity,
-        then.turn = rotation_by(angle_in_chain + met * moving.spin);
+    if (time > 0)
+        then.centre = body.centre + time * moving.velocity,
+        then.turn = rotation_by(angle_in_chain + time * moving.spin);
     const Vec2 offset = piece ? Vec2{piece->x, piece->y} : Vec2{};
     if (piece) then = around_own_centre(then, offset);
     find_chain_manifolds(then, world.edges.edges, near_edges_, margin, found_);
     for (ChainManifold& found : found_) {
         if (piece) found.manifold = about_body(found.manifold, rotate(then.turn, offset));
-        if (met > 0) {
-            moving.angle = angle_in_chain;
-            move_back(found.manifold, moving, {}, met);
-        }
+        if (time > 0) move_back(found.manifold, moving, {}, time);
         list.add(static_cast<std::int32_t>(row), Partner::edge(found.edge).stored(),
                  {bodies.id[row], bodies.id[pose.row], ManifoldName::place_of_side(0, number)});
         manifolds_.push_back(turned(found.manifold, pose.turn)), pieces_.push_back(piece);
