@@ -122,11 +122,11 @@ TEST_SUITE("hard cases/frictionless heaps") {
         }
     }
 
-    // With contacts of the start of each step none of these heaps sleeps.
+    // With contacts of the start of each step one such heap in eight sleeps.
     TEST_CASE("B33: heaps of smooth boxes and polygons that fell and turned sleep") {
-        const int seeds = scaled(3, 1);
+        const int seeds = scaled(2, 1);
         int heaps = 0, asleep = 0;
-        for (const int bodies : {200, scaled(600, 300)})
+        for (const int bodies : {scaled(600, 200), 200})
             for (int seed = 1; seed <= seeds; ++seed)
                 for (const bool of_boxes : {true, false}) {
                     World world(heap_of_shapes(bodies, of_boxes, static_cast<unsigned>(seed)),
