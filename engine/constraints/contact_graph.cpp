@@ -180,7 +180,8 @@ template <class Real>
 void ContactGraph<Real>::colour_group(Found& found, std::size_t group, std::uint64_t* of_a,
                                       std::uint64_t* of_b) {
     std::uint32_t* counts = colour_counts_.data() + group * (kColours + 1);
-    const auto colour = [&](std::size_t i) {
+    // Called in two places, where compilers else decide by what the file has besides.
+    const auto colour = [&](std::size_t i) __attribute__((always_inline)) {
         const auto a = static_cast<std::size_t>(found.a[i]), b = static_cast<std::size_t>(found.b[i]);
         std::uint64_t taken = of_a[a];
         if (of_b) taken |= of_b[b];
@@ -205,7 +206,8 @@ void ContactGraph<Real>::colour_group(Found& found, std::size_t group, std::uint
         const std::size_t carries = impulses.normal > 0;
         front += carries, back -= 1 - carries;
     }
-    for (std::size_t k = first; k < last; ++k) colour(order[k < front ? k : front + last - 1 - k]);
+    for (std::size_t k = first; k < front; ++k) colour(order[k]);
+    for (std::size_t k = last; k-- > front;) colour(order[k]);
 }
 
 template <class Real>
