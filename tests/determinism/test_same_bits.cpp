@@ -27,7 +27,7 @@ namespace {
 constexpr int kSteps = 90;
 
 constexpr Golden kGolden[] = {
-    {"mixed shapes", 0x331b47d742ab8887, 0x7d2f9279ff5b0f0f},
+    {"mixed shapes", 0x1683a42a0f631c83, 0x2aa6d0a4b1697e70},
     {"bouncing crowd", 0x32f5cf7cf7591ae8, 0x5d0e0f7fea4c8122},
     {"rough gas", 0xc009256aceff94e4, 0xb74961daf77a2622},
     {"gas", 0x680b8eec4001de52, 0x87bedad9b790c353},
@@ -38,7 +38,7 @@ constexpr Golden kGolden[] = {
     {"rolling sizes", 0x310262d8720d7578, 0x9915bf3bb359a03d},
     {"turning chain", 0xb431798060e29745, 0x5f7c2321945c6e3},
     {"woken sleepers", 0xc96d16ac37412fb, 0x73b51f7b255f0ebe},
-    {"falling compounds", 0x8568a86a7176e799, 0x144d60cf778c64d4},
+    {"falling compounds", 0x9083efb627be0931, 0x546bf55e288b7962},
 };
 
 }  // namespace

@@ -252,7 +252,8 @@ void Manifolds<Real>::look_ahead_at_surfaces(const WorldState<Real>& world, cons
         const BodyId id = old_surfaces_.names[i].a;
         if (!world.handles.is_alive(id)) continue;
         const std::size_t row = world.handles.row_of_slot(id.index);
-        if (looks_ahead(old_surfaces_.memory[i], bodies.inradius(row), bodies.mass[row], terms))
+        const bool is_smooth = !(bodies.friction[row] > 0);
+        if (is_smooth && looks_ahead(old_surfaces_.memory[i], bodies.inradius(row), bodies.mass[row], terms))
             ahead_on_surfaces_[row] = ahead_.time(row);
     }
 }
@@ -397,7 +398,8 @@ bool Manifolds<Real>::place_block(const Bodies<Real>& bodies, const SubstepTerms
         const auto a = static_cast<std::size_t>(bodies_.a[i]), b = static_cast<std::size_t>(bodies_.b[i]);
         const bool b_moves = b < bodies.count && !bodies.is_immovable(b);
         const Real mass = b_moves ? std::min(bodies.mass[a], bodies.mass[b]) : bodies.mass[a];
-        is_ahead[i - first] = looks_ahead(bodies_.memory[i], bodies_.thickness[i], mass, terms);
+        const bool is_smooth = !(bodies.friction[a] > 0 && bodies.friction[b] > 0);
+        is_ahead[i - first] = is_smooth && looks_ahead(bodies_.memory[i], bodies_.thickness[i], mass, terms);
         any = any || is_ahead[i - first];
     }
     if (!any) return false;

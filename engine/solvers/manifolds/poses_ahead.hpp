@@ -14,7 +14,8 @@ namespace carom {
 /// looked for ahead: what swings so fast the steps cannot follow, and its velocity is noise.
 inline constexpr double kLargestWayOfLoad = 0.25;
 
-/// Whether a contact is looked for ahead: if it presses, but not so hard. Others may be impacts.
+/// Whether a contact without friction is looked for ahead: if it presses, but not so hard. Others may be
+/// impacts.
 /// @param mass  kg, of the lighter body
 template <class Real>
 bool looks_ahead(const ManifoldMemory<Real>& memory, Real thickness, Real mass, const SubstepTerms& terms) {
@@ -31,7 +32,8 @@ bool looks_ahead(const ManifoldMemory<Real>& memory, Real thickness, Real mass, 
 /// exp(w² dt t / 4), at w = 6 / s and 60 steps a second by 4.5 times in ten seconds. With those of the end
 /// swings fade as fast. docs/decisions/0057-contacts-ahead.md.
 ///
-/// Contacts that carry no load yet are found where bodies are: they may be impacts.
+/// Contacts that carry no load yet are found where bodies are: they may be impacts. So are those with
+/// friction, which holds what would swing.
 ///
 /// Cost: about 15 ns a body.
 template <class Real>
