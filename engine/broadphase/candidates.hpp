@@ -236,7 +236,7 @@ class Candidates {
     std::vector<std::int32_t> strays_;
     double overshoot_ = 0;
     Column<Real> reach_;
-    // Of rule `own`: what has happened since the pairs were found anew.
+    // These members are of rule `own`, and hold what has happened since the pairs were found anew.
     MovingPlaces<Real> places_;
     Column<Real> first_reach_;  // m
     std::vector<Pair> new_pairs_, added_pairs_, spare_pairs_;

@@ -81,7 +81,8 @@ class RowNames {
     std::vector<std::uint8_t> is_loose_;     // a row
     std::vector<std::int32_t> loose_rows_, fresh_rows_;
     std::vector<std::int32_t> sorted_rows_;
-    // Of the last `follow`: rows that hold another body than before; the former row of each, kNone if fresh.
+    // The last `follow` left rows that hold another body than before, and the former row of every row, kNone
+    // if it is fresh.
     std::vector<std::int32_t> changed_rows_, old_rows_;
 };
 

@@ -10,7 +10,7 @@ namespace {
 /// Candidates a body, all in all and of one body, from which on a heap of bodies in one place is thinned out.
 constexpr std::size_t kCrowdedMean = 8;
 constexpr std::size_t kCrowded = 128;
-/// Of the smaller radius: an overlap that is not one of bodies that merely lie on each other.
+/// Bodies that overlap by more than this share of the smaller radius do not merely lie on each other.
 constexpr double kDeep = 0.2;
 /// Candidates of a body in a crowd that are kept, on average, of those that overlap it deeply.
 constexpr std::uint64_t kKept = 48;

@@ -23,8 +23,8 @@ find_program(CAROM_CLANG clang++)
 if(NOT CAROM_CLANG)
     set(CAROM_CLANG ${CMAKE_CXX_COMPILER})
 endif()
-carom_add_embed_test(subdirectory -DCMAKE_CXX_COMPILER=${CAROM_CLANG} -DCAROM_FOLDER=${PROJECT_SOURCE_DIR} -DCAROM_OPENMP=OFF -DCMAKE_BUILD_TYPE=Debug
-                     -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCAROM_ISAS=scalar -DCAROM_PRECOMPILE_ENGINE=ON)
+carom_add_embed_test(subdirectory -DCMAKE_CXX_COMPILER=${CAROM_CLANG} -DCAROM_FOLDER=${PROJECT_SOURCE_DIR}
+                     -DCAROM_OPENMP=OFF -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCAROM_ISAS=scalar -DCAROM_PRECOMPILE_ENGINE=ON)
 set_tests_properties(${embed}.subdirectory PROPERTIES COST 60)
 
 add_test(NAME ${embed}.extract_example

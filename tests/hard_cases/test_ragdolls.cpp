@@ -126,12 +126,9 @@ TEST_SUITE("hard cases: joints") {
     }
 
     TEST_CASE("what moves on in a heap of ragdolls without friction in their hinges hangs and swings") {
-        // Chance decides how often a limb still leans on another one by then: of sixteen heaps there are none
-        // in 9 to 11.
-        const int heaps = scaled(16, 4);
-        int hanging = 0;
-        for (int seed = 1; seed <= heaps; ++seed) {
-            const Scene scene = heap_of_ragdolls(12, 0, static_cast<unsigned>(seed));
+        for (const unsigned seed : {1u, 2u, 3u}) {
+            CAPTURE(seed);
+            const Scene scene = heap_of_ragdolls(12, 0, seed);
             World world(scene);
             const double start = world.ledger().energy.total();
             for (int i = 0; i < 20 * 60; ++i) world.step(kStep);
@@ -154,16 +151,12 @@ TEST_SUITE("hard cases: joints") {
                     swing.high = std::max(swing.high, state.angle);
                 }
             }
-            bool all_hang = true;
-            for (const Swing& swing : swings) {
+            for (std::uint32_t b = 0; b < swings.size(); ++b) {
+                if (swings[b].energy < 2e-8) continue;
+                CAPTURE(b);
                 // A capsule that hangs is upright in the middle of its swing.
-                if (swing.energy >= 2e-8 && std::fabs(std::cos(0.5 * (swing.low + swing.high))) >= 0.1)
-                    all_hang = false;
+                CHECK(std::fabs(std::cos(0.5 * (swings[b].low + swings[b].high))) < 0.1);
             }
-            hanging += all_hang;
         }
-        report("heaps of ragdolls without friction in their hinges: of ", heaps, " in ", hanging,
-               " what moves hangs");
-        CHECK(2 * hanging >= heaps);
     }
 }

@@ -74,7 +74,8 @@ template <class Real, class Lanes, class F>
     const auto a = Lanes::load_rows4(k.come, k.a + p), b = Lanes::load_rows4(k.come, k.b + p);
     const F along = (b[0] - a[0]) * m.normal_x + (b[1] - a[1]) * m.normal_y;
     m.separation1 -= along + b[2] * m.lever_b1 - a[2] * m.lever_a1;
-    m.separation2 -= along + b[2] * m.lever_b2 - a[2] * m.lever_a2;  // of no point: lost in rounding
+    m.separation2 -=
+        along + b[2] * m.lever_b2 - a[2] * m.lever_a2;  // a point that there is not stays at 1e30
 }
 
 /// @return how many are live.

@@ -50,8 +50,8 @@ struct FindApproached {
 template <class Real>
 struct FindManifolds {
     const Real* pose;  // [rows][4]: x, y [m], cosine and sine of the angle
-    // [rows][4], or none: m in x and y, rad that each has come by to be there; unused. Separations become
-    // those of before, as normals and levers are.
+    // [rows][4], or null: m in x and y and rad by which each has come there; the fourth is not read. With it
+    // separations are those of where bodies came from, along the rows of where they are.
     const Real* come;
     const std::int32_t* shape;        // by row: number in `shapes`
     const ConvexShape<Real>* shapes;  //

@@ -248,12 +248,13 @@ template <class Real>
 void Manifolds<Real>::look_ahead_at_surfaces(const WorldState<Real>& world, const SubstepTerms& terms) {
     const Bodies<Real>& bodies = world.bodies;
     ahead_on_surfaces_.assign(bodies.rows(), 0);
+    if (ahead_.empty()) return;
     for (std::size_t i = 0; i < old_surfaces_.count(); ++i) {
         const BodyId id = old_surfaces_.names[i].a;
         if (!world.handles.is_alive(id)) continue;
         const std::size_t row = world.handles.row_of_slot(id.index);
-        const bool is_smooth = !(bodies.friction[row] > 0);
-        if (is_smooth && looks_ahead(old_surfaces_.memory[i], bodies.inradius(row), bodies.mass[row], terms))
+        if (looks_ahead(old_surfaces_.memory[i], old_surfaces_.friction[i], bodies.inradius(row),
+                        bodies.mass[row], terms))
             ahead_on_surfaces_[row] = ahead_.time(row);
     }
 }
@@ -303,7 +304,7 @@ bool Manifolds<Real>::find(const WorldState<Real>& world, const EdgeCandidates<R
     surface_finder_.find(world, edges, terms, near, ahead_on_surfaces_, surfaces_, *loops.executor);
     recall_surfaces();
     block_is_found_.assign(padded(bodies_.count()) / kRowPadding, 0);
-    pose_a_.resize(padded(bodies_.count())), pose_b_.resize(padded(bodies_.count()));
+    if (!ahead_.empty()) pose_a_.resize(padded(bodies_.count())), pose_b_.resize(padded(bodies_.count()));
     loops.executor->for_each_chunk(bodies_.count(), kContactsPerTask, kNanosecondsToFind,
                                    [&](std::size_t, std::size_t first, std::size_t last) {
                                        find_chunk(world, terms, near, *loops.kernels->convex, first, last);
@@ -388,6 +389,7 @@ void Manifolds<Real>::describe_pieces(const WorldState<Real>& world, const Conta
 /// @return whether some are looked for ahead; if not, nothing is noted
 template <class Real>
 bool Manifolds<Real>::place_block(const Bodies<Real>& bodies, const SubstepTerms& terms, std::size_t first) {
+    if (ahead_.empty()) return false;
     const std::size_t last = std::min(bodies_.count(), first + kRowPadding);
     std::array<bool, kRowPadding> is_ahead{};
     const bool were_found = first / kRowPadding < first_new_block_;  // what was none then carries nothing
@@ -398,8 +400,8 @@ bool Manifolds<Real>::place_block(const Bodies<Real>& bodies, const SubstepTerms
         const auto a = static_cast<std::size_t>(bodies_.a[i]), b = static_cast<std::size_t>(bodies_.b[i]);
         const bool b_moves = b < bodies.count && !bodies.is_immovable(b);
         const Real mass = b_moves ? std::min(bodies.mass[a], bodies.mass[b]) : bodies.mass[a];
-        const bool is_smooth = !(bodies.friction[a] > 0 && bodies.friction[b] > 0);
-        is_ahead[i - first] = is_smooth && looks_ahead(bodies_.memory[i], bodies_.thickness[i], mass, terms);
+        is_ahead[i - first] =
+            looks_ahead(bodies_.memory[i], bodies_.friction[i], bodies_.thickness[i], mass, terms);
         any = any || is_ahead[i - first];
     }
     if (!any) return false;
@@ -418,9 +420,10 @@ template <class Real>
 void Manifolds<Real>::find_pairs(const WorldState<Real>& world, const SubstepTerms& terms,
                                  const ConvexKernels<Real>& kernels, std::size_t first, std::size_t last) {
     const bool all_rows = items_.empty();
-    const FindManifolds<Real> now{ahead_.pose.data(),
+    const bool has_ahead = !ahead_.empty();  // it has the poses of pieces, too
+    const FindManifolds<Real> now{has_ahead ? ahead_.pose.data() : poses_.pose.data(),
                                   nullptr,
-                                  ahead_.shape.data(),
+                                  has_ahead ? ahead_.shape.data() : world.bodies.shape.data(),
                                   world.shapes.data(),
                                   all_rows ? bodies_.a.data() : bodies_.item_a.data(),
                                   all_rows ? bodies_.b.data() : bodies_.item_b.data(),

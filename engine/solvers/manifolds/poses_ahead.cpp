@@ -12,11 +12,23 @@ constexpr double kLeadShare = 0.1;
 constexpr std::size_t kRowsPerTask = 1024;
 constexpr double kNanosecondsToLook = 3;  // a row, on one thread, for the executor
 
+/// Whether some contact may have no friction. Pieces have materials of their own, which are not looked at.
+template <class Real>
+bool may_be_smooth(const WorldState<Real>& world, const PieceItems<Real>& pieces) {
+    const auto is_smooth = [](double friction) { return !(friction > 0); };
+    const auto& friction = world.bodies.friction;
+    if (!pieces.empty() || (world.walls && is_smooth(world.walls->material.friction))) return true;
+    if (friction.is_uniform()) return is_smooth(friction.uniform_value());
+    return std::any_of(friction.column().begin(), friction.column().end(), is_smooth);
+}
+
 }  // namespace
 
 template <class Real>
 void PosesAhead<Real>::look(const WorldState<Real>& world, double dt, const PoseWatch<Real>& now,
                             const PieceItems<Real>& pieces, const Executor& executor) {
+    items_ = 0;
+    if (!may_be_smooth(world, pieces)) return;
     const std::size_t rows = world.bodies.rows(), items = rows + pieces.count();
     items_ = static_cast<std::int32_t>(items);
     pose.resize(8 * items), come.resize(8 * items), shape.resize(2 * items);

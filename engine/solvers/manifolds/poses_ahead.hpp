@@ -14,11 +14,14 @@ namespace carom {
 /// looked for ahead: what swings so fast the steps cannot follow, and its velocity is noise.
 inline constexpr double kLargestWayOfLoad = 0.25;
 
-/// Whether a contact without friction is looked for ahead: if it presses, but not so hard. Others may be
-/// impacts.
-/// @param mass  kg, of the lighter body
+/// Whether a contact is looked for ahead: if it has no friction, which would hold what swings, and presses,
+/// but not so hard. What does not press may be an impact.
+/// @param friction  coefficient of the contact
+/// @param mass      kg, of the lighter body
 template <class Real>
-bool looks_ahead(const ManifoldMemory<Real>& memory, Real thickness, Real mass, const SubstepTerms& terms) {
+bool looks_ahead(const ManifoldMemory<Real>& memory, Real friction, Real thickness, Real mass,
+                 const SubstepTerms& terms) {
+    if (friction > 0) return false;
     const Real load = memory.normal1 + memory.normal2;
     const auto way = static_cast<Real>(terms.dt * terms.dt / terms.substep_dt) * load;  // kg m
     return load > 0 && way < static_cast<Real>(kLargestWayOfLoad) * thickness * mass;
@@ -32,20 +35,21 @@ bool looks_ahead(const ManifoldMemory<Real>& memory, Real thickness, Real mass, 
 /// exp(w² dt t / 4), at w = 6 / s and 60 steps a second by 4.5 times in ten seconds. With those of the end
 /// swings fade as fast. docs/decisions/0057-contacts-ahead.md.
 ///
-/// Contacts that carry no load yet are found where bodies are: they may be impacts. So are those with
-/// friction, which holds what would swing.
-///
-/// Cost: about 15 ns a body.
+/// Cost: about 15 ns a body, where some surface has no friction.
 template <class Real>
 class PosesAhead {
   public:
-    // Of the items of PieceItems as they are now, then of the same items ahead.
+    // These columns hold the items of PieceItems as they are now, then the same items ahead.
     Column<Real> pose;           ///< [2 items()][4]: x, y [m], cosine, sine of the angle
     Column<Real> come;           ///< [2 items()][4]: m in x and y, rad from now on; s, how far ahead that is
     Column<std::int32_t> shape;  ///< [2 items()], number in the ShapeStore
 
+    /// Reads the poses at the start of a step, unless every contact has friction.
+    /// @param dt  s, of the step
     void look(const WorldState<Real>& world, double dt, const PoseWatch<Real>& now,
               const PieceItems<Real>& pieces, const Executor& executor);
+    /// Whether every contact has friction, so that nothing is looked for ahead in this step.
+    bool empty() const { return items_ == 0; }
     std::int32_t items() const { return items_; }
     /// How far ahead a row is [s].
     double time(std::size_t row) const {
