@@ -16,6 +16,13 @@ void ManifoldList<Real>::add(std::int32_t row_a, std::int32_t partner, const Man
 }
 
 template <class Real>
+void ManifoldList<Real>::add_kept(const KeptManifold<Real>& kept) {
+    add(0, 0, kept.name);
+    memory.back() = kept.memory, memory.back().slot = -1;
+    friction.resize(count()), friction[count() - 1] = kept.friction;
+}
+
+template <class Real>
 void ManifoldList<Real>::fit() {
     for (Column<Real>* column : {&margin, &thickness, &friction, &restitution}) column->resize(count());
     for_each_found_column(*this, [&](Column<Real>& column) { column.resize(count()); });

@@ -58,11 +58,14 @@ struct ManifoldName {
     friend bool operator==(const ManifoldName&, const ManifoldName&) = default;
 };
 
+/// What lasts of a contact while its body sleeps. It has no padding, so that equal states are saved as equal
+/// bytes.
 template <class Real>
 struct KeptManifold {
     ManifoldName name;
+    std::int32_t is_surface = 0;  ///< not zero: b is no body
     ManifoldMemory<Real> memory;
-    bool is_surface = false;  ///< b is no body
+    Real friction = 0;  ///< Coulomb coefficient
 };
 
 /// Contacts of convex shapes that can come about before the candidate pairs change, as columns.
@@ -88,6 +91,8 @@ struct ManifoldList {
     /// twice: what kernels find there is not looked at, but row 0 may be edges, which have no shape.
     void add(std::int32_t row_a, std::int32_t partner, const ManifoldName& name);
     void fit();
+    /// Appends what is known of a contact whose body wakes; its rows are those of no contact, to be found anew.
+    void add_kept(const KeptManifold<Real>& kept);
 
     ManifoldColumns<Real> columns();
     /// Writes what was found of a contact in double precision.

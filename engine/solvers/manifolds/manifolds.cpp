@@ -74,10 +74,8 @@ void Manifolds<Real>::renew(const WorldState<Real>& world, const Candidates<Real
     std::swap(bodies_, old_), bodies_.clear();
     // A contact that wakes has what it had when it fell asleep.
     if (world.bodies.asleep != asleep_then_)
-        for (const KeptManifold<Real>& kept : asleep_) {
-            ManifoldList<Real>& list = kept.is_surface ? surfaces_ : old_;
-            list.add(0, 0, kept.name), list.memory.back() = kept.memory, list.memory.back().slot = -1;
-        }
+        for (const KeptManifold<Real>& kept : asleep_)
+            (kept.is_surface != 0 ? surfaces_ : old_).add_kept(kept);
     items_.list(world);
     const std::int32_t *pair_a = candidates.pair_a(), *pair_b = candidates.pair_b();
     chosen_pairs_.choose(candidates.pair_count(), kNanosecondsToJudge, executor,
@@ -125,10 +123,10 @@ void Manifolds<Real>::keep_of_sleepers(const WorldState<Real>& world) {
     for (std::size_t i = 0; i < old_.count(); ++i)
         if (!is_recalled_[i] && old_.memory[i].is_loaded() &&
             (sleeps(old_.names[i].a) || sleeps(old_.names[i].b)))
-            asleep_.push_back({old_.names[i], old_.memory[i], false});
+            asleep_.push_back({old_.names[i], 0, old_.memory[i], old_.friction[i]});
     for (std::size_t i = 0; i < surfaces_.count(); ++i)
         if (surfaces_.memory[i].is_loaded() && sleeps(surfaces_.names[i].a))
-            asleep_.push_back({surfaces_.names[i], surfaces_.memory[i], true});
+            asleep_.push_back({surfaces_.names[i], 1, surfaces_.memory[i], surfaces_.friction[i]});
 }
 
 template <class Real>
