@@ -12,6 +12,7 @@ struct PathKernels {
     using Pass = PathCounts (*)(const SolvePaths<Real>&, std::size_t first, std::size_t last);
     Pass carry, warm_start, solve, sweep;
     Pass watch, settle;  // of contacts beside the paths
+    Pass sum_loads, scale_loads, retain_loads;
 };
 
 /// The kernels of convex shapes of one instruction set in one precision. They are compiled in files of their

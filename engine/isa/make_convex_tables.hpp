@@ -5,6 +5,7 @@
 #include "kernels/manifolds/find_approached.hpp"
 #include "kernels/manifolds/find_manifolds.hpp"
 #include "kernels/manifolds/turn_angles.hpp"
+#include "kernels/paths/path_loads.hpp"
 #include "kernels/paths/solve_paths.hpp"
 #include "kernels/paths/sweep_paths.hpp"
 #include "kernels/paths/warm_start_paths.hpp"
@@ -22,7 +23,9 @@ constexpr ConvexKernels<Real> make_convex_kernels() {
             .find_approached = &find_approached<Real, Isa>,
             .drop_parted = &drop_parted<Real, Isa>,
             .paths = {&carry_paths<Real, Isa>, &warm_start_paths<Real, Isa>, &solve_paths<Real, Isa>,
-                      &sweep_all_paths<Real, Isa>, &watch_paths<Real, Isa>, &settle_watched<Real>}};
+                      &sweep_all_paths<Real, Isa>, &watch_paths<Real, Isa>, &settle_watched<Real>,
+                      &sum_path_loads<Real, Isa>, &scale_path_loads<Real, Isa>,
+                      &retain_path_loads<Real, Isa>}};
 }
 
 /// The kernels of convex shapes, instantiated for each instruction set by its file.

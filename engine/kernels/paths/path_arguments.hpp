@@ -38,6 +38,18 @@ struct alignas(64) PathLink {
     Real floor1[kPathLanes], floor2[kPathLanes];            // m/s, least relative normal velocities
 };
 
+/// What the loads of contacts are corrected by: engine/solvers/shared/coarse_correction.hpp.
+template <class Real>
+struct PathLoads {
+    Real* load = nullptr;          // [rows][4], kernels/contacts/coarse_correction.hpp
+    Real* stress = nullptr;        // [rows][4], likewise
+    const Real* scale = nullptr;   // [rows], s; zero for what is no body
+    const Real* motion = nullptr;  // [rows][4]: x, y [m] in the first two
+    std::int32_t last_row = 0;     // of `motion`
+    Real kept = 0;                 // share of what scaling added
+    bool is_beside = false;        // the bundles are of contacts beside the paths, which may share bodies
+};
+
 /// Paths of contacts, a bundle after the other.
 template <class Real>
 struct SolvePaths {
@@ -70,6 +82,7 @@ struct SolvePaths {
     int most_of_slender;      // likewise, of bundles that are slender
     bool tries_pieces;        // whether paths that do not settle as a whole are solved in pieces
     int sweeps_of_unsettled;  // over paths that do not settle so either
+    PathLoads<Real> coarse;   // for the kernels of path_loads.hpp alone
     std::uint32_t* closing;   // [bundles]: of contacts beside the paths, a bit for each lane that closes
     void* scratch;            // of path_scratch_bytes(longest bundle) bytes, aligned to 64
 };

@@ -373,14 +373,6 @@ typename Lanes::Mask solve_in_pieces(const PathBatch<Real>& p, LinkScratch<Lanes
     return bad;
 }
 
-/// Whether a bundle is left out: all of its paths were slow when they were solved last.
-template <class Real>
-bool rests(const SolvePaths<Real>& k, std::size_t bundle) {
-    if (!(k.resting_speed > 0) || k.is_slender[bundle] != 0) return false;
-    const Real* const speeds = k.restless + kPathLanes * bundle;
-    return *std::max_element(speeds, speeds + kPathLanes) < k.resting_speed;
-}
-
 /// Separations of contacts that are carried on from the step before, moved by what the bodies have come in
 /// it.
 template <class Real, class Isa>

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "kernels/paths/path_lanes.hpp"
 
 // Gauss-Seidel sweeps along paths of contacts.
@@ -8,7 +10,6 @@ namespace carom {
 namespace {
 
 /// One Gauss-Seidel sweep along the paths, of the lanes in `where` alone.
-/// @return the largest change of an impulse, in m/s
 template <class Lanes, class Real>
 void sweep_paths(const PathBatch<Real>& p, bool is_forward, typename Lanes::Mask where) {
     using F = typename Lanes::Batch;
@@ -51,14 +52,25 @@ void sweep_paths(const PathBatch<Real>& p, bool is_forward, typename Lanes::Mask
     }
 }
 
-/// The last pass of a substep: a sweep over all links.
+/// Whether a bundle is left out: all of its paths were slow when they were solved last.
+template <class Real>
+bool rests(const SolvePaths<Real>& k, std::size_t bundle) {
+    if (!(k.resting_speed > 0) || k.is_slender[bundle] != 0) return false;
+    const Real* const speeds = k.restless + kPathLanes * bundle;
+    return *std::max_element(speeds, speeds + kPathLanes) < k.resting_speed;
+}
+
+/// The last pass of a substep: a sweep over all links, of bundles that do not rest.
 template <class Real, class Isa>
 PathCounts sweep_all_paths(const SolvePaths<Real>& arguments, std::size_t first, std::size_t last) {
     using Lanes = simd::Lanes<Real, Isa>;
     using F = typename Lanes::Batch;
     const SolvePaths<Real> k = arguments;  // a copy: no store can change it
-    for_each_path_batch<Lanes>(k, first, last,
-                               [&](const PathBatch<Real>& p) { sweep_paths<Lanes>(p, true, F(0) <= F(0)); });
+    for (std::size_t bundle = first; bundle < last; ++bundle)
+        if (!rests(k, bundle))
+            for_each_path_batch<Lanes>(k, bundle, bundle + 1, [&](const PathBatch<Real>& p) {
+                sweep_paths<Lanes>(p, true, F(0) <= F(0));
+            });
     return {};
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "solvers/paths/path_link.hpp"
+
 namespace carom {
 namespace {
 
@@ -39,8 +41,6 @@ constexpr double kTolerance = 2e-3;
 constexpr double kRestingSpeed = 0.25;
 /// and what such a path moves in a substep is less than this share of the thickness of its bodies.
 constexpr double kRestingShare = 1e-4;
-/// Two points whose rows are alike by more than this are solved as one: det K / (k11 k22).
-constexpr double kLeastDeterminant = 1e-3;
 
 /// Edges that turn farther in a step [rad] are taken to move straight on: of what is next to them then the
 /// start of the step tells nothing.
@@ -172,7 +172,12 @@ template <class Real>
 void PathSolver<Real>::fill_links(bool found, const WorldState<Real>& world, const BodyRecords<Real>& records,
                                   const StepLoops<Real>& loops) {
     const auto fill = [&](std::size_t n) {
-        if (manifolds.is_found(manifolds.live()[n]) == found) fill_link(world, records, n, found);
+        const std::int32_t contact = manifolds.live()[n];
+        if (manifolds.is_found(contact) != found) return;
+        const PathCut::Place place = cut().places()[n];
+        write_link<Real>({links_[place.link], place.lane, place.is_reversed, row_of_far_[n]},
+                         manifolds.list_of(contact), Manifolds<Real>::place_of(contact), found, world.bodies,
+                         records);
     };
     for_each_number(manifolds.live().size(), kNanosecondsToFill, *loops.executor, fill);
 }
@@ -233,66 +238,6 @@ void PathSolver<Real>::turn_edge(const WorldState<Real>& world, const EdgeCandid
                         .velocity = (1 / terms.dt) * (pose.end_position - pose.position),
                         .spin = turned / terms.dt},
                        terms.substep_dt, records);
-}
-
-template <class Real>
-void PathSolver<Real>::fill_link(const WorldState<Real>& world, const BodyRecords<Real>& records,
-                                 std::size_t number, bool found) {
-    const Bodies<Real>& bodies = world.bodies;
-    ManifoldList<Real>& list = manifolds.list_of(manifolds.live()[number]);
-    const std::size_t i = Manifolds<Real>::place_of(manifolds.live()[number]);
-    const typename PathCut::Place place = cut().places()[number];
-    PathLink<Real>& link = links_[place.link];
-    const std::size_t lane = place.lane;
-    const auto none = static_cast<Real>(kNoPoint);
-    const auto row_a = static_cast<std::size_t>(list.a[i]);
-    const Real rim_a = 1 / bodies.rim(row_a);
-    const bool is_body = list.b[i] >= 0;
-    // The rim of what is no body is 1 m.
-    const Real rim_b = is_body ? 1 / bodies.rim(static_cast<std::size_t>(list.b[i])) : Real(1);
-    Real a1 = list.lever_a1[i] * rim_a, a2 = list.lever_a2[i] * rim_a, at = list.lever_a_t[i] * rim_a;
-    Real b1 = list.lever_b1[i] * rim_b, b2 = list.lever_b2[i] * rim_b, bt = list.lever_b_t[i] * rim_b;
-    ManifoldMemory<Real>& memory = list.memory[i];
-    Real s1 = found ? list.separation1[i] : memory.separation1,
-         s2 = found ? list.separation2[i] : memory.separation2;
-    if (!(memory.normal_x * list.normal_x[i] + memory.normal_y * list.normal_y[i] >
-          static_cast<Real>(kSameNormal)))
-        memory.forget_impulses();
-    memory.normal_x = list.normal_x[i], memory.normal_y = list.normal_y[i];
-    // Two points that no impulse can tell apart are one: the deeper.
-    const auto mass = [&](std::size_t row, Real& w, Real& w2) {
-        const Real signed_mass = records.velocity[4 * row + 3];
-        w = std::fabs(signed_mass), w2 = 2 * std::max(signed_mass, Real(0));
-    };
-    Real wa, wa2, wb = 0, wb2 = 0;
-    mass(row_a, wa, wa2);
-    if (row_of_far_[number] == list.b[i]) mass(static_cast<std::size_t>(list.b[i]), wb, wb2);
-    if (s2 < none) {
-        const Real w = wa + wb, k11 = w + wa2 * a1 * a1 + wb2 * b1 * b1,
-                   k22 = w + wa2 * a2 * a2 + wb2 * b2 * b2, k12 = w + wa2 * a1 * a2 + wb2 * b1 * b2;
-        if (k11 * k22 - k12 * k12 < static_cast<Real>(kLeastDeterminant) * (k11 * k22)) {
-            if (s2 < s1) {
-                s1 = s2, a1 = a2, b1 = b2;
-                list.lever_a1[i] = list.lever_a2[i], list.lever_b1[i] = list.lever_b2[i];
-            }
-            s2 = none;
-        }
-    }
-    if (!(s2 < none)) {
-        a2 = a1, b2 = b1;
-        memory.normal1 += memory.normal2, memory.normal2 = 0;
-    }
-    const bool back = place.is_reversed;
-    link.body[lane] = back ? list.a[i] : row_of_far_[number];
-    link.normal_x[lane] = back ? -list.normal_x[i] : list.normal_x[i];
-    link.normal_y[lane] = back ? -list.normal_y[i] : list.normal_y[i];
-    link.near1[lane] = back ? -b1 : a1, link.near2[lane] = back ? -b2 : a2,
-    link.near_t[lane] = back ? -bt : at;
-    link.far1[lane] = back ? -a1 : b1, link.far2[lane] = back ? -a2 : b2, link.far_t[lane] = back ? -at : bt;
-    link.separation1[lane] = s1, link.separation2[lane] = s2;
-    link.normal1[lane] = memory.normal1, link.normal2[lane] = memory.normal2;
-    link.tangent[lane] = memory.tangent;
-    link.friction[lane] = list.friction[i], link.thickness[lane] = list.thickness[i];
 }
 
 template <class Real>
@@ -412,7 +357,10 @@ void PathSolver<Real>::solve(const SubstepTerms& terms, BodyRecords<Real>& recor
         });
         run(kernels.solve, k, loops);
     }
-    if (sweeps) {
+    // In a crowd paths are short, and what they hand on to each other is more than what is left in them.
+    const bool is_crowd = manifolds.live().size() >= kContactsOfSmallWorld;
+    if (sweeps || (is_crowd && rolling_.empty())) {
+        k.resting_speed = sweeps ? Real(0) : static_cast<Real>(kRestingSpeed * terms.fall_speed());
         run(kernels.sweep, k, loops);
         solve_watched(k, loops);
     }
@@ -420,6 +368,18 @@ void PathSolver<Real>::solve(const SubstepTerms& terms, BodyRecords<Real>& recor
         links_[h.link].separation1[h.lane] = h.separation1;
         links_[h.link].separation2[h.lane] = h.separation2;
     }
+}
+
+template <class Real>
+void PathSolver<Real>::run_loads(LoadPass pass, const PathLoads<Real>& loads, const SubstepTerms& terms,
+                                 BodyRecords<Real>& records, const StepLoops<Real>& loops) {
+    if (manifolds.live().empty()) return;
+    SolvePaths<Real> k = arguments(terms, records);
+    k.coarse = loads;
+    const Pass kernel = loops.kernels->convex->paths.*pass;
+    run(kernel, k, loops);
+    k.coarse.is_beside = true;
+    kernel(k, cut().first_watched(), cut().bundles());
 }
 
 template <class Real>

@@ -63,6 +63,10 @@ class PathSolver {
                            contact.link.separation1[contact.lane], contact.link.separation2[contact.lane]});
     }
     void unhide() { hidden_.clear(); }
+    using LoadPass = typename PathKernels<Real>::Pass PathKernels<Real>::*;
+    /// Runs a pass of coarse correction (kernels/paths/path_loads.hpp) over all contacts.
+    void run_loads(LoadPass pass, const PathLoads<Real>& loads, const SubstepTerms& terms,
+                   BodyRecords<Real>& records, const StepLoops<Real>& loops);
     /// To be called when bodies may have become others, that move or do not: paths are cut anew.
     void forget_cut() { choice_.forget_cut(); }
     /// Moves the surfaces of kinematic bodies on by a substep.
@@ -146,8 +150,6 @@ class PathSolver {
                          const SubstepTerms& terms, BodyRecords<Real>& records);
     void turn_edge(const WorldState<Real>& world, const EdgeCandidates<Real>& edges, std::size_t number,
                    const SubstepTerms& terms, BodyRecords<Real>& records);
-    void fill_link(const WorldState<Real>& world, const BodyRecords<Real>& records, std::size_t number,
-                   bool found);
 
     PathRolling<Real> rolling_;
     TurningEdges<Real> turning_edges_;

@@ -161,8 +161,8 @@ void SoftSolver<Real>::carry_out_impacts(const Column<Real>& motion, Books& book
 
 template <class Real>
 void SoftSolver<Real>::end_contacts() {
+    loads_.retain(view(), sweeps_, paths);
     paths.end(*loops_.executor);
-    loads_.retain(view(), sweeps_);
     supports_.for_each([&](std::size_t i) {
         const auto candidate = static_cast<std::size_t>(supports_.candidate[i]);
         graph.supports.normal_impulse[candidate] = supports_.normal_impulse[i];

@@ -111,7 +111,7 @@ class SoftSolver {
     void solve_contacts(int number, bool is_last);
     /// Corrects the loads of large piles between the sweeps of the last substep, if that is due, and sweeps
     /// once more.
-    void correct_loads(const StepFlight<Real>& flight) { loads_.correct(view(), flight, sweeps_); }
+    void correct_loads(const StepFlight<Real>& flight) { loads_.correct(view(), flight, sweeps_, paths); }
     /// Whether some discs stand in columns.
     bool has_chains() const { return !chains_.empty(); }
     /// Solves what the sweeps leave in columns of discs.

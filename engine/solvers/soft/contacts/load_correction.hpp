@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solvers/paths/path_solver.hpp"
 #include "solvers/shared/coarse_correction.hpp"
 #include "solvers/soft/contacts/contact_sweeps.hpp"
 
@@ -20,10 +21,11 @@ class LoadCorrection {
     /// @return whether it is for `correct` to do what follows the first sweep
     bool begin_substep(const StepView<Real>& step, int number, bool is_last);
     /// Corrects the loads, if that is due, and sweeps once more.
-    void correct(const StepView<Real>& step, const StepFlight<Real>& flight, ContactSweeps<Real>& sweeps);
+    void correct(const StepView<Real>& step, const StepFlight<Real>& flight, ContactSweeps<Real>& sweeps,
+                 PathSolver<Real>& paths);
     /// Takes back from the impulses what is not to last. After the books of the step, which have them as they
     /// were.
-    void retain(const StepView<Real>& step, ContactSweeps<Real>& sweeps);
+    void retain(const StepView<Real>& step, ContactSweeps<Real>& sweeps, PathSolver<Real>& paths);
 
     std::size_t bytes() const { return coarse_.bytes(); }
 
@@ -33,6 +35,7 @@ class LoadCorrection {
     }
 
   private:
+    PathLoads<Real> path_arguments(const StepView<Real>& step, const Real* motion);
     SolveContacts<Real> arguments(const StepView<Real>& step, ContactRows<Real>& rows);
 
     CoarseCorrection<Real> coarse_;
