@@ -91,7 +91,8 @@ struct ManifoldList {
     /// twice: what kernels find there is not looked at, but row 0 may be edges, which have no shape.
     void add(std::int32_t row_a, std::int32_t partner, const ManifoldName& name);
     void fit();
-    /// Appends what is known of a contact whose body wakes; its rows are those of no contact, to be found anew.
+    /// Appends what is known of a contact whose body wakes; its rows are those of no contact, to be found
+    /// anew.
     void add_kept(const KeptManifold<Real>& kept);
 
     ManifoldColumns<Real> columns();
