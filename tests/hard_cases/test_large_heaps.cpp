@@ -58,11 +58,11 @@ double median_speed(World& world, int from, int to) {
 
 }  // namespace
 
-TEST_SUITE("physics/large heaps") {
+TEST_SUITE("hard cases/large heaps") {
     // They slipped for ever: by waves of the whole heap, and because what one contact lost was taken for a
     // squeeze where so many layers lie on each other, and the loads above it were forgotten. Speeds were .06
     // to .12 m/s in these scenes, the largest overlaps .06 to .11.
-    TEST_CASE("large heaps of rough boxes come to rest, also those of a hundred layers") {
+    TEST_CASE("B46: large heaps of rough boxes come to rest, also those of a hundred layers") {
         struct Heap {
             int count;
             double slimness;
