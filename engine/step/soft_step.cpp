@@ -42,7 +42,7 @@ class SoftStep final : public SoftSimulation<Real> {
     static constexpr auto has_lost_loads = [](const Sim& sim) { return sim.soft.has_lost_loads(); };
     static constexpr auto may_heave = [](const Sim& sim) {
         return sim.world.effects.gravity &&
-               sim.world.bodies.moving() >= LoadCorrection<Real>::fewest_bodies(is_smooth_heap(sim.world));
+               sim.world.bodies.moving() >= LoadCorrection<Real>::fewest_bodies(heaves_if_slender(sim.world));
     };
     static constexpr auto has_wedged_bodies = [](const Sim& sim) {
         return sim.can_touch() && sim.soft.has_wedged_bodies();

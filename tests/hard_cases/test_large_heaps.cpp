@@ -61,20 +61,22 @@ double median_speed(World& world, int from, int to) {
 TEST_SUITE("hard cases/large heaps") {
     // They slipped for ever: by waves of the whole heap, and because what one contact lost was taken for a
     // squeeze where so many layers lie on each other, and the loads above it were forgotten. Speeds were .06
-    // to .12 m/s in these scenes, the largest overlaps .06 to .11.
-    TEST_CASE("B46: large heaps of rough boxes come to rest, also those of a hundred layers") {
+    // to .12 m/s in the large ones, the largest overlaps .06 to .11; 8e-4 m/s and .03 in the slender one.
+    TEST_CASE("B46: large and slender heaps of rough boxes come to rest, also those of a hundred layers") {
         struct Heap {
             int count;
             double slimness;
-            int from;  // steps after which it is to rest
+            int from;     // steps after which it is to rest
+            double mark;  // m/s
         };
-        const std::vector<Heap> heaps = is_effort_reduced()
-                                            ? std::vector<Heap>{{1600, 0.7, 500}}
-                                            : std::vector<Heap>{{3000, 1, 750}, {4000, 0.7, 900}};
+        const std::vector<Heap> heaps =
+            is_effort_reduced()
+                ? std::vector<Heap>{{1600, 0.7, 500, 4e-3}}
+                : std::vector<Heap>{{3000, 1, 750, 4e-3}, {4000, 0.7, 900, 4e-3}, {600, 0.35, 1400, 1e-4}};
         for (const Heap& heap : heaps) {
             CAPTURE(heap.count);
             World world(falling_boxes(heap.count, heap.slimness, 0.5), {.threads = 1});
-            CHECK(median_speed(world, heap.from, heap.from + 100) < 4e-3);
+            CHECK(median_speed(world, heap.from, heap.from + 100) < heap.mark);
             CHECK(world.overlaps().max < 0.03);
         }
     }

@@ -22,6 +22,7 @@ void read_effects(const WorldState<Real>& world, ContactSettings& settings) {
     effects.friction = world.effects.friction, settings.has_rotation = world.effects.rotation;
     effects.restitution = world.effects.restitution, effects.rolling = world.effects.rolling_resistance;
     settings.is_smooth_heap = carom::is_smooth_heap(world);
+    settings.heaves_if_slender = carom::heaves_if_slender(world);
     effects.friction_varies = effects.friction && friction_varies;
     effects.rolling_varies = effects.rolling && !bodies.rolling_resistance.is_uniform();
     effects.radius_varies = effects.rolling_share_varies = radius_varies;

@@ -22,8 +22,9 @@ inline constexpr double kNearFraction = 0.04;
 struct ContactSettings {
     ContactEffects effects;
     bool has_rotation = false;
-    bool is_smooth_heap = false;  ///< gravity, and no friction: nothing but more sweeps brings it to rest
-    int iterations = 2;           ///< sweeps a substep, >= 1
+    bool is_smooth_heap = false;     ///< gravity, and no friction: nothing but more sweeps brings it to rest
+    bool heaves_if_slender = false;  ///< few bodies heave, too, where they are a slender pile
+    int iterations = 2;              ///< sweeps a substep, >= 1
     double friction = 0, rolling = 0;  ///< coefficients, of contacts that have none of their own
     double radius = 1;                 ///< m, of all bodies; 1 where radii vary
     double fall = 0;                   ///< m, by which gravity brings two bodies nearer in a step
@@ -64,6 +65,13 @@ bool is_smooth_heap(const WorldState<Real>& world) {
     };
     return bodies.count >= kSmallestSmoothHeap && length_squared(world.gravity) > 0 &&
            is_zero(bodies.friction) && is_zero(bodies.rolling_resistance);
+}
+
+/// Whether few bodies heave, too, where they are a slender pile. Rough discs stop by themselves there, and a
+/// correction of loads may let them slip: docs/decisions/0047-columns-of-discs.md, 0058-large-heaps.md.
+template <class Real>
+bool heaves_if_slender(const WorldState<Real>& world) {
+    return world.bodies.has_shapes || is_smooth_heap(world);
 }
 
 /// Reads effects, coefficients and the radius from the world.

@@ -5,9 +5,9 @@ namespace carom {
 template <class Real>
 bool LoadCorrection<Real>::begin_substep(const StepView<Real>& step, int number, bool is_last) {
     const bool has_next = step.settings.iterations > 1;
-    return is_due_ =
-               has_next && is_last && length_squared(step.terms.gravity_change) > 0 &&
-               coarse_.is_due(step.records.moving(), number + 1, fewest_bodies(step.settings.is_smooth_heap));
+    return is_due_ = has_next && is_last && length_squared(step.terms.gravity_change) > 0 &&
+                     coarse_.is_due(step.records.moving(), number + 1,
+                                    fewest_bodies(step.settings.heaves_if_slender));
 }
 
 template <class Real>

@@ -11,11 +11,10 @@ namespace carom {
 template <class Real>
 class LoadCorrection {
   public:
-    /// Fewer bodies are never corrected. With friction slender piles stop by themselves, and a correction may
-    /// let them slip: docs/decisions/0047-columns-of-discs.md.
-    static constexpr std::size_t fewest_bodies(bool is_smooth_heap) {
-        return is_smooth_heap ? CoarseCorrection<Real>::kFewestOfSlender
-                              : CoarseCorrection<Real>::kFewestLoaded;
+    /// Fewer bodies are never corrected.
+    static constexpr std::size_t fewest_bodies(bool heaves_if_slender) {
+        return heaves_if_slender ? CoarseCorrection<Real>::kFewestOfSlender
+                                 : CoarseCorrection<Real>::kFewestLoaded;
     }
     /// To be called once a substep, `number` from 0 on.
     /// @return whether it is for `correct` to do what follows the first sweep
