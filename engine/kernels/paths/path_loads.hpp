@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "kernels/paths/path_lanes.hpp"
 
 // What engine/solvers/shared/coarse_correction.hpp does to the contacts of paths: the same as
@@ -33,7 +35,7 @@ struct LoadedLink {
     }
 };
 
-/// Places of bodies; of what is no body those of the last one, which nobody asks for.
+/// Places of bodies. What is no body has that of the last one, and no stress to use it for.
 template <class Lanes, class Real>
 typename Lanes::Batch4 places_of(const SolvePaths<Real>& k, const std::int32_t* rows) {
     alignas(64) std::int32_t within[Lanes::size];

@@ -4,6 +4,12 @@
 
 namespace carom {
 
+// A snapshot has contacts that sleep as bytes: padding would differ from run to run.
+static_assert(sizeof(KeptManifold<float>) ==
+              sizeof(ManifoldName) + sizeof(std::int32_t) + sizeof(ManifoldMemory<float>) + sizeof(float));
+static_assert(sizeof(KeptManifold<double>) ==
+              sizeof(ManifoldName) + sizeof(std::int32_t) + sizeof(ManifoldMemory<double>) + sizeof(double));
+
 template <class Real>
 void ManifoldList<Real>::clear() {
     a.clear(), b.clear(), item_a.clear(), item_b.clear();

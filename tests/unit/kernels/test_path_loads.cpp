@@ -4,15 +4,16 @@
 #include "kernels/paths/path_arguments.hpp"
 #include "math/random.hpp"
 #include "state/column.hpp"
+#include "support/equal_bits.hpp"
 
 #include <doctest/doctest.h>
 
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <vector>
 
 using namespace carom;
+using carom::test::have_equal_bits;
 
 namespace {
 
@@ -82,8 +83,9 @@ struct LoadedPaths {
         }
         return sum;
     }
-    std::array<double, 3> momentum_along() const {
-        std::array<double, 3> sum{};
+    /// kg m/s, of what moves, along x and y.
+    std::array<double, 2> momentum() const {
+        std::array<double, 2> sum{};
         for (std::size_t row = 0; row < kRows; ++row)
             for (std::size_t k = 0; k < 2; ++k)
                 if (velocity[4 * row + 3] > 0)
@@ -94,11 +96,6 @@ struct LoadedPaths {
         for (std::size_t row = 0; row < kRows; ++row) scale[row] = velocity[4 * row + 3] > 0 ? s : Real(0);
     }
 };
-
-template <class Real>
-bool have_equal_bits(const Column<Real>& p, const Column<Real>& q) {
-    return p.size() == q.size() && std::memcmp(p.data(), q.data(), p.size() * sizeof(Real)) == 0;
-}
 
 }  // namespace
 
@@ -119,7 +116,6 @@ TEST_SUITE("kernels/paths/path_loads") {
                     static_cast<double>(paths.links[i].normal1[lane] * paths.links[i].floor1[lane] +
                                         paths.links[i].normal2[lane] * paths.links[i].floor2[lane]);
         const Column<Real> before = paths.velocity;
-        const double energy = paths.kinetic_energy();
         constexpr double kSmall = 1e-3;
         paths.set_scale(static_cast<Real>(kSmall));
         kernels.scale_loads(paths.arguments(), 0, 1);
@@ -137,7 +133,6 @@ TEST_SUITE("kernels/paths/path_loads") {
         const double slope = (more - other.kinetic_energy()) / (2 * kSmall);
         CHECK(std::fabs(slope - (rate + free_energy)) <
               (sizeof(Real) == 4 ? 2e-2 : 1e-8) * (1 + std::fabs(slope)));
-        CHECK(energy > 0);
     }
 
     TEST_CASE_TEMPLATE("stress is what loads change by where s has a gradient", Real, float, double) {
@@ -175,9 +170,9 @@ TEST_SUITE("kernels/paths/path_loads") {
             last[3] = 1;
         }
         const Column<PathLink<Real>> links = paths.links;
-        const auto before = paths.momentum_along();
+        const auto before = paths.momentum();
         kernels.scale_loads(paths.arguments(), 0, 1);
-        const auto after = paths.momentum_along();
+        const auto after = paths.momentum();
         for (std::size_t k = 0; k < 2; ++k) CHECK(std::fabs(after[k] - before[k]) < 1e-4);
         const Column<PathLink<Real>> scaled = paths.links;
         kernels.retain_loads(paths.arguments(), 0, 1);
@@ -208,8 +203,7 @@ TEST_SUITE("kernels/paths/path_loads") {
                 CHECK(have_equal_bits(paths.velocity, first.velocity));
                 CHECK(have_equal_bits(paths.load, first.load));
                 CHECK(have_equal_bits(paths.stress, first.stress));
-                CHECK(std::memcmp(paths.links.data(), first.links.data(), kLength * sizeof(PathLink<Real>)) ==
-                      0);
+                CHECK(have_equal_bits(paths.links, first.links));
             }
     }
 }

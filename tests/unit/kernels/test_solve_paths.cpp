@@ -4,6 +4,7 @@
 #include "kernels/paths/path_arguments.hpp"
 #include "math/random.hpp"
 #include "state/column.hpp"
+#include "support/equal_bits.hpp"
 
 #include <doctest/doctest.h>
 
@@ -14,6 +15,7 @@
 #include <vector>
 
 using namespace carom;
+using carom::test::have_equal_bits;
 
 namespace {
 
@@ -126,11 +128,6 @@ double largest_violation(const RandomPaths<Real>& paths, const std::vector<bool>
         }
     }
     return worst;
-}
-
-template <class Real>
-bool have_equal_bits(const Column<Real>& p, const Column<Real>& q) {
-    return p.size() == q.size() && std::memcmp(p.data(), q.data(), p.size() * sizeof(Real)) == 0;
 }
 
 }  // namespace
