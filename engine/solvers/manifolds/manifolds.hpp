@@ -59,6 +59,8 @@ class Manifolds {
     /// The contacts that can touch in this step. From 0 on they are of two bodies, below 0 of a body and a
     /// wall or an edge.
     std::span<const std::int32_t> live() const { return live_; }
+    /// Whether there are so many that the world is not small.
+    bool is_crowd() const { return live_.size() >= kContactsOfSmallWorld; }
     ManifoldList<Real>& list_of(std::int32_t contact) { return contact >= 0 ? bodies_ : surfaces_; }
     const ManifoldList<Real>& list_of(std::int32_t contact) const {
         return contact >= 0 ? bodies_ : surfaces_;

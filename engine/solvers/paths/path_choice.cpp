@@ -74,7 +74,7 @@ typename PathChoice<Real>::Change PathChoice<Real>::choose(const WorldState<Real
 /// Whether there are contacts that come and go among so many that their paths are kept meanwhile.
 template <class Real>
 bool PathChoice<Real>::is_wild_crowd(const Manifolds<Real>& manifolds) const {
-    return mood_ == PathMood::wild && manifolds.live().size() >= kContactsOfSmallWorld;
+    return mood_ == PathMood::wild && manifolds.is_crowd();
 }
 
 /// Judges by the last step whether paths settle, and by this one whether contacts come and go.
@@ -87,7 +87,7 @@ void PathChoice<Real>::judge_mood(const Manifolds<Real>& manifolds, std::int64_t
         mood_ = PathMood::wild;
     else if (!was_solved)
         // Small worlds have long paths from the start; others short ones, as heaps do that still settle.
-        mood_ = manifolds.live().size() < kContactsOfSmallWorld ? PathMood::calm : PathMood::restless;
+        mood_ = manifolds.is_crowd() ? PathMood::restless : PathMood::calm;
     else
         mood_ = share < (mood_ == PathMood::calm ? kRestless : kCalm) ? PathMood::calm : PathMood::restless;
 }

@@ -357,9 +357,9 @@ void PathSolver<Real>::solve(const SubstepTerms& terms, BodyRecords<Real>& recor
         });
         run(kernels.solve, k, loops);
     }
-    // In a crowd paths are short, and what they hand on to each other is more than what is left in them.
-    const bool is_crowd = manifolds.live().size() >= kContactsOfSmallWorld;
-    if (sweeps || (is_crowd && rolling_.empty())) {
+    // In a crowd paths are short, and what they hand on to each other is more than what is left in them:
+    // docs/decisions/0058-large-heaps.md.
+    if (sweeps || (manifolds.is_crowd() && rolling_.empty())) {
         k.resting_speed = sweeps ? Real(0) : static_cast<Real>(kRestingSpeed * terms.fall_speed());
         run(kernels.sweep, k, loops);
         solve_watched(k, loops);

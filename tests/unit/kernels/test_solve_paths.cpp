@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <vector>
 
 using namespace carom;
@@ -265,8 +264,7 @@ TEST_SUITE("kernels/paths/solve_paths") {
                 CHECK(have_equal_bits(first.displacement, paths.displacement));
                 CHECK(have_equal_bits(first.turn, paths.turn));
                 CHECK(have_equal_bits(first.restless, paths.restless));
-                CHECK(std::memcmp(first.links.data(), paths.links.data(),
-                                  paths.length * sizeof(PathLink<Real>)) == 0);
+                CHECK(have_equal_bits(first.links, paths.links));
             }
         }
     }
