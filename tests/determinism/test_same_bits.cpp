@@ -27,18 +27,18 @@ namespace {
 constexpr int kSteps = 90;
 
 constexpr Golden kGolden[] = {
-    {"mixed shapes", 0x1683a42a0f631c83, 0x2aa6d0a4b1697e70},
+    {"mixed shapes", 0x5ced56f711b09fca, 0x26fbd25bcc7cc172},
     {"bouncing crowd", 0x32f5cf7cf7591ae8, 0x5d0e0f7fea4c8122},
     {"rough gas", 0xc009256aceff94e4, 0xb74961daf77a2622},
     {"gas", 0x680b8eec4001de52, 0x87bedad9b790c353},
     {"falling sizes", 0x4fe0c9b61ea50e9c, 0xc84f698047eb650e},
     {"moving obstacles", 0x9450532e75523df8, 0x81f8d27062c9d725},
     {"stack at rest", 0xa436021f760768ad, 0xfd75b447dc578a50},
-    {"rough sizes", 0x733d77c3bd5f8913, 0x71469495c3024e43},
-    {"rolling sizes", 0x310262d8720d7578, 0x9915bf3bb359a03d},
-    {"turning chain", 0xb431798060e29745, 0x5f7c2321945c6e3},
+    {"rough sizes", 0x23224f722746413e, 0xb8a2a72b5b05a1e4},
+    {"rolling sizes", 0x13a9356d278a9cfb, 0x61bf8ef0ca44c42a},
+    {"turning chain", 0x1480318ed69015d5, 0x87dd66888a4ab01a},
     {"woken sleepers", 0xc96d16ac37412fb, 0x73b51f7b255f0ebe},
-    {"falling compounds", 0x9083efb627be0931, 0x546bf55e288b7962},
+    {"falling compounds", 0x44b6b15a62fe6945, 0xf76e6a69390f7a29},
 };
 
 }  // namespace

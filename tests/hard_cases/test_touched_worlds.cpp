@@ -111,8 +111,9 @@ TEST_SUITE("hard cases/touched worlds") {
             }
             report("restitution ", restitution, ": overlap ", deepest);
             CHECK(deepest < 0.1);
+            world.set_velocity({kSegment, 0}, {});  // else it goes on into the pile
             for (int i = 0; i < 600; ++i) world.step(kStep);
-            CHECK(world.overlaps().max < 0.01);
+            CHECK(world.overlaps().max < 0.005);
             CHECK(world.quarantined().empty());
         }
     }

@@ -133,28 +133,6 @@ TEST_SUITE("physics: rattle") {
         CHECK(world.plan().joints.find("swept") != std::string::npos);
     }
 
-    TEST_CASE("A17: a cradle of five balls on rods swings for a minute") {
-        Scene scene;
-        scene.gravity = {0, -10};
-        for (int i = 0; i < 5; ++i) {
-            const double x = 0.201 * i, angle = i == 0 ? -0.8 : 0;
-            const BodyId ball = scene.add({.shape = Disc{0.1},
-                                           .position = {x + std::sin(angle), -std::cos(angle)},
-                                           .mass = 1,
-                                           .material = {.restitution = 1}});
-            scene.add(Joint{.b = ball, .kind = DistanceJoint{.anchor_a = {x, 0}, .length = 1}});
-        }
-        World world(scene);
-        const double start = world.ledger().energy.total(), height = start + 50;
-        double worst = 0;
-        for (int i = 0; i < 3600; ++i) {
-            world.step(kStep);
-            worst = std::max(worst, std::fabs(world.ledger().energy.total() - start) / height);
-        }
-        CHECK(worst < 0.01);
-        CHECK(world.joint_errors().max < 1e-5);
-    }
-
     TEST_CASE("a mechanism that meets a floor is handed over to contacts, and the ledger explains it") {
         // A pendulum whose bob strikes a block at its lowest point, now and then: solver `auto`.
         Scene scene = rod_pendulum(kPi / 3);

@@ -253,4 +253,27 @@ void JointSystem::solve_all() {
     solve_tree();
 }
 
+void JointSystem::answer_blow(std::size_t body, const Vector& blow) {
+    for (Vector& rhs : rhs_) rhs = {};
+    const auto solve = [&](bool with_extras) {
+        std::fill(pushed_.begin(), pushed_.end(), Vector{});
+        pushed_[body] = blow;
+        for (std::size_t i = 0; with_extras && i < extras_.size(); ++i) push_row(extras_[i], solution_[i]);
+        solve_tree();
+    };
+    solve(false);
+    if (extras_.empty()) return;
+    for (std::size_t i = 0; i < extras_.size(); ++i) {
+        const RowLaw law = rows_[static_cast<std::size_t>(extras_[i].joint)]
+                               .row[static_cast<std::size_t>(extras_[i].row)]
+                               .law;
+        const bool holds = law == RowLaw::hold || law == RowLaw::spring;
+        low_[i] = holds ? -kUnbounded : 0, high_[i] = holds ? kUnbounded : 0;
+        state_[i] = holds ? End::none : End::low;
+        extra_rhs_[i] = -change_of_row(extras_[i], change_);
+    }
+    solve_bounded();
+    solve(true);
+}
+
 }  // namespace carom

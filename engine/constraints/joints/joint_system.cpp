@@ -262,25 +262,34 @@ Vec2 JointSystem::impulse_on_b(const JointRows& rows, const std::array<double, 3
     return sum;
 }
 
+void JointSystem::add_force(std::size_t joint, const JointRow& row, double impulse) {
+    Member& member = joints[joint];
+    const Vec2 arm = rotate(bodies[static_cast<std::size_t>(member.b)].pose.turn, member.joint->anchor_b);
+    member.force += impulse * row.n;
+    member.torque += impulse * (row.jb - cross(arm, row.n));
+}
+
 void JointSystem::note_forces() {
-    const auto add = [](Member& member, const JointRow& row, Vec2 arm, double impulse) {
-        member.force += impulse * row.n;
-        member.torque += impulse * (row.jb - cross(arm, row.n));
-    };
-    for (std::size_t j = 0; j < joints.size(); ++j) {
-        Member& member = joints[j];
-        const Vec2 arm = rotate(bodies[static_cast<std::size_t>(member.b)].pose.turn, member.joint->anchor_b);
-        for (int k = 0; k < rows_[j].firm; ++k)
-            add(member, rows_[j].row[static_cast<std::size_t>(k)], arm,
-                member.impulse[static_cast<std::size_t>(k)]);
-    }
+    for (std::size_t j = 0; j < joints.size(); ++j)
+        for (std::size_t k = 0; k < static_cast<std::size_t>(rows_[j].firm); ++k)
+            add_force(j, rows_[j].row[k], joints[j].impulse[k]);
     for (const Extra& extra : extras_) {
-        Member& member = joints[static_cast<std::size_t>(extra.joint)];
-        const JointRow& row =
-            rows_[static_cast<std::size_t>(extra.joint)].row[static_cast<std::size_t>(extra.row)];
-        if (row.slot != kNoSlot) continue;
-        add(member, row, rotate(bodies[static_cast<std::size_t>(member.b)].pose.turn, member.joint->anchor_b),
-            extra.impulse);
+        const auto j = static_cast<std::size_t>(extra.joint);
+        const JointRow& row = rows_[j].row[static_cast<std::size_t>(extra.row)];
+        if (row.slot == kNoSlot) add_force(j, row, extra.impulse);
+    }
+}
+
+void JointSystem::note_answer() {
+    for (const Link& link : links_) {
+        if (link.joint < 0) continue;
+        const auto j = static_cast<std::size_t>(link.joint);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(link.rows); ++k)
+            add_force(j, rows_[j].row[k], answer_[j][k]);
+    }
+    for (std::size_t e = 0; e < extras_.size(); ++e) {
+        const auto j = static_cast<std::size_t>(extras_[e].joint);
+        add_force(j, rows_[j].row[static_cast<std::size_t>(extras_[e].row)], solution_[e]);
     }
 }
 

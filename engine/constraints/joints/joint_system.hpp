@@ -98,6 +98,17 @@ class JointSystem {
     void solve_flat();
     /// Adds what the joints have given since `prepare` to their forces.
     void note_forces();
+
+    /// A blow on a body: N s, N s, N m s.
+    using Vector = std::array<double, 3>;
+    /// What a blow on a body changes the velocities of all by at once, while joints hold at the rows of
+    /// `prepare`; motors and limits do nothing in so short a time. Velocities and impulses stay as they are.
+    /// Cost: O(joints), and O(rows²) of loops.
+    void answer_blow(std::size_t body, const Vector& blow);
+    /// m/s, m/s, rad/s: of a body that can move, by the last blow.
+    const Vector& answer_of(std::size_t body) const { return change_[body]; }
+    /// Adds what the joints gave in answer to the last blow to their forces.
+    void note_answer();
     /// Moves bodies through h; for tests and for systems that nothing else moves.
     void advance();
 
@@ -110,8 +121,8 @@ class JointSystem {
     std::size_t bytes() const;
 
   private:
-    using Vector = std::array<double, 3>;  // vx, vy, spin
-    struct Symmetric {                     // 3 × 3
+    // A Vector: vx, vy, spin, or what changes them.
+    struct Symmetric {  // 3 × 3
         double xx, xy, xz, yy, yz, zz;
     };
     /// A body but the roots, with the joint to its parent; or a root.
@@ -239,6 +250,7 @@ class JointSystem {
     void keep_velocities();
     void restore_velocities();
     static Vec2 impulse_on_b(const JointRows& rows, const std::array<double, 3>& impulse);
+    void add_force(std::size_t joint, const JointRow& row, double impulse);
 
     std::vector<Link> links_;          // parents before children
     std::vector<std::int32_t> loops_;  // joints that are no part of the tree

@@ -7,7 +7,6 @@
 #include "constraints/contact_graph.hpp"
 #include "constraints/contact_rows.hpp"
 #include "solvers/paths/path_books.hpp"
-#include "solvers/paths/path_impacts.hpp"
 #include "solvers/paths/path_solver.hpp"
 #include "solvers/paths/warm_start_limit.hpp"
 #include "solvers/soft/books.hpp"
@@ -22,6 +21,7 @@
 #include "solvers/soft/contacts/warm_start.hpp"
 #include "solvers/soft/contacts/wedged_bodies.hpp"
 #include "solvers/soft/impacts/impacts.hpp"
+#include "solvers/soft/impacts/shape_impacts.hpp"
 #include "solvers/soft/joints/soft_joints.hpp"
 #include "solvers/soft/project_positions.hpp"
 #include "solvers/soft/step_view.hpp"
@@ -101,7 +101,7 @@ class SoftSolver {
     /// Carries out the impacts of shapes in a substep.
     void carry_out_shape_impacts(const Bodies<Real>& bodies, Books& books) {
         paths.counters.impacts +=
-            carom::carry_out_impacts(paths, terms_, bodies, records_, books, deflected_);
+            carom::carry_out_impacts(paths, terms_, bodies, records_, impacts.held, books, deflected_);
         impacts.note_deflected(deflected_, records_.velocity);
     }
     /// Solves the contacts of shapes in substep `number`.
@@ -139,6 +139,7 @@ class SoftSolver {
 
     void begin_joints(WorldState<Real>& world, double dt) {
         joints.begin_step(joint_step(world), view(), paths, dt);
+        impacts.held.begin_joints(joints);
     }
     void solve_joints(WorldState<Real>& world, int number) {
         joints.solve(joint_step(world), loops_, number);

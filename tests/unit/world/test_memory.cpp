@@ -149,7 +149,7 @@ TEST_SUITE("world/memory") {
         scene.bodies[8].material.restitution = 0.5;
         BasicWorld<Real> world(scene, {.threads = 1});
         REQUIRE(world.plan().solver == "soft");
-        CHECK(allocations_of_steps(world, 3000, 200) == 0);
+        CHECK(allocations_of_steps(world, 5000, 200) == 0);
     }
 
     TEST_CASE_TEMPLATE("discs that sleep and are woken again and again allocate nothing in the end", Real,

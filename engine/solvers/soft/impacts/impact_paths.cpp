@@ -8,8 +8,8 @@ namespace carom {
 
 template <class Real>
 void ImpactPaths<Real>::begin_substep(const WorldState<Real>& world, const SubstepBodies<Real>& bodies,
-                                      Vec2 gravity) {
-    world_ = &world, bodies_ = &bodies, gravity_ = gravity;
+                                      const Real* joined, Vec2 gravity) {
+    world_ = &world, bodies_ = &bodies, joined_ = joined, gravity_ = gravity;
     ++substep_;
     movers_.resize(std::max(movers_.size(), bodies.count));
 }
@@ -22,7 +22,7 @@ Mover ImpactPaths<Real>::path_of(std::size_t row) const {
     const Vec2 x = Vec2{bodies_->origin[4 * row], bodies_->origin[4 * row + 1]} +
                    Vec2{bodies_->displacement[2 * row], bodies_->displacement[2 * row + 1]};
     const Mover straight{x, {record[0], record[1]}, {}, world_->bodies.radius[row], 0, substep_};
-    if (record[3] == 0) return straight;
+    if (record[3] == 0 || is_joined(row)) return straight;
     const Real change_x = record[0] - start_x, change_y = record[1] - start_y;
     const Real fall_x = bodies_->decay * start_x + bodies_->gain_x - start_x,
                fall_y = bodies_->decay * start_y + bodies_->gain_y - start_y;
@@ -70,7 +70,8 @@ std::array<double, 4> ImpactPaths<Real>::record_of(std::int32_t number, const Mo
     const auto row = static_cast<std::size_t>(number);
     if (row >= bodies_->count) return {};
     const Real* record = bodies_->velocity + 4 * row;
-    const Vec2 v = mover.velocity_at(time);
+    Vec2 v = mover.velocity_at(time);
+    if (is_joined(row)) v += (time - 0.5 * bodies_->h) * gravity_;
     return {v.x, v.y, static_cast<double>(record[2]), static_cast<double>(record[3])};
 }
 
@@ -78,7 +79,9 @@ template <class Real>
 double ImpactPaths<Real>::change(std::int32_t number, const std::array<double, 3>& by, double time) {
     const auto row = static_cast<std::size_t>(number);
     if (row >= bodies_->count || bodies_->velocity[4 * row + 3] == 0) return 0;
-    const Vec2 acceleration = of(number).acceleration;
+    Vec2 acceleration = of(number).acceleration;
+    double until = bodies_->h;
+    if (is_joined(row)) acceleration = gravity_, until *= 0.5;
     const auto add = [](Real& velocity, Real* start, Real& moved, double added, Real decay, double at) {
         const Real old = velocity;
         velocity = static_cast<Real>(static_cast<double>(old) + added);
@@ -97,7 +100,7 @@ double ImpactPaths<Real>::change(std::int32_t number, const std::array<double, 3
         add(record[2], bodies_->start.rim + row, bodies_->turn[row], by[2], bodies_->spin_decay, time);
     movers_[row].substep = 0;  // it moves otherwise from now on
     ++movers_[row].impacts;
-    return static_cast<double>(world_->bodies.mass[row]) * dot(acceleration, added) * (bodies_->h - time);
+    return static_cast<double>(world_->bodies.mass[row]) * dot(acceleration, added) * (until - time);
 }
 
 template class ImpactPaths<float>;

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "kernels/contacts/contact_arguments.hpp"
@@ -35,14 +37,24 @@ struct alignas(64) Mover {
     Vec2 position_at(double t) const { return x + t * v + (0.5 * t * t) * acceleration; }
     Vec2 velocity_at(double t) const { return v + t * acceleration; }
 };
+/// Speed below which the approach of two surfaces is round-off [m/s].
+template <class Real>
+double noise_of(Vec2 a, Vec2 b) {
+    constexpr double kUnits = 8;
+    return kUnits * std::numeric_limits<Real>::epsilon() *
+           (std::fabs(a.x) + std::fabs(a.y) + std::fabs(b.x) + std::fabs(b.y));
+}
+
 /// The paths of bodies through a substep, and how an impact changes them (impacts.hpp). The records of the
 /// bodies are the state; what is kept here is read from them when it is asked for.
 template <class Real>
 class ImpactPaths {
   public:
     /// Forgets the paths of the substep before.
+    /// @param joined  [rows], above zero for bodies that have joints; null where there are none
     /// @param gravity  m/s², as drag lets it act
-    void begin_substep(const WorldState<Real>& world, const SubstepBodies<Real>& bodies, Vec2 gravity);
+    void begin_substep(const WorldState<Real>& world, const SubstepBodies<Real>& bodies, const Real* joined,
+                       Vec2 gravity);
 
     /// The path of a body that is awake.
     const Mover& of(std::int32_t row);
@@ -55,21 +67,26 @@ class ImpactPaths {
         return movers_[static_cast<std::size_t>(row)].impacts;
     }
 
-    /// Its velocity record at a time in the substep; zeros if it sleeps.
+    /// Its velocity record at a time in the substep; zeros if it sleeps. A body that joints hold moves
+    /// straight, with the velocity of the middle of the substep (direct_joints.hpp): before it lacks what
+    /// gravity gives until then.
     std::array<double, 4> record_of(std::int32_t row, const Mover& mover, double time) const;
     /// Gives a body its new velocity at a time in the substep: the records are of the substep's end, and the
     /// displacement makes up for the time in which the body did not have it yet.
     /// @param added  m/s: vx, vy, rim speed
-    /// @return J, what gravity does to the velocity that was added until the end of the substep
+    /// @return J, what gravity does to the velocity that was added until the end of the substep, or until its
+    /// middle
     double change(std::int32_t row, const std::array<double, 3>& added, double time);
 
     std::size_t bytes() const { return movers_.capacity() * sizeof(Mover); }
 
   private:
     Mover path_of(std::size_t row) const;
+    bool is_joined(std::size_t row) const { return joined_ && joined_[row] > 0; }
 
     const WorldState<Real>* world_ = nullptr;
     const SubstepBodies<Real>* bodies_ = nullptr;
+    const Real* joined_ = nullptr;
     Vec2 gravity_;
     std::vector<Mover> movers_;
     std::uint32_t substep_ = 0;

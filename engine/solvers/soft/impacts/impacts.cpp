@@ -12,6 +12,7 @@
 #include "math/vec2_math.hpp"
 #include "narrowphase/coincident.hpp"
 #include "narrowphase/impact_time.hpp"
+#include "solvers/soft/impacts/blow.hpp"
 
 namespace carom {
 namespace {
@@ -27,19 +28,13 @@ constexpr double kOverlap = 1e-3;
 /// end of the substep, in radii of the smaller one.
 constexpr double kDeepening = 0.01;
 
+/// A contact whose impulse in a substep is a smaller share of what would stop its bodies is not pressed for
+/// them: what comes is a blow, and the force of before nothing beside it.
+constexpr double kLittle = 0.1;
+
 /// Two surfaces touch if they are as near as this, in their reach.
 template <class Real>
 constexpr double kTouching = sizeof(Real) == sizeof(float) ? 1e-7 : 1e-14;
-
-DoubleBody body_of(const std::array<double, 4>& record) {
-    return {{{record[0], record[1], record[2], record[3]}}};
-}
-
-std::array<double, 3> difference(const DoubleBody& after, const DoubleBody& before) {
-    std::array<double, 3> added;
-    for (std::size_t k = 0; k < added.size(); ++k) added[k] = after.record[k] - before.record[k];
-    return added;
-}
 
 /// Share of an energy that is round-off: the normals of edges have the length 1 in the world's precision
 /// only.
@@ -65,6 +60,14 @@ Partner Impacts<Real>::partner_of(Place place) const {
 template <class Real>
 bool Impacts<Real>::is_impact(Place place) const {
     return !place.has_row() || store_of(place).separation[place.index] == kFar<Real>;
+}
+
+/// Whether a force holds a contact that its bodies come to with a speed [m/s].
+template <class Real>
+bool Impacts<Real>::is_pressed(Place place, double speed) const {
+    if (!place.has_row()) return false;
+    const ContactRows<Real>& rows = store_of(place);
+    return rows.normal_impulse[place.index] > kLittle * rows.mass[place.index] * speed;
 }
 
 template <class Real>
@@ -134,6 +137,7 @@ void Impacts<Real>::mark_in(ContactRows<Real>& rows, Kind kind, std::size_t firs
 template <class Real>
 void Impacts<Real>::mark(const WorldState<Real>& world, const StepView<Real>& step,
                          const Candidates<Real>& neighbours) {
+    held.begin_step();
     ContactRows<Real>&pairs = step.graph.pairs, &supports = step.supports;
     world_ = &world, pairs_ = &pairs, supports_ = &supports, candidates_ = &step.graph.supports;
     neighbours_ = &neighbours, settings_ = &step.settings;
@@ -146,7 +150,7 @@ void Impacts<Real>::mark(const WorldState<Real>& world, const StepView<Real>& st
     overshoot_ = 0;
     // Room that no later step of the same world outgrows, unless it gets more pairs than ever.
     impacts_.reserve(std::bit_ceil(pairs.a.size() + supports.a.size()));
-    queue_.reserve(std::bit_ceil(pairs.a.size() + supports.a.size()));
+    queue_.reserve(2 * std::bit_ceil(pairs.a.size() + supports.a.size()));
     of_pairs_.reserve(2 * pairs.a.size()), of_supports_.reserve(candidates_->a.size());
     are_supports_known_ = false;
     version_ = step.graph.version;
@@ -173,14 +177,6 @@ auto Impacts<Real>::clearance_of(Place place, const Mover& a) const -> Clearance
             surface - dot(a.v, n), -dot(a.acceleration, n)};
 }
 
-/// Speed below which the approach of two surfaces is round-off [m/s].
-template <class Real>
-double noise_of(Vec2 a, Vec2 b) {
-    constexpr double kUnits = 8;
-    return kUnits * std::numeric_limits<Real>::epsilon() *
-           (std::fabs(a.x) + std::fabs(a.y) + std::fabs(b.x) + std::fabs(b.y));
-}
-
 /// @param time  when the surfaces meet
 template <class Real>
 void Impacts<Real>::foresee(Place place, double time) {
@@ -194,17 +190,20 @@ void Impacts<Real>::foresee(Place place, double time) {
 
 /// Whether a contact whose surfaces approach at a speed may have an impact. One becomes an impact where they
 /// come fast, however far apart they still are: the normal that the sweeps know is of another path. One that
-/// is pressed stays a contact, but takes part if the sweeps of the next substep would come too late.
+/// is pressed stays a contact, but takes part if the sweeps of the next substep would come too late. A force
+/// that is little beside the blow presses nothing: balls of a cradle that lean on each other are struck
+/// apart.
 /// @param left  s, of the substep
 template <class Real>
 bool Impacts<Real>::takes_part(Place place, double speed, double left, double noise) {
     if (is_impact(place)) return true;
-    if (!is_pressed(place) && speed > rest_speed_ && speed > noise && restitution_of(place) > 0) {
+    const bool is_fast = speed > rest_speed_ && speed > noise;
+    if (!is_pressed(place) && is_fast && restitution_of(place) > 0) {
         store_of(place).separation[place.index] = kFar<Real>;
         impacts_.push_back(place);
         return true;
     }
-    return speed * left > kDeepening * smaller_radius(place);
+    return (is_fast && !is_pressed(place, speed)) || speed * left > kDeepening * smaller_radius(place);
 }
 
 /// The normal that the sweeps know of a deflected body's contact is of another path: with it they would stop
@@ -361,7 +360,7 @@ bool Impacts<Real>::carry_out(Place place, double time, Books& books, double& gr
     const std::int32_t row_a = row_of(place);
     const Partner other = partner_of(place);
     const Mover mover_a = paths_.of(row_a);
-    DoubleBody a = body_of(paths_.record_of(row_a, mover_a, time)), b{{{0, 0, 0, 0}}};
+    DoubleBody a = body_of(paths_.record_of(row_a, mover_a, time)), b = kStill;
     Vec2 n;
     double gap = 0;
     if (other.is_body()) {
@@ -387,10 +386,11 @@ bool Impacts<Real>::carry_out(Place place, double time, Books& books, double& gr
     const auto collide = [&](auto& side) {
         const double speed = -normal_velocity(a, side, n.x, n.y);
         if (!(speed > noise)) return false;
-        bool has_enough = true, is_exhausted = false;
+        bool has_enough = true, is_exhausted = false, is_held = false;
         for_each_mover([&](std::int32_t row) {
             has_enough = has_enough && budget_.has_enough(row);
             is_exhausted = is_exhausted || budget_.is_exhausted(row);
+            is_held = is_held || held.holds(row);
         });
         if (is_exhausted) return make_contact(place, n, gap, time), false;
         const double called_for = restitution_of(place);
@@ -398,34 +398,34 @@ bool Impacts<Real>::carry_out(Place place, double time, Books& books, double& gr
         for_each_mover([&](std::int32_t row) { budget_.spend(row, called_for, speed); });
         ++counters.impacts;
         counters.of_walls += other.is_wall(), counters.inelastic += !bounces;
-        terms.mass = 1 / inverse_mass(a, side);
-        terms.tangent_mass = tangent_mass<kEveryEffect>(a, side, terms.mass);
         terms.floor = bounces ? called_for * speed : 0;
-        const DoubleBody before_a = a, before_b = b;
-        const double slip = tangent_velocity(a, side, n.x, n.y),
-                     rolling = rolling_velocity(a, side, terms.of_a);
-        ContactImpulses<double> j{0, 0, 0};
-        solve_contact<kEveryEffect>(a, side, terms, j, [](double wanted) { return wanted; });
-        gravity_work += paths_.change(row_a, difference(a, before_a), time);
-        if (!place.is_support()) gravity_work += paths_.change(other.row(), difference(b, before_b), time);
+        [[maybe_unused]] const auto before = velocities(a, side, terms);
+        // Seen from what stands still, what a support does is its own motion.
+        const std::array<double, 3> of_support = place.is_support() && (is_held || books.is_open)
+                                                     ? velocities(kStill, side, terms)
+                                                     : std::array<double, 3>{};
+        const StruckDiscs discs{row_a, place.is_support() ? kNothing : other.row(), time};
+        Blow blow;
+        struck_.clear();
+        if (!is_held ||
+            !strike_held(held, discs, terms, bounces ? called_for : 0, of_support, paths_, blow, struck_))
+            strike_free(discs, terms, a, side, paths_, blow);
+        gravity_work += blow.gravity_work;
         if (!bounces) make_contact(place, n, gap, time);
 
-        const double by_normal = impact_work(j.normal, -speed, normal_velocity(a, side, n.x, n.y)),
-                     by_friction = impact_work(j.tangent, slip, tangent_velocity(a, side, n.x, n.y)) +
-                                   impact_work(j.rolling, rolling, rolling_velocity(a, side, terms.of_a));
-        assert(by_normal <= kRoundOff * j.normal * speed && "an impact never adds energy");
-        assert(by_friction <= kRoundOff * j.normal * (speed + std::fabs(slip) + std::fabs(rolling)) &&
+        const ContactImpulses<double>& j = blow.impulses;
+        assert(blow.by_normal <= kRoundOff * j.normal * speed && "an impact never adds energy");
+        assert(blow.by_friction <=
+                   kRoundOff * j.normal * (speed + std::fabs(before[1]) + std::fabs(before[2])) &&
                "friction never adds energy");
         if (other.is_wall()) books.wall_impulse += j.normal;
         if (!books.is_open) return true;
-        books.restitution += by_normal, books.friction += by_friction;
+        books.restitution += blow.by_normal, books.friction += blow.by_friction;
+        books.immovable_momentum += blow.by_joints;
         if (!place.is_support()) return true;
         const Vec2 t{-n.y, n.x};
         (other.is_wall() ? books.wall_momentum : books.immovable_momentum) -= j.normal * n + j.tangent * t;
-        DoubleBody still{{{0, 0, 0, 0}}};  // seen from it, what the support does is its own motion
-        books.drive -= j.normal * normal_velocity(still, side, n.x, n.y) +
-                       j.tangent * tangent_velocity(still, side, n.x, n.y) +
-                       j.rolling * rolling_velocity(still, side, terms.of_a);
+        books.drive -= j.normal * of_support[0] + j.tangent * of_support[1] + j.rolling * of_support[2];
         return true;
     };
     if (other.is_body()) return collide(b);
@@ -461,7 +461,7 @@ void Impacts<Real>::carry_out_all(const SubstepBodies<Real>& bodies, Books& book
     const std::size_t found = impacts_.size(), strangers = strangers_.size();
     if (found == 0) return;
     queue_.clear();
-    paths_.begin_substep(*world_, bodies, gravity_);
+    paths_.begin_substep(*world_, bodies, held.joined(), gravity_);
     for (std::size_t i = 0; i < found; ++i)
         if (is_impact(impacts_[i])) look_at(impacts_[i], 0);
     for (std::size_t i = 0; i < strangers; ++i)
@@ -471,14 +471,16 @@ void Impacts<Real>::carry_out_all(const SubstepBodies<Real>& bodies, Books& book
         std::pop_heap(queue_.begin(), queue_.end(), Later{});
         const Event event = queue_.back();
         queue_.pop_back();
-        const Partner other(event.b);
         if (paths_.impacts_of(event.a) != event.impacts_a ||
-            (!event.place.is_support() && paths_.impacts_of(other.row()) != event.impacts_b))
+            (!event.place.is_support() && paths_.impacts_of(Partner(event.b).row()) != event.impacts_b))
             continue;
         find_contacts_of_bodies();
         if (!carry_out(event.place, event.time, books, gravity_work)) continue;
+        for (const std::int32_t row : struck_)
+            if (world_->bodies.is_disc(static_cast<std::size_t>(row))) look_at_all_of(row, event.time);
+        if (!struck_.empty()) continue;
         look_at_all_of(event.a, event.time);
-        if (!event.place.is_support()) look_at_all_of(other.row(), event.time);
+        if (!event.place.is_support()) look_at_all_of(Partner(event.b).row(), event.time);
     }
 }
 
@@ -487,7 +489,7 @@ std::size_t Impacts<Real>::bytes() const {
     return impacts_.capacity() * sizeof(Place) + strangers_.capacity() * sizeof(Strangers) +
            (first_strangers_.capacity() + mark_of_.capacity()) * sizeof(std::int32_t) + near_rows_.bytes() +
            queue_.capacity() * sizeof(Event) + of_pairs_.bytes() + of_supports_.bytes() + paths_.bytes() +
-           budget_.bytes();
+           budget_.bytes() + held.bytes() + struck_.capacity() * sizeof(std::int32_t);
 }
 
 template class Impacts<float>;

@@ -10,6 +10,7 @@
 #include "effects/flight.hpp"
 #include "parallel/interruption.hpp"
 #include "solvers/soft/contacts/contact_settings.hpp"
+#include "solvers/soft/impacts/held_impacts.hpp"
 #include "solvers/soft/impacts/impact_budget.hpp"
 #include "solvers/soft/impacts/impact_paths.hpp"
 #include "solvers/soft/step_view.hpp"
@@ -42,6 +43,7 @@ template <class Real>
 class Impacts {
   public:
     ImpactCounters counters;
+    HeldImpacts<Real> held;  ///< told of joints, if there are any, once contacts are marked
 
     /// Tells impacts from contacts among what can touch in this step.
     void mark(const WorldState<Real>& world, const StepView<Real>& step, const Candidates<Real>& neighbours);
@@ -97,9 +99,7 @@ class Impacts {
     std::int32_t row_of(Place place) const;
     Partner partner_of(Place place) const;
     bool is_impact(Place place) const;
-    bool is_pressed(Place place) const {
-        return place.has_row() && store_of(place).normal_impulse[place.index] > 0;
-    }
+    bool is_pressed(Place place, double speed = 0) const;
     double restitution_of(Place place) const;
     double smaller_radius(Place place) const;
     void set_materials(Place place, ContactTerms<double>& terms) const;
@@ -147,6 +147,7 @@ class Impacts {
     std::int64_t version_ = -1, known_version_ = -1;  // of the pairs, and of those in of_pairs_
     ContactsOfBodies<Real> of_pairs_, of_supports_;
     ImpactPaths<Real> paths_;
+    std::vector<std::int32_t> struck_;  // rows that the last impact changed, if joints hold some; else none
     ImpactBudget budget_;
     std::vector<Event> queue_;
 };

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <vector>
 
 #include "constraints/joints/joint_system.hpp"
@@ -38,6 +40,14 @@ class DirectJoints {
     void end_step(const JointStep<Real>& step);
     /// Adds what its joints gave since the last solve_first or end_step to their forces.
     void note_forces() { system_.note_forces(); }
+    /// What a blow on one of its bodies changes the velocity records of all by, at once, while joints hold.
+    /// @param row  of the body that is struck
+    /// @param impulse  N s  @param at_rim  N s, what its rim is given: constraints/contact_law.hpp
+    /// @param fn  called for each body that can move: its row, what is added to vx, vy and rim speed [m/s]
+    template <class Fn>
+    void answer_blow(std::int32_t row, Vec2 impulse, double at_rim, const Fn& fn);
+    /// Adds what its joints gave in answer to the last blow to their forces.
+    void note_answer() { system_.note_answer(); }
     /// The work of its joints in this substep, or at the end of the step, and what they gave to what nothing
     /// moves.
     void book(const JointStep<Real>& step, Books& books, bool is_end) const;
@@ -69,6 +79,19 @@ class DirectJoints {
     bool touches_ = false, was_free_ = true;           // in this step; in the last one
     bool is_beside_ = false, converges_ = false;
 };
+
+template <class Real>
+template <class Fn>
+void DirectJoints<Real>::answer_blow(std::int32_t row, Vec2 impulse, double at_rim, const Fn& fn) {
+    const auto struck = static_cast<std::size_t>(std::find(rows_.begin(), rows_.end(), row) - rows_.begin());
+    system_.answer_blow(struck, {impulse.x, impulse.y, rim_[struck] * at_rim});
+    for (std::size_t i = 1; i < rows_.size(); ++i) {
+        const SystemBody& body = system_.bodies[i];
+        if (!(body.inverse_mass > 0)) continue;
+        const JointSystem::Vector& by = system_.answer_of(i);
+        fn(rows_[i], std::array<double, 3>{by[0], by[1], body.inverse_inertia > 0 ? rim_[i] * by[2] : 0});
+    }
+}
 
 extern template class DirectJoints<float>;
 extern template class DirectJoints<double>;

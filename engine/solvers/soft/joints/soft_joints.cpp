@@ -19,6 +19,8 @@ constexpr std::size_t kWorkOfCrowd = 200;
 /// it.
 constexpr std::size_t kFewestJoints = 4;
 constexpr double kLargestMassRatio = 16;
+/// Joints of a group that is small, at most: each blow on it is answered by all of them (decision 0059).
+constexpr std::size_t kMostJointsOfSmall = 16;
 
 }  // namespace
 
@@ -215,6 +217,15 @@ void SoftJoints<Real>::solve(const JointStep<Real>& step, const StepLoops<Real>&
                                   [&](std::size_t i) { direct_[i].solve_first(step, substep); });
     for (std::size_t i = first_beside_; i < direct_.size(); ++i) direct_[i].solve_first(step, substep);
     if (first_beside_ < direct_.size() && !swept_.empty()) swept_.sweep(step, loops, Begin::nothing);
+}
+
+template <class Real>
+DirectJoints<Real>* SoftJoints<Real>::small_group_of(std::int32_t row) {
+    if (static_cast<std::size_t>(row) >= group_of_.size()) return nullptr;
+    const std::int32_t number = group_of_[static_cast<std::size_t>(row)];
+    if (number < 0) return nullptr;
+    DirectJoints<Real>& group = direct_[static_cast<std::size_t>(number)];
+    return group.joints() <= kMostJointsOfSmall ? &group : nullptr;
 }
 
 template <class Real>

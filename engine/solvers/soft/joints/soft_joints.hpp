@@ -39,6 +39,8 @@ class SoftJoints {
     void forget_blows(const JointStep<Real>& step, const StepView<Real>& contacts, PathSolver<Real>& paths);
     /// Once more, after contacts have changed velocities.
     void solve_again(const JointStep<Real>& step, const StepLoops<Real>& loops);
+    /// The group of a body if it is solved exactly and has few joints, else null.
+    DirectJoints<Real>* small_group_of(std::int32_t row);
     /// Whether contacts and joints are to be solved in turns in this step.
     bool touches() const { return touches_ || crowd_groups_ > 0; }
     /// Whether a group that is solved exactly touches something.

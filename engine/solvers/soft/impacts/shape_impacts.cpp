@@ -1,4 +1,4 @@
-#include "solvers/paths/path_impacts.hpp"
+#include "solvers/soft/impacts/shape_impacts.hpp"
 
 #include <array>
 #include <cmath>
@@ -11,6 +11,10 @@ constexpr int kRounds = 8;
 /// Slower than so many times what gravity adds in a substep is no impact but a contact.
 constexpr double kRestFalls = 2;
 
+/// A contact whose impulse in a substep is more than this share of what would stop its bodies is pressed, and
+/// stays a contact: beside a blow a little force is nothing.
+constexpr double kLittle = 0.1;
+
 /// A body of an impact.
 template <class Real>
 struct StruckBody {
@@ -19,7 +23,9 @@ struct StruckBody {
     Vec2 start, foreseen;  // m/s, at the start of the substep and, if nothing happens, at its end
     double start_rim, foreseen_rim;
 
-    StruckBody(BodyRecords<Real>& records, std::int32_t number) : row(number) {
+    /// @param half_kick  m/s: a body that joints hold has the velocity of the middle of the substep before,
+    /// to which this is to be added; zero of others
+    StruckBody(BodyRecords<Real>& records, std::int32_t number, Vec2 half_kick) : row(number) {
         const Real* record = &records.velocity[4 * static_cast<std::size_t>(row)];
         const double mass = record[3];
         w = std::fabs(mass), w2 = 2 * std::fmax(mass, 0);
@@ -27,9 +33,14 @@ struct StruckBody {
         start = foreseen, start_rim = foreseen_rim;
         if (static_cast<std::size_t>(row) >= records.count()) return;  // nothing moves it
         const auto [x, y, rim] = records.start_of_substep(row);
-        start = {x, y}, start_rim = rim;
+        start = Vec2{x, y} + half_kick, start_rim = rim;
     }
 };
+
+template <class Real>
+Vec2 half_kick_of(const HeldImpacts<Real>& held, std::int32_t row, const SubstepTerms& terms) {
+    return held.holds(row) ? 0.5 * terms.gravity_change : Vec2{};
+}
 
 /// Levers of a contact's two points, then of both for friction, in rims of the body.
 using Levers = std::array<double, 3>;
@@ -55,6 +66,94 @@ void share_points(const Bodies<Real>& bodies, const BodyRecords<Real>& records,
     lever_a[2] += 0.5 * above / rim_a, lever_b[2] -= 0.5 * above / rim_b;
 }
 
+/// What the impulses of an impact are, and their work [J].
+struct PointImpulses {
+    std::array<double, 2> x{};  // N s, along the normal at each point
+    double y = 0;               // N s, along the tangent
+    double by_normal = 0, by_friction = 0;
+    bool is_given = false;  // bodies have them already
+};
+
+/// The impact of two shapes that fly: Newton's law of both points at once, then Coulomb's.
+/// @param v  m/s, normal velocities of the two points
+template <class Real>
+PointImpulses solve_free(const StruckBody<Real>& a, const StruckBody<Real>& b, Vec2 t, const Levers& lever_a,
+                         const Levers& lever_b, const std::array<bool, 2>& meets, double e, double friction,
+                         const std::array<double, 2>& v) {
+    PointImpulses found;
+    std::array<double, 2>& x = found.x;
+    const double w = a.w + b.w;
+    const auto mass = [&](std::size_t i, std::size_t k) {
+        return (i < 2) == (k < 2) ? w + a.w2 * lever_a[i] * lever_a[k] + b.w2 * lever_b[i] * lever_b[k]
+                                  : a.w2 * lever_a[i] * lever_a[k] + b.w2 * lever_b[i] * lever_b[k];
+    };
+    const double k11 = mass(0, 0), k12 = mass(0, 1), k22 = mass(1, 1);
+    // Newton's law of what is met: each point leaves at e times the speed it came with, or faster.
+    const double b1 = (1 + e) * v[0], b2 = (1 + e) * v[1];
+    if (!meets[1]) {
+        x = {-b1 / k11, 0};
+    } else if (!meets[0]) {
+        x = {0, -b2 / k22};
+    } else {
+        const double n1 = k12 * b2 - k22 * b1, n2 = k12 * b1 - k11 * b2, determinant = k11 * k22 - k12 * k12;
+        if (n1 >= 0 && n2 >= 0 && determinant > 0)
+            x = {n1 / determinant, n2 / determinant};
+        else
+            x = n2 <= 0 ? std::array<double, 2>{-b1 / k11, 0} : std::array<double, 2>{0, -b2 / k22};
+    }
+    // Work: x . (v + v') / 2, v' = v + K x.
+    found.by_normal =
+        x[0] * (v[0] + 0.5 * (k11 * x[0] + k12 * x[1])) + x[1] * (v[1] + 0.5 * (k12 * x[0] + k22 * x[1]));
+    const double sum = x[0] + x[1];
+    const double vt = dot(b.start - a.start, t) + b.start_rim * lever_b[2] - a.start_rim * lever_a[2] +
+                      mass(0, 2) * x[0] + mass(1, 2) * x[1],
+                 ktt = mass(2, 2), limit = friction * sum;
+    found.y = std::fmin(std::fmax(-vt / ktt, -limit), limit);
+    found.by_friction = found.y * (vt + 0.5 * ktt * found.y);
+    return found;
+}
+
+/// The impact of shapes of which joints hold one at least: held_impacts.hpp.
+/// @param meets  which of the two points
+/// @return whether there was one
+template <class Real>
+bool strike_held(HeldImpacts<Real>& held, const StruckBody<Real>& a, const StruckBody<Real>& b, Vec2 n,
+                 Vec2 t, const Levers& lever_a, const Levers& lever_b, const std::array<bool, 2>& meets,
+                 const typename HeldImpacts<Real>::Materials& materials, const SubstepTerms& terms,
+                 BodyRecords<Real>& records, Books& books, PointImpulses& found) {
+    using Law = typename HeldImpacts<Real>::Law;
+    std::array<typename HeldImpacts<Real>::Direction, 3> directions;
+    std::array<std::size_t, 3> point{};  // of each direction
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (k < 2 ? !meets[k] : !(materials.friction > 0)) continue;
+        const Vec2 along = k < 2 ? n : t;
+        double surface = 0;
+        if (!(a.w > 0)) surface -= dot(a.start, along) + a.start_rim * lever_a[k];
+        if (!(b.w > 0)) surface += dot(b.start, along) + b.start_rim * lever_b[k];
+        point[count] = k;
+        directions[count++] = {k < 2 ? Law::normal : Law::friction, along, -lever_a[k], lever_b[k], surface};
+    }
+    const auto record_of = [&](std::int32_t row) {
+        const StruckBody<Real> body(records, row, half_kick_of(held, row, terms));
+        return std::array<double, 4>{body.start.x, body.start.y, body.start_rim,
+                                     records.velocity[4 * static_cast<std::size_t>(row) + 3]};
+    };
+    if (!held.solve({a.w > 0 ? a.row : kNothing, b.w > 0 ? b.row : kNothing},
+                    std::span(directions).first(count), materials, record_of))
+        return false;
+    for (std::size_t i = 0; i < count; ++i) (point[i] < 2 ? found.x[point[i]] : found.y) = held.impulses()[i];
+    found.by_normal = held.work_of(Law::normal), found.by_friction = held.work_of(Law::friction);
+    found.is_given = true;
+    books.immovable_momentum += held.carry_out([&](std::int32_t row, const std::array<double, 3>& by) {
+        // The books of this substep will take half of gravity's kick to be still to come.
+        const double inverse_mass = std::fabs(records.velocity[4 * static_cast<std::size_t>(row) + 3]);
+        books.joints -= dot(Vec2{by[0], by[1]}, half_kick_of(held, row, terms)) / inverse_mass;
+        records.add_velocity(row, {by[0], by[1]}, by[2], terms);
+    });
+    return true;
+}
+
 /// What becomes of a contact in a substep.
 enum class Outcome : std::uint8_t {
     none,
@@ -64,12 +163,14 @@ enum class Outcome : std::uint8_t {
 
 template <class Real>
 Outcome carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, const Bodies<Real>& bodies,
-                  BodyRecords<Real>& records, Books& books) {
+                  BodyRecords<Real>& records, HeldImpacts<Real>& held, Books& books) {
     const double rest_speed = kRestFalls * terms.fall_speed(), h = terms.substep_dt;
     const PathLink<Real>& link = contact.link;
     const std::size_t lane = contact.lane;
     const double e = contact.restitution;
-    const StruckBody<Real> a(records, contact.near), b(records, contact.far);
+    const bool is_near_held = held.holds(contact.near), is_far_held = held.holds(contact.far);
+    const StruckBody<Real> a(records, contact.near, half_kick_of(held, contact.near, terms)),
+        b(records, contact.far, half_kick_of(held, contact.far, terms));
     const Vec2 n{link.normal_x[lane], link.normal_y[lane]}, t{-n.y, n.x};
     Levers lever_a{link.near1[lane], link.near2[lane], link.near_t[lane]},
         lever_b{link.far1[lane], link.far2[lane], link.far_t[lane]};
@@ -97,6 +198,8 @@ Outcome carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, c
         const bool is_fast = v[k] < -rest_speed, touches = gap + h * soon < 0;
         meets[k] = is_fast && touches, comes = comes || is_fast, is_free = is_free && !touches;
     }
+    const double pressing = static_cast<double>(link.normal1[lane]) + static_cast<double>(link.normal2[lane]);
+    if (pressing > kLittle * std::fmax(-v[0], -v[1]) / (a.w + b.w)) return Outcome::none;
     if (!meets[0] && !meets[1]) return comes && is_free ? Outcome::comes : Outcome::none;
     if (a.w > 0 && b.w > 0) {
         const Levers own_a = lever_a, own_b = lever_b;
@@ -111,37 +214,16 @@ Outcome carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, c
         else
             lever_a = own_a, lever_b = own_b, v = own_v;
     }
-    const double w = a.w + b.w;
-    const auto mass = [&](std::size_t i, std::size_t k) {
-        return (i < 2) == (k < 2) ? w + a.w2 * lever_a[i] * lever_a[k] + b.w2 * lever_b[i] * lever_b[k]
-                                  : a.w2 * lever_a[i] * lever_a[k] + b.w2 * lever_b[i] * lever_b[k];
-    };
-    const double k11 = mass(0, 0), k12 = mass(0, 1), k22 = mass(1, 1);
-    // Newton's law of what is met: each point leaves at e times the speed it came with, or faster.
-    const double b1 = (1 + e) * v[0], b2 = (1 + e) * v[1];
-    std::array<double, 2> x{};
-    if (!meets[1]) {
-        x = {-b1 / k11, 0};
-    } else if (!meets[0]) {
-        x = {0, -b2 / k22};
-    } else {
-        const double n1 = k12 * b2 - k22 * b1, n2 = k12 * b1 - k11 * b2, determinant = k11 * k22 - k12 * k12;
-        if (n1 >= 0 && n2 >= 0 && determinant > 0)
-            x = {n1 / determinant, n2 / determinant};
-        else
-            x = n2 <= 0 ? std::array<double, 2>{-b1 / k11, 0} : std::array<double, 2>{0, -b2 / k22};
-    }
-    // Work: x . (v + v') / 2, v' = v + K x.
-    const double work =
-        x[0] * (v[0] + 0.5 * (k11 * x[0] + k12 * x[1])) + x[1] * (v[1] + 0.5 * (k12 * x[0] + k22 * x[1]));
-    const double sum = x[0] + x[1];
-    const double vt = relative(a.start, a.start_rim, b.start, b.start_rim, 2) + mass(0, 2) * x[0] +
-                      mass(1, 2) * x[1],
-                 ktt = mass(2, 2), limit = static_cast<double>(link.friction[lane]) * sum;
-    const double y = std::fmin(std::fmax(-vt / ktt, -limit), limit);
+    const auto friction = static_cast<double>(link.friction[lane]);
+    PointImpulses found;
+    if (!(is_near_held || is_far_held) || !strike_held(held, a, b, n, t, lever_a, lever_b, meets,
+                                                       {e, friction, 0}, terms, records, books, found))
+        found = solve_free(a, b, t, lever_a, lever_b, meets, e, friction, v);
+    const std::array<double, 2>& x = found.x;
+    const double sum = x[0] + x[1], y = found.y;
     const Vec2 impulse = sum * n + y * t;
     const auto give = [&](const StruckBody<Real>& body, double sign, const Levers& lever) {
-        if (!(body.w > 0)) return;
+        if (!(body.w > 0) || found.is_given) return;
         const Vec2 dv = (sign * body.w) * impulse;
         records.add_velocity(body.row, dv,
                              sign * body.w2 * (lever[0] * x[0] + lever[1] * x[1] + lever[2] * y), terms);
@@ -149,7 +231,7 @@ Outcome carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, c
     give(a, -1, lever_a), give(b, 1, lever_b);
     if (contact.partner.is_wall()) books.wall_impulse += sum;
     if (!books.is_open) return Outcome::met;
-    books.restitution += work, books.friction += y * (vt + 0.5 * ktt * y);
+    books.restitution += found.by_normal, books.friction += found.by_friction;
     const bool is_far_moved = b.w > 0, is_near_moved = a.w > 0;
     if (is_far_moved && is_near_moved) return Outcome::met;
     // What nothing moves: the energy that its own motion gives the other body comes from outside.
@@ -166,7 +248,7 @@ Outcome carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, c
 
 template <class Real>
 std::int64_t carry_out_impacts(PathSolver<Real>& paths, const SubstepTerms& terms, const Bodies<Real>& bodies,
-                               BodyRecords<Real>& records, Books& books,
+                               BodyRecords<Real>& records, HeldImpacts<Real>& held, Books& books,
                                std::vector<std::int32_t>& deflected) {
     std::int64_t impacts = 0;
     deflected.clear();
@@ -175,10 +257,8 @@ std::int64_t carry_out_impacts(PathSolver<Real>& paths, const SubstepTerms& term
         goes_on = false;
         paths.unhide();
         paths.for_each([&](const PathContact<Real>& contact) {
-            const bool is_pressed =
-                contact.link.normal1[contact.lane] + contact.link.normal2[contact.lane] > 0;
-            if (!(contact.restitution > 0) || is_pressed) return;
-            const Outcome outcome = carry_out(contact, terms, bodies, records, books);
+            if (!(contact.restitution > 0)) return;
+            const Outcome outcome = carry_out(contact, terms, bodies, records, held, books);
             if (outcome == Outcome::comes) paths.hide(contact);
             if (outcome != Outcome::met) return;
             ++impacts, goes_on = true;
@@ -193,8 +273,10 @@ std::int64_t carry_out_impacts(PathSolver<Real>& paths, const SubstepTerms& term
 }
 
 template std::int64_t carry_out_impacts(PathSolver<float>&, const SubstepTerms&, const Bodies<float>&,
-                                        BodyRecords<float>&, Books&, std::vector<std::int32_t>&);
+                                        BodyRecords<float>&, HeldImpacts<float>&, Books&,
+                                        std::vector<std::int32_t>&);
 template std::int64_t carry_out_impacts(PathSolver<double>&, const SubstepTerms&, const Bodies<double>&,
-                                        BodyRecords<double>&, Books&, std::vector<std::int32_t>&);
+                                        BodyRecords<double>&, HeldImpacts<double>&, Books&,
+                                        std::vector<std::int32_t>&);
 
 }  // namespace carom

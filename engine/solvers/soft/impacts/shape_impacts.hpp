@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "solvers/paths/path_solver.hpp"
+#include "solvers/soft/impacts/held_impacts.hpp"
 #include "state/books.hpp"
 
 namespace carom {
@@ -21,11 +22,12 @@ namespace carom {
 /// take it to its partner in this substep, where it would be stopped.
 ///
 /// Cost: about 5 ns a contact that bounces and substep, and 100 ns an impact.
+/// @param held  impacts of bodies that joints hold
 /// @param deflected  out: rows of discs that an impact deflected; some may be named twice
 /// @return impacts
 template <class Real>
 std::int64_t carry_out_impacts(PathSolver<Real>& paths, const SubstepTerms& terms, const Bodies<Real>& bodies,
-                               BodyRecords<Real>& records, Books& books,
+                               BodyRecords<Real>& records, HeldImpacts<Real>& held, Books& books,
                                std::vector<std::int32_t>& deflected);
 
 }  // namespace carom
