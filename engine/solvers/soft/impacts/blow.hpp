@@ -42,7 +42,7 @@ std::array<double, 3> velocities(const DoubleBody& a, const Side& side, const Co
             rolling_velocity(a, side, terms.of_a)};
 }
 
-/// Of discs that fly.
+/// Carries out the impact of discs that fly.
 /// @param terms  of the contact: direction, materials, least normal velocity afterwards
 /// @param a, side  the sides, in and out
 template <class Real, class Side>
@@ -69,7 +69,7 @@ void strike_free(const StruckDiscs& discs, ContactTerms<double>& terms, DoubleBo
                        impact_work(blow.impulses.rolling, before[2], after[2]);
 }
 
-/// Of discs of which joints hold one at least.
+/// Carries out the impact of discs of which joints hold one at least.
 /// @param restitution  of the impact
 /// @param surface  m/s: velocities of what nothing moves along the three directions; zeros if b is a disc
 /// @param struck  out: rows whose velocities changed

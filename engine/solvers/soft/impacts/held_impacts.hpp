@@ -14,12 +14,16 @@ namespace carom {
 /// The row of what nothing moves.
 inline constexpr std::int32_t kNothing = -1;
 
+/// Share of the impulse that would stop two bodies above which the impulse that a contact had in a substep
+/// [N s / N s] presses it: it stays a contact. Below, what comes is a blow, and the force of before nothing
+/// beside it. A tenth: a force of the weight of a few bodies, at speeds that are no rest.
+inline constexpr double kLittle = 0.1;
+
 /// Impacts of bodies that joints hold.
 ///
 /// A blow on a body that hangs on joints is answered by all of its group at once. The impact of two free
-/// bodies would give it a velocity that its joints take back afterwards, and with it energy, or that they
-/// turn into more: a cradle whose balls meet a little beside their lowest points lost half of its energy in
-/// 20 s, one of capsules had ten times as much.
+/// bodies would give it a velocity that its joints take back afterwards, and with it energy: a cradle whose
+/// balls meet a little beside their lowest points lost half of its energy in 20 s.
 ///
 /// A unit impulse along each direction of the contact, its normal at each point, its tangent, its rolling,
 /// changes the velocities of all bodies concerned by a field R_i that the joints allow. The impact is that of

@@ -28,10 +28,6 @@ constexpr double kOverlap = 1e-3;
 /// end of the substep, in radii of the smaller one.
 constexpr double kDeepening = 0.01;
 
-/// A contact whose impulse in a substep is a smaller share of what would stop its bodies is not pressed for
-/// them: what comes is a blow, and the force of before nothing beside it.
-constexpr double kLittle = 0.1;
-
 /// Two surfaces touch if they are as near as this, in their reach.
 template <class Real>
 constexpr double kTouching = sizeof(Real) == sizeof(float) ? 1e-7 : 1e-14;

@@ -11,10 +11,6 @@ constexpr int kRounds = 8;
 /// Slower than so many times what gravity adds in a substep is no impact but a contact.
 constexpr double kRestFalls = 2;
 
-/// A contact whose impulse in a substep is more than this share of what would stop its bodies is pressed, and
-/// stays a contact: beside a blow a little force is nothing.
-constexpr double kLittle = 0.1;
-
 /// A body of an impact.
 template <class Real>
 struct StruckBody {
