@@ -170,6 +170,14 @@ Outcome carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, c
     const Vec2 n{link.normal_x[lane], link.normal_y[lane]}, t{-n.y, n.x};
     Levers lever_a{link.near1[lane], link.near2[lane], link.near_t[lane]},
         lever_b{link.far1[lane], link.far2[lane], link.far_t[lane]};
+    const auto most_of = [](double rim, const Levers& lever) {  // m/s, of a point by the body's turning
+        return std::fabs(rim) * std::fmax(std::fabs(lever[0]), std::fabs(lever[1]));
+    };
+    const Vec2 centres = b.start - a.start;
+    if (std::fabs(centres.x) + std::fabs(centres.y) + most_of(a.start_rim, lever_a) +
+            most_of(b.start_rim, lever_b) <=
+        rest_speed)
+        return Outcome::none;  // no point can be fast: nearly all contacts of what rests
     const auto relative = [&](Vec2 va, double ua, Vec2 vb, double ub, std::size_t k) {
         return dot(vb - va, k < 2 ? n : t) + ub * lever_b[k] - ua * lever_a[k];
     };
