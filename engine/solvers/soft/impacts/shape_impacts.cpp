@@ -157,6 +157,23 @@ enum class Outcome : std::uint8_t {
     met     ///< there was an impact
 };
 
+/// Whether no point of a contact can be fast, whatever joints hold: of nearly all contacts of what rests.
+template <class Real>
+bool is_slow(const PathContact<Real>& contact, const SubstepTerms& terms, const BodyRecords<Real>& records) {
+    const auto count = static_cast<std::int32_t>(records.count());
+    if (contact.near >= count || contact.far >= count) return false;  // nothing moves one of them
+    const auto a = records.start_of_substep(contact.near), b = records.start_of_substep(contact.far);
+    const auto arm = [&](const auto& first, const auto& second) {
+        return std::fmax(std::fabs(static_cast<double>(first[contact.lane])),
+                         std::fabs(static_cast<double>(second[contact.lane])));
+    };
+    const PathLink<Real>& link = contact.link;
+    const double most = std::fabs(b[0] - a[0]) + std::fabs(b[1] - a[1]) +
+                        std::fabs(a[2]) * arm(link.near1, link.near2) +
+                        std::fabs(b[2]) * arm(link.far1, link.far2);
+    return most <= (kRestFalls - 1) * terms.fall_speed();  // half a kick of gravity may come to each
+}
+
 template <class Real>
 Outcome carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, const Bodies<Real>& bodies,
                   BodyRecords<Real>& records, HeldImpacts<Real>& held, Books& books) {
@@ -170,14 +187,6 @@ Outcome carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, c
     const Vec2 n{link.normal_x[lane], link.normal_y[lane]}, t{-n.y, n.x};
     Levers lever_a{link.near1[lane], link.near2[lane], link.near_t[lane]},
         lever_b{link.far1[lane], link.far2[lane], link.far_t[lane]};
-    const auto most_of = [](double rim, const Levers& lever) {  // m/s, of a point by the body's turning
-        return std::fabs(rim) * std::fmax(std::fabs(lever[0]), std::fabs(lever[1]));
-    };
-    const Vec2 centres = b.start - a.start;
-    if (std::fabs(centres.x) + std::fabs(centres.y) + most_of(a.start_rim, lever_a) +
-            most_of(b.start_rim, lever_b) <=
-        rest_speed)
-        return Outcome::none;  // no point can be fast: nearly all contacts of what rests
     const auto relative = [&](Vec2 va, double ua, Vec2 vb, double ub, std::size_t k) {
         return dot(vb - va, k < 2 ? n : t) + ub * lever_b[k] - ua * lever_a[k];
     };
@@ -262,6 +271,7 @@ std::int64_t carry_out_impacts(PathSolver<Real>& paths, const SubstepTerms& term
         paths.unhide();
         paths.for_each([&](const PathContact<Real>& contact) {
             if (!(contact.restitution > 0)) return;
+            if (is_slow(contact, terms, records)) return;
             const Outcome outcome = carry_out(contact, terms, bodies, records, held, books);
             if (outcome == Outcome::comes) paths.hide(contact);
             if (outcome != Outcome::met) return;
