@@ -16,7 +16,7 @@ constexpr double kCellInReaches = 4;
 /// meet.
 constexpr double kLargestStretch = 0.25;
 /// A flow that carries no body farther than this share of the usual radius in a step is not followed.
-constexpr double kStill = 0.005;
+constexpr double kStillFlow = 0.005;
 /// A flow is followed if places may drift with it for at least so many steps: a single body that is faster
 /// than that would else have all pairs found anew every other step.
 constexpr double kFewestFlowSteps = 4;
@@ -36,7 +36,7 @@ constexpr int kMostLeftOut = 8;
 
 // Rounding a place and a reach to Real takes at most this share of both from a margin in a step.
 template <class Real>
-constexpr double kRounding = sizeof(Real) == sizeof(float) ? 2.4e-7 : 5e-16;
+constexpr double kRoundingOfMargin = sizeof(Real) == sizeof(float) ? 2.4e-7 : 5e-16;
 
 // ns a body on one thread, for the executor.
 constexpr double kNanosecondsToMove = 1, kNanosecondsToFollow = 15, kNanosecondsToBegin = 10;
@@ -107,7 +107,7 @@ bool MovingPlaces<Real>::move(const Bodies<Real>& bodies, double dt, double most
     drift_left_ -= dt * most.speed, steepness_ += dt * most.gradient_of_velocity;
     since_flow_ += dt;
     if (drift_left_ < 0 || since_flow_ * most.rate > kLargestStretch || spread() > most_spread) return false;
-    const auto h = static_cast<Real>(dt), rounding = static_cast<Real>(kRounding<Real>);
+    const auto h = static_cast<Real>(dt), rounding = static_cast<Real>(kRoundingOfMargin<Real>);
     Real *const x = x_.data(), *const y = y_.data(), *const reach = reach_of_row.data();
     const Real *const flow_x = flow_x_.data(), *const flow_y = flow_y_.data(), *const rate = rate_.data();
     const Real *const radius = bodies.radius.data(), uniform_radius = bodies.radius.uniform_value();
@@ -150,8 +150,8 @@ bool MovingPlaces<Real>::follow(const Bodies<Real>& bodies, const FlightClock& e
         set_velocity(row, flow);
         const double x = x_[row] + flow.jump.x, y = y_[row] + flow.jump.y;
         const double stretch = flow_is_local_ ? flow.stretch : most.stretch;
-        const double reach = (1 - stretch - kRounding<Real>)*static_cast<double>(reach_of_row[row]) -
-                             kRounding<Real> * (std::fabs(x) + std::fabs(y));
+        const double reach = (1 - stretch - kRoundingOfMargin<Real>)*static_cast<double>(reach_of_row[row]) -
+                             kRoundingOfMargin<Real> * (std::fabs(x) + std::fabs(y));
         const double off_x = bodies.position_x[row] + end.s * bodies.velocity_x[row] + fall.x - x,
                      off_y = bodies.position_y[row] + end.s * bodies.velocity_y[row] + fall.y - y;
         x_[row] = static_cast<Real>(x), y_[row] = static_cast<Real>(y);
@@ -228,8 +228,8 @@ void MovingPlaces<Real>::begin(const Bodies<Real>& bodies, std::size_t rows, Len
         immovable += takes_part(bodies.flags_of(row)) && bodies.is_immovable(row);
     may_flow_ = immovable * kBodiesPerImmovable <= bodies.count;
     if (may_flow_) drift_left_ = largest_drift_ = drift_with_flow(bodies, usual.radius, end.s);
-    flows_ = may_flow_ && end.s * most.speed > kStill * usual.radius && end.s * most.rate < kLargestStretch &&
-             kFewestFlowSteps * end.s * most.speed < drift_left_;
+    flows_ = may_flow_ && end.s * most.speed > kStillFlow * usual.radius &&
+             end.s * most.rate < kLargestStretch && kFewestFlowSteps * end.s * most.speed < drift_left_;
     if (!flows_) return;
     executor.for_each_chunk(
         bodies.count, kRowsPerChunk, kNanosecondsToBegin,

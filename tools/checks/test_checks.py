@@ -12,6 +12,7 @@ import check_file_length
 import check_format
 import check_isa_symbols
 import check_layers
+import check_names
 from sources import ROOT, without_comments
 
 COMPILER = os.environ.get("CXX", "c++")
@@ -159,6 +160,19 @@ class CheckFileLength(WithFolder):
         self.assertEqual(check_file_length.check(self.root), [])
         self.write("engine/a.cpp", "int a;\n" * 500)
         self.assertEqual(check_file_length.check(self.root), [])
+
+
+class CheckNames(WithFolder):
+    def test_a_constant_of_a_header_has_no_namesake(self):
+        self.write("engine/a.hpp", "inline constexpr double kLittle = 1;\n")
+        self.write("engine/b.cpp", "namespace {\ntemplate <class Real>\nconstexpr Real kLittle = 2;\n}\n")
+        self.assertEqual(check_names.check(self.root), ["kLittle: engine/a.hpp:1, engine/b.cpp:3"])
+
+    def test_two_source_files_and_a_constant_of_a_function_may(self):
+        self.write("engine/a.hpp", "void f() {\n    constexpr int kMost = 1;\n}\n")
+        self.write("engine/b.cpp", "constexpr int kMost = 2;\n")
+        self.write("engine/c.cpp", "constexpr int kMost = 3;\n")
+        self.assertEqual(check_names.check(self.root), [])
 
 
 class CheckFormat(WithFolder):

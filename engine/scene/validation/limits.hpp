@@ -14,8 +14,8 @@ inline constexpr Quantity kHeight{"height", "m", kSmallestRadius, kLargestRadius
 inline constexpr Quantity kCapsuleLength{
     "length", "m", kSmallestRadius, kLargestRadius,
     "It goes from centre to centre; a capsule without length is a disc. Give lengths in metres."};
-inline constexpr Quantity kRounding{"radius", "m", 0, kLargestRadius,
-                                    "Give the radius of the corners, 0 for sharp ones."};
+inline constexpr Quantity kCornerRadius{"radius", "m", 0, kLargestRadius,
+                                        "Give the radius of the corners, 0 for sharp ones."};
 inline constexpr Quantity kPositionX{"position x", "m", -kLargestPosition, kLargestPosition, kUseMetres};
 inline constexpr Quantity kPositionY{"position y", "m", -kLargestPosition, kLargestPosition, kUseMetres};
 inline constexpr Quantity kAngle{"angle", "rad", -kLargestAngle, kLargestAngle, "Give angles in radians."};

@@ -175,7 +175,7 @@ std::optional<Problem> find_polygon_problem(const Item& item, const Polygon& pol
         if (auto found = check(item, pointer + "/0", polygon.vertices[i].x, kVertexX)) return found;
         if (auto found = check(item, pointer + "/1", polygon.vertices[i].y, kVertexY)) return found;
     }
-    if (auto found = check(item, "/shape/polygon/radius", polygon.radius, kRounding)) return found;
+    if (auto found = check(item, "/shape/polygon/radius", polygon.radius, kCornerRadius)) return found;
     if (auto found = find_coincident_problem(item, polygon.vertices)) return found;
     if (auto found = find_corner_problem(item, polygon.vertices)) return found;
     if (auto found = find_winding_problem(item, polygon.vertices)) return found;

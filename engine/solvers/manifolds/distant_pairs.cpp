@@ -17,7 +17,7 @@ constexpr std::size_t kPairsOfGap = 8;  // gaps are closed when one pair in so m
 
 /// Share of the lengths in it by which a gap may be off through rounding.
 template <class Real>
-constexpr Real kRounding = 16 * std::numeric_limits<Real>::epsilon();
+constexpr Real kRoundingOfLengths = 16 * std::numeric_limits<Real>::epsilon();
 
 }  // namespace
 
@@ -102,7 +102,7 @@ std::span<const typename DistantPairs<Real>::Pair> DistantPairs<Real>::take_near
                              until_.data(),
                              static_cast<Real>(near.share),
                              static_cast<Real>(near.fall),
-                             kRounding<Real>,
+                             kRoundingOfLengths<Real>,
                              nullptr};
     executor.for_each_chunk(count(), kPairsPerTask, kNanosecondsToScan,
                             [&](std::size_t chunk, std::size_t first, std::size_t last) {

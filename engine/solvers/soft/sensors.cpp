@@ -10,9 +10,9 @@ namespace carom {
 namespace {
 
 /// Bodies that come farther in a step, in thicknesses of the thinner one, may have passed.
-constexpr double kFastThicknesses = 0.5;
+constexpr double kPassingThicknesses = 0.5;
 /// As near as this share of the thickness counts as met on the way.
-constexpr double kMeetingTarget = 1e-3;
+constexpr double kSensedTarget = 1e-3;
 /// Edges are looked for in the circle around a sensor, this much wider against rounding.
 constexpr double kWiderCircle = 1 + 1e-9;
 
@@ -92,11 +92,10 @@ bool SensorFinder<Real>::look_at_pieces(const MovingConvex& a, const MovingConve
                                         const SensedPair& pair) {
     const double distance = separation_of(at_time(a, 0), at_time(b, 0)).distance;
     if (distance < 0) return inside.push_back(pair), true;
-    const double thickness = std::min(a.shape.inradius, b.shape.inradius),
-                 target = kMeetingTarget * thickness;
+    const double thickness = std::min(a.shape.inradius, b.shape.inradius), target = kSensedTarget * thickness;
     const double way = dt_ * (std::sqrt(length_squared(b.velocity - a.velocity)) +
                               std::fabs(a.spin) * a.shape.extent + std::fabs(b.spin) * b.shape.extent);
-    if (!(way > kFastThicknesses * thickness)) return false;
+    if (!(way > kPassingThicknesses * thickness)) return false;
     // Back from the end, as they came. What is no farther than the target at either end has not passed: it is
     // about to come in, or was in before.
     const auto backwards = [](const MovingConvex& forwards) {

@@ -29,7 +29,7 @@ struct Blow {
 };
 
 /// What stands still.
-inline constexpr DoubleBody kStill{{{0, 0, 0, 0}}};
+inline constexpr DoubleBody kStillBody{{{0, 0, 0, 0}}};
 
 inline DoubleBody body_of(const std::array<double, 4>& record) {
     return {{{record[0], record[1], record[2], record[3]}}};

@@ -17,7 +17,7 @@ inline constexpr std::int32_t kNothing = -1;
 /// Share of the impulse that would stop two bodies above which the impulse that a contact had in a substep
 /// [N s / N s] presses it: it stays a contact. Below, what comes is a blow, and the force of before nothing
 /// beside it. A tenth: a force of the weight of a few bodies, at speeds that are no rest.
-inline constexpr double kLittle = 0.1;
+inline constexpr double kLightPress = 0.1;
 
 /// Impacts of bodies that joints hold.
 ///

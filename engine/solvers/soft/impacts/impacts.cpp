@@ -63,7 +63,7 @@ template <class Real>
 bool Impacts<Real>::is_pressed(Place place, double speed) const {
     if (!place.has_row()) return false;
     const ContactRows<Real>& rows = store_of(place);
-    return rows.normal_impulse[place.index] > kLittle * rows.mass[place.index] * speed;
+    return rows.normal_impulse[place.index] > kLightPress * rows.mass[place.index] * speed;
 }
 
 template <class Real>
@@ -356,7 +356,7 @@ bool Impacts<Real>::carry_out(Place place, double time, Books& books, double& gr
     const std::int32_t row_a = row_of(place);
     const Partner other = partner_of(place);
     const Mover mover_a = paths_.of(row_a);
-    DoubleBody a = body_of(paths_.record_of(row_a, mover_a, time)), b = kStill;
+    DoubleBody a = body_of(paths_.record_of(row_a, mover_a, time)), b = kStillBody;
     Vec2 n;
     double gap = 0;
     if (other.is_body()) {
@@ -398,7 +398,7 @@ bool Impacts<Real>::carry_out(Place place, double time, Books& books, double& gr
         [[maybe_unused]] const auto before = velocities(a, side, terms);
         // Seen from what stands still, what a support does is its own motion.
         const std::array<double, 3> of_support = place.is_support() && (is_held || books.is_open)
-                                                     ? velocities(kStill, side, terms)
+                                                     ? velocities(kStillBody, side, terms)
                                                      : std::array<double, 3>{};
         const StruckDiscs discs{row_a, place.is_support() ? kNothing : other.row(), time};
         Blow blow;

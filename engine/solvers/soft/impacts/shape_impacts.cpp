@@ -212,7 +212,7 @@ Outcome carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, c
         meets[k] = is_fast && touches, comes = comes || is_fast, is_free = is_free && !touches;
     }
     const double pressing = static_cast<double>(link.normal1[lane]) + static_cast<double>(link.normal2[lane]);
-    if (pressing > kLittle * std::fmax(-v[0], -v[1]) / (a.w + b.w)) return Outcome::none;
+    if (pressing > kLightPress * std::fmax(-v[0], -v[1]) / (a.w + b.w)) return Outcome::none;
     if (!meets[0] && !meets[1]) return comes && is_free ? Outcome::comes : Outcome::none;
     if (a.w > 0 && b.w > 0) {
         const Levers own_a = lever_a, own_b = lever_b;
