@@ -10,11 +10,20 @@
 
 namespace carom {
 
+/// Places of joints that share what is known of how their rows lie. It is kRowPadding, which kernels do not
+/// see.
+inline constexpr std::size_t kJointBlock = 16;
+
+/// How the rows of a block of joints lie: any, consecutive both of a and of b, or a, b, a, b ... one after the
+/// other.
+enum class RowOrder : std::uint8_t { any, runs, pairs };
+
 /// Joints of one kind, sorted by group and colour: a body that moves is in one joint of a colour.
 template <class Real>
 struct JointColumns {
     std::int32_t* a;   // row
     std::int32_t* b;   // row
+    const RowOrder* order;  // of each kJointBlock places
     Real* start_x;     // m, from a's centre to b's at the start of the step
     Real* start_y;     //
     Real* length;      // m; of rods

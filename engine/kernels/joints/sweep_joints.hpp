@@ -7,6 +7,7 @@
 #include "kernels/joints/joint_arguments.hpp"
 #include "simd/forget_loads.hpp"
 #include "simd/lanes.hpp"
+#include "simd/ordered_lanes.hpp"
 
 // Rods and hinges by lanes. An impulse j at an arm r turns a body by r × j / I; with the rim = sqrt(2 I / m)
 // and the rim speed u = spin * rim that is a change of u by 2 w (r / rim) × j: constraints/contact_law.hpp.
@@ -129,16 +130,35 @@ Pair2<typename Lanes::Batch> parting(const JointSide<Lanes, kArms>& a, const Joi
 template <class Lanes, bool kArms, class Real>
 [[gnu::always_inline]] inline void load_velocities(const SweepJoints<Real>& k, std::size_t c,
                                                    JointSide<Lanes, kArms>& a, JointSide<Lanes, kArms>& b) {
-    a.record = Lanes::load_rows4(k.velocity, k.joints.a + c);
-    b.record = Lanes::load_rows4(k.velocity, k.joints.b + c);
+    if constexpr (requires { Lanes::kPairs; }) {
+        Lanes::load_pairs4(k.velocity, k.joints.a + c, a.record, b.record);
+    } else {
+        a.record = Lanes::load_rows4(k.velocity, k.joints.a + c);
+        b.record = Lanes::load_rows4(k.velocity, k.joints.b + c);
+    }
 }
 
 template <class Lanes, bool kArms, class Real>
 [[gnu::always_inline]] inline void store_velocities(const SweepJoints<Real>& k, std::size_t c,
                                                     const JointSide<Lanes, kArms>& a,
                                                     const JointSide<Lanes, kArms>& b) {
-    Lanes::store_rows4(k.velocity, k.joints.a + c, a.record);
-    Lanes::store_rows4(k.velocity, k.joints.b + c, b.record);
+    if constexpr (requires { Lanes::kPairs; }) {
+        Lanes::store_pairs4(k.velocity, k.joints.a + c, a.record, b.record);
+    } else {
+        Lanes::store_rows4(k.velocity, k.joints.a + c, a.record);
+        Lanes::store_rows4(k.velocity, k.joints.b + c, b.record);
+    }
+}
+
+template <class Lanes, class Real>
+[[gnu::always_inline]] inline void load_displacements(const SweepJoints<Real>& k, std::size_t c,
+                                                      typename Lanes::Batch2& a, typename Lanes::Batch2& b) {
+    if constexpr (requires { Lanes::kPairs; }) {
+        Lanes::load_pairs2(k.displacement, k.joints.a + c, a, b);
+    } else {
+        a = Lanes::load_rows2(k.displacement, k.joints.a + c);
+        b = Lanes::load_rows2(k.displacement, k.joints.b + c);
+    }
 }
 
 template <class Lanes, class Real>
@@ -239,8 +259,12 @@ template <class Lanes, bool kArms, class Real>
     const F wa = a.inverse_mass(), wb = b.inverse_mass();
     moved_a[0] -= wa * p.x, moved_a[1] -= wa * p.y;
     moved_b[0] += wb * p.x, moved_b[1] += wb * p.y;
-    Lanes::store_rows2(k.displacement, k.joints.a + c, moved_a);
-    Lanes::store_rows2(k.displacement, k.joints.b + c, moved_b);
+    if constexpr (requires { Lanes::kPairs; }) {
+        Lanes::store_pairs2(k.displacement, k.joints.a + c, moved_a, moved_b);
+    } else {
+        Lanes::store_rows2(k.displacement, k.joints.a + c, moved_a);
+        Lanes::store_rows2(k.displacement, k.joints.b + c, moved_b);
+    }
     if constexpr (kArms) {
         const auto moment = [&](const JointSide<Lanes, kArms>& side, F sign) {
             return sign * (side.arm.x * p.y - side.arm.y * p.x);
@@ -250,68 +274,85 @@ template <class Lanes, bool kArms, class Real>
     }
 }
 
+/// Calls batch(lanes, c) for each batch of joints, with the lanes that suit how its rows lie.
+template <class Real, class Isa, class Fn>
+[[gnu::always_inline]] inline void for_each_batch(const SweepJoints<Real>& k, std::size_t first,
+                                                  std::size_t last, const Fn& batch) {
+    using Lanes = simd::Lanes<Real, Isa>;
+    for (std::size_t c = first; c < last; c += Lanes::size) {
+        const RowOrder order = Lanes::size == 1 ? RowOrder::any : k.joints.order[c / kJointBlock];
+        if (order == RowOrder::runs) batch(simd::LanesOfRuns<Lanes>{}, c);
+        else if (order == RowOrder::pairs) batch(simd::LanesOfPairs<Lanes>{}, c);
+        else batch(Lanes{}, c);
+    }
+}
+
 template <class F>
 F clamp_to(F value, F most) {
     return simd::max(simd::min(value, most), -most);
 }
 
 /// Rods. kFirst: the first sweep of a substep, which finds directions anew and corrects lengths.
+template <class Lanes, bool kArms, bool kFirst, class Real>
+[[gnu::always_inline]] inline void sweep_batch_of_rods(const SweepJoints<Real>& k, std::size_t c) {
+    using F = typename Lanes::Batch;
+    const F one(1), zero(0), h(k.h), half_h(k.half_h);
+    JointSide<Lanes, kArms> a, b;
+    load_velocities<Lanes>(k, c, a, b);
+    load_arms<Lanes, kArms>(k, c, a, b);
+    const F wa = a.inverse_mass(), wb = b.inverse_mass();
+    const F l = Lanes::load(k.joints.impulse_x + c);
+    F nx, ny, per_length, inverse;
+    if constexpr (!kFirst) {
+        nx = Lanes::load(k.joints.normal_x + c), ny = Lanes::load(k.joints.normal_y + c);
+        per_length = Lanes::load(k.joints.per_length + c);
+        inverse = inverse_mass_along<Lanes, kArms>(a, b, nx, ny);
+    } else {
+        simd::forget_loads();
+        const F old_x = l * Lanes::load(k.joints.normal_x + c),
+                old_y = l * Lanes::load(k.joints.normal_y + c);
+        F torque_a = zero, torque_b = zero;
+        if constexpr (kArms) {
+            torque_a = a.arm.x * old_y - a.arm.y * old_x, torque_b = b.arm.x * old_y - b.arm.y * old_x;
+            turn_arms<Lanes>(k, c, a, b);
+        }
+        typename Lanes::Batch2 moved_a, moved_b;
+        load_displacements<Lanes>(k, c, moved_a, moved_b);
+        const auto now = direction_of<Lanes>(between<Lanes, kArms>(k, c, moved_a, moved_b, a, b));
+        nx = now.x, ny = now.y, per_length = now.per_length;
+        Lanes::store(k.joints.normal_x + c, nx), Lanes::store(k.joints.normal_y + c, ny);
+        Lanes::store(k.joints.per_length + c, per_length);
+        inverse = inverse_mass_along<Lanes, kArms>(a, b, nx, ny);
+        const F length = Lanes::load(k.joints.length + c);
+        const F off = clamp_to(now.length - length, F(k.most) * length);
+        const F p = simd::select(inverse > zero, -F(k.recovery) * off / inverse, zero);
+        displace<Lanes, kArms>(k, c, moved_a, moved_b, a, b, {p * nx, p * ny});
+        // Velocities have the impulses of the substep before in them (advance_bodies.hpp): turned to what
+        // the rod is now.
+        a.record[0] -= wa * (l * nx - old_x), a.record[1] -= wa * (l * ny - old_y);
+        b.record[0] += wb * (l * nx - old_x), b.record[1] += wb * (l * ny - old_y);
+        if constexpr (kArms) {
+            a.turn(torque_a - (a.arm.x * (l * ny) - a.arm.y * (l * nx)));
+            b.turn((b.arm.x * (l * ny) - b.arm.y * (l * nx)) - torque_b);
+        }
+    }
+    const F strain = F(4) * h * simd::abs(l) * inverse * per_length;
+    const F share = one / (one + strain * strain);
+    const Pair2<F> v = parting<Lanes, kArms>(a, b, h, share, share);
+    const F along = v.x * nx + v.y * ny, across = v.y * nx - v.x * ny;
+    const F wanted = -half_h * across * across * per_length * share;
+    const F added = simd::select(inverse > zero, F(k.over_relaxation) * (wanted - along) / inverse, zero);
+    Lanes::store(k.joints.impulse_x + c, l + added);
+    a.push(added * nx, added * ny, F(-1)), b.push(added * nx, added * ny, one);
+    store_velocities<Lanes>(k, c, a, b);
+}
+
 template <bool kArms, bool kFirst, class Real, class Isa>
 void sweep_rods(const SweepJoints<Real>& arguments, std::size_t first, std::size_t last) {
-    using Lanes = simd::Lanes<Real, Isa>;
-    using F = typename Lanes::Batch;
     const SweepJoints<Real> k = arguments;  // a copy: no store can change it
-    const F one(1), zero(0), h(k.h), half_h(k.half_h);
-    for (std::size_t c = first; c < last; c += Lanes::size) {
-        JointSide<Lanes, kArms> a, b;
-        load_velocities<Lanes>(k, c, a, b);
-        load_arms<Lanes, kArms>(k, c, a, b);
-        const F wa = a.inverse_mass(), wb = b.inverse_mass();
-        const F l = Lanes::load(k.joints.impulse_x + c);
-        F nx, ny, per_length, inverse;
-        if constexpr (!kFirst) {
-            nx = Lanes::load(k.joints.normal_x + c), ny = Lanes::load(k.joints.normal_y + c);
-            per_length = Lanes::load(k.joints.per_length + c);
-            inverse = inverse_mass_along<Lanes, kArms>(a, b, nx, ny);
-        } else {
-            simd::forget_loads();
-            const F old_x = l * Lanes::load(k.joints.normal_x + c),
-                    old_y = l * Lanes::load(k.joints.normal_y + c);
-            F torque_a = zero, torque_b = zero;
-            if constexpr (kArms) {
-                torque_a = a.arm.x * old_y - a.arm.y * old_x, torque_b = b.arm.x * old_y - b.arm.y * old_x;
-                turn_arms<Lanes>(k, c, a, b);
-            }
-            auto moved_a = Lanes::load_rows2(k.displacement, k.joints.a + c);
-            auto moved_b = Lanes::load_rows2(k.displacement, k.joints.b + c);
-            const auto now = direction_of<Lanes>(between<Lanes, kArms>(k, c, moved_a, moved_b, a, b));
-            nx = now.x, ny = now.y, per_length = now.per_length;
-            Lanes::store(k.joints.normal_x + c, nx), Lanes::store(k.joints.normal_y + c, ny);
-            Lanes::store(k.joints.per_length + c, per_length);
-            inverse = inverse_mass_along<Lanes, kArms>(a, b, nx, ny);
-            const F length = Lanes::load(k.joints.length + c);
-            const F off = clamp_to(now.length - length, F(k.most) * length);
-            const F p = simd::select(inverse > zero, -F(k.recovery) * off / inverse, zero);
-            displace<Lanes, kArms>(k, c, moved_a, moved_b, a, b, {p * nx, p * ny});
-            // Velocities have the impulses of the substep before in them (advance_bodies.hpp): turned to what
-            // the rod is now.
-            a.record[0] -= wa * (l * nx - old_x), a.record[1] -= wa * (l * ny - old_y);
-            b.record[0] += wb * (l * nx - old_x), b.record[1] += wb * (l * ny - old_y);
-            if constexpr (kArms) {
-                a.turn(torque_a - (a.arm.x * (l * ny) - a.arm.y * (l * nx)));
-                b.turn((b.arm.x * (l * ny) - b.arm.y * (l * nx)) - torque_b);
-            }
-        }
-        const F strain = F(4) * h * simd::abs(l) * inverse * per_length;
-        const F share = one / (one + strain * strain);
-        const Pair2<F> v = parting<Lanes, kArms>(a, b, h, share, share);
-        const F along = v.x * nx + v.y * ny, across = v.y * nx - v.x * ny;
-        const F wanted = -half_h * across * across * per_length * share;
-        const F added = simd::select(inverse > zero, F(k.over_relaxation) * (wanted - along) / inverse, zero);
-        Lanes::store(k.joints.impulse_x + c, l + added);
-        a.push(added * nx, added * ny, F(-1)), b.push(added * nx, added * ny, one);
-        store_velocities<Lanes>(k, c, a, b);
-    }
+    for_each_batch<Real, Isa>(k, first, last, [&]<class Lanes>(Lanes, std::size_t c) {
+        sweep_batch_of_rods<Lanes, kArms, kFirst>(k, c);
+    });
 }
 
 /// Hinges.
@@ -369,24 +410,28 @@ void sweep_hinges(const SweepJoints<Real>& arguments, std::size_t first, std::si
 
 /// Gives the bodies of rods the impulses that these had at the end of the step before, along what they are
 /// now.
+template <class Lanes, bool kArms, class Real>
+[[gnu::always_inline]] inline void give_batch_of_rods(const SweepJoints<Real>& k, std::size_t c) {
+    using F = typename Lanes::Batch;
+    const F one(1), zero(0);
+    JointSide<Lanes, kArms> a, b;
+    load_velocities<Lanes>(k, c, a, b);
+    load_arms<Lanes, kArms>(k, c, a, b);
+    if constexpr (kArms) turn_arms<Lanes>(k, c, a, b);
+    const typename Lanes::Batch2 still{{zero, zero}};
+    const auto n = direction_of<Lanes>(between<Lanes, kArms>(k, c, still, still, a, b));
+    Lanes::store(k.joints.normal_x + c, n.x), Lanes::store(k.joints.normal_y + c, n.y);
+    const F l = Lanes::load(k.joints.impulse_x + c);
+    a.push(l * n.x, l * n.y, F(-1)), b.push(l * n.x, l * n.y, one);
+    store_velocities<Lanes>(k, c, a, b);
+}
+
 template <bool kArms, class Real, class Isa>
 void give_rods(const SweepJoints<Real>& arguments, std::size_t first, std::size_t last) {
-    using Lanes = simd::Lanes<Real, Isa>;
-    using F = typename Lanes::Batch;
     const SweepJoints<Real> k = arguments;  // a copy: no store can change it
-    const F one(1), zero(0);
-    for (std::size_t c = first; c < last; c += Lanes::size) {
-        JointSide<Lanes, kArms> a, b;
-        load_velocities<Lanes>(k, c, a, b);
-        load_arms<Lanes, kArms>(k, c, a, b);
-        if constexpr (kArms) turn_arms<Lanes>(k, c, a, b);
-        const typename Lanes::Batch2 still{{zero, zero}};
-        const auto n = direction_of<Lanes>(between<Lanes, kArms>(k, c, still, still, a, b));
-        Lanes::store(k.joints.normal_x + c, n.x), Lanes::store(k.joints.normal_y + c, n.y);
-        const F l = Lanes::load(k.joints.impulse_x + c);
-        a.push(l * n.x, l * n.y, F(-1)), b.push(l * n.x, l * n.y, one);
-        store_velocities<Lanes>(k, c, a, b);
-    }
+    for_each_batch<Real, Isa>(k, first, last, [&]<class Lanes>(Lanes, std::size_t c) {
+        give_batch_of_rods<Lanes, kArms>(k, c);
+    });
 }
 
 /// Likewise of hinges.

@@ -15,6 +15,51 @@ constexpr std::size_t kColours = 64;
 constexpr std::size_t kFewestChunks = 8;         // or one: four tasks for the threads to share
 constexpr std::size_t kFewestRowsOfChunk = 512;  // fewer: too many short colours
 constexpr double kNanosecondsToSweep = 5;        // a joint on one thread, for the executor
+static_assert(kJointBlock == kRowPadding);
+
+/// A part of a joint that is to be swept.
+struct Entry {
+    std::size_t group, colour, kind, slot;
+    std::int32_t a, b;
+};
+
+/// The order that a block of joints has if each of them lies to the next one as these two do.
+RowOrder order_of(std::int32_t a, std::int32_t b, std::int32_t next_a, std::int32_t next_b) {
+    if (next_a == a + 1 && next_b == b + 1) return RowOrder::runs;
+    return b == a + 1 && next_a == a + 2 && next_b == b + 2 ? RowOrder::pairs : RowOrder::any;
+}
+
+/// Within each colour puts joints whose rows lie in order before all others, in whole blocks: lines of a net,
+/// and what reaches from line to line, if bodies were added in that order. The order within a
+/// colour is free: none of its joints moves what another one moves.
+/// @param entries  of one kind, by group and colour
+template <class Moves>
+void put_blocks_first(std::vector<Entry>& entries, const Moves& moves) {
+    std::vector<Entry> blocks, others;
+    const auto order_at = [&](std::size_t i) {
+        if (i + 1 == entries.size()) return RowOrder::any;
+        const Entry &here = entries[i], &next = entries[i + 1];
+        if (next.group != here.group || next.colour != here.colour) return RowOrder::any;
+        for (const std::int32_t row : {here.a, here.b, next.a, next.b})
+            if (!moves(row)) return RowOrder::any;
+        return order_of(here.a, here.b, next.a, next.b);
+    };
+    for (std::size_t i = 0, first = 0; i < entries.size();) {
+        const RowOrder order = order_at(i);
+        std::size_t length = 1;
+        while (order != RowOrder::any && order_at(i + length - 1) == order) ++length;
+        const std::size_t in_blocks = length / kJointBlock * kJointBlock;
+        for (std::size_t j = 0; j < length; ++j) (j < in_blocks ? blocks : others).push_back(entries[i + j]);
+        i += length;
+        if (i < entries.size() && entries[i].group == entries[i - 1].group &&
+            entries[i].colour == entries[i - 1].colour)
+            continue;
+        std::copy(blocks.begin(), blocks.end(), entries.begin() + static_cast<std::ptrdiff_t>(first));
+        std::copy(others.begin(), others.end(),
+                  entries.begin() + static_cast<std::ptrdiff_t>(first + blocks.size()));
+        blocks.clear(), others.clear(), first = i;
+    }
+}
 
 }  // namespace
 
@@ -63,7 +108,7 @@ void SweptJoints<Real>::Kind::for_each_column(const Fn& fn) {
 
 template <class Real>
 void SweptJoints<Real>::Kind::resize(std::size_t places, unsigned needs) {
-    a.resize(places), b.resize(places), slot.resize(places);
+    a.resize(places), b.resize(places), slot.resize(places), order.resize(places / kJointBlock);
     for_each_column([&](Column<Real>& column, unsigned bit) {
         column.clear();
         column.resize((needs & bit) == bit ? places : 0);
@@ -71,9 +116,24 @@ void SweptJoints<Real>::Kind::resize(std::size_t places, unsigned needs) {
 }
 
 template <class Real>
+void SweptJoints<Real>::Kind::find_order() {
+    for (std::size_t block = 0; block < order.size(); ++block) {
+        const std::size_t first = block * kJointBlock;
+        const auto order_at = [&](std::size_t i) {
+            const bool are_joints = slot[i] >= 0 && slot[i + 1] >= 0;
+            return are_joints ? order_of(a[i], b[i], a[i + 1], b[i + 1]) : RowOrder::any;
+        };
+        order[block] = order_at(first);
+        for (std::size_t i = first + 1; i + 1 < first + kJointBlock; ++i)
+            if (order_at(i) != order[block]) order[block] = RowOrder::any;
+    }
+}
+
+template <class Real>
 JointColumns<Real> SweptJoints<Real>::Kind::columns() {
     return {a.data(),
             b.data(),
+            order.data(),
             start_x.data(),
             start_y.data(),
             length.data(),
@@ -118,10 +178,6 @@ std::vector<std::size_t> SweptJoints<Real>::sort(const WorldState<Real>& world,
         const std::size_t length = padded((rows + kFewestChunks - 1) / kFewestChunks);
         groups_ = TaskGroups(length, (rows + length - 1) / length);
     }
-    struct Entry {
-        std::size_t group, colour, kind, slot;
-        std::int32_t a, b;
-    };
     std::vector<Entry> entries;
     const auto row_of = [&](BodyId id) {
         return id == BodyId{} ? first_beyond_
@@ -180,11 +236,14 @@ std::vector<std::size_t> SweptJoints<Real>::sort(const WorldState<Real>& world,
     });
     for (std::size_t kind = 0; kind < kKinds; ++kind) {
         Kind& own = kinds_[kind];
+        std::vector<Entry> of_kind;
+        for (const Entry& entry : entries)
+            if (entry.kind == kind && entry.colour != kColours) of_kind.push_back(entry);
+        put_blocks_first(of_kind, moves);
         std::vector<std::pair<std::size_t, const Entry*>> places;
         std::size_t place = 0, colour = SIZE_MAX, of_group = SIZE_MAX;
         own.begin.assign(groups_.count() + 1, 0);
-        for (const Entry& entry : entries) {
-            if (entry.kind != kind || entry.colour == kColours) continue;
+        for (const Entry& entry : of_kind) {
             if (entry.group != of_group || entry.colour != colour) place = padded(place);
             if (entry.group != of_group) {
                 for (std::size_t g = of_group + 1; g <= entry.group; ++g)
@@ -206,6 +265,7 @@ std::vector<std::size_t> SweptJoints<Real>::sort(const WorldState<Real>& world,
             if (moves(entry->b)) own.b[at] = entry->b;
             own.slot[at] = static_cast<std::int32_t>(entry->slot);
         }
+        own.find_order();
     }
     return left_over;
 }

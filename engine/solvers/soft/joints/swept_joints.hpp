@@ -62,6 +62,7 @@ class SweptJoints {
     /// The joints of one kernel, by group and colour; padding has the slot -1.
     struct Kind {
         Column<std::int32_t> a, b, slot;
+        Column<RowOrder> order;  // of each kJointBlock places
         Column<Real> start_x, start_y, length, impulse_x, impulse_y, normal_x, normal_y, per_length;
         Column<Real> start_arm_a_x, start_arm_a_y, start_arm_b_x, start_arm_b_y;
         Column<Real> arm_a_x, arm_a_y, arm_b_x, arm_b_y, per_rim_a, per_rim_b, seen_a, seen_b;
@@ -77,6 +78,7 @@ class SweptJoints {
 
         /// @param needs  which columns, bits of Needs
         void resize(std::size_t places, unsigned needs);
+        void find_order();
         JointColumns<Real> columns();
         template <class Fn>
         void for_each_column(const Fn& fn);
