@@ -119,64 +119,82 @@ struct Lanes<float, xsimd::avx512bw> : BatchLanes<float, xsimd::avx512bw> {
         for (int i = 0; i < 4; ++i) _mm_storeu_ps(to(i + 12), _mm512_extractf32x4_ps(records.lane[i].raw, 3));
     }
 
-    // Records one behind the other. load_pairs4: of 32 records a is every second one, b are those between.
-    [[gnu::always_inline]] static Batch2 load_run2(const float* packed) {
-        const __m512 low = _mm512_loadu_ps(packed), high = _mm512_loadu_ps(packed + 16);
+    // Rows that are consecutive by fours, of which only the first is read. Pairs: of each eight such records
+    // those of a are the first, third, fifth and seventh, and those of b are between them.
+    [[gnu::always_inline]] static Batch2 load_runs2(const float* packed, const std::int32_t* rows) {
+        const auto eight = [&](int i) {
+            const __m256 low = _mm256_loadu_ps(record2(packed, rows[i])),
+                         high = _mm256_loadu_ps(record2(packed, rows[i + 4]));
+            return _mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1);
+        };
+        const __m512 low = eight(0), high = eight(8);
         return {{Batch::Raw(_mm512_permutex2var_ps(low, every_second(0), high)),
                  Batch::Raw(_mm512_permutex2var_ps(low, every_second(1), high))}};
     }
-    [[gnu::always_inline]] static void store_run2(float* packed, const Batch2& values) {
-        const __m512 x = values[0].raw, y = values[1].raw;
-        _mm512_storeu_ps(packed, _mm512_permutex2var_ps(x, turns_of(0), y));
-        _mm512_storeu_ps(packed + 16, _mm512_permutex2var_ps(x, turns_of(8), y));
-    }
-    [[gnu::always_inline]] static Batch4 load_run4(const float* packed) {
-        const __m512 a = _mm512_loadu_ps(packed), b = _mm512_loadu_ps(packed + 16),
-                     c = _mm512_loadu_ps(packed + 32), d = _mm512_loadu_ps(packed + 48);
-        const __m512i first = two_fields(0), second = two_fields(2);
-        const __m512 ab01 = _mm512_permutex2var_ps(a, first, b), cd01 = _mm512_permutex2var_ps(c, first, d),
-                     ab23 = _mm512_permutex2var_ps(a, second, b), cd23 = _mm512_permutex2var_ps(c, second, d);
-        return {{Batch::Raw(_mm512_shuffle_f32x4(ab01, cd01, 0x44)),
-                 Batch::Raw(_mm512_shuffle_f32x4(ab01, cd01, 0xee)),
-                 Batch::Raw(_mm512_shuffle_f32x4(ab23, cd23, 0x44)),
-                 Batch::Raw(_mm512_shuffle_f32x4(ab23, cd23, 0xee))}};
-    }
-    [[gnu::always_inline]] static void store_run4(float* packed, const Batch4& values) {
-        const __m512i low = turns_of(0), high = turns_of(8);
-        const auto both = [](const Batch& p, __m512i order, const Batch& q) {
-            return _mm512_castps_pd(_mm512_permutex2var_ps(p.raw, order, q.raw));
+    [[gnu::always_inline]] static void store_runs2(float* packed, const std::int32_t* rows,
+                                                   const Batch2& values) {
+        const auto store_eight = [&](int i, __m512i order) {
+            const __m512 eight = _mm512_permutex2var_ps(values[0].raw, order, values[1].raw);
+            _mm256_storeu_ps(record2(packed, rows[i]), _mm512_castps512_ps256(eight));
+            _mm256_storeu_ps(record2(packed, rows[i + 4]), _mm512_extractf32x8_ps(eight, 1));
         };
-        const auto store_two = [&](float* to, __m512d p, __m512d q) {
-            const __m512i first = _mm512_setr_epi64(0, 8, 1, 9, 2, 10, 3, 11),
-                          second = _mm512_setr_epi64(4, 12, 5, 13, 6, 14, 7, 15);
-            _mm512_storeu_pd(to, _mm512_permutex2var_pd(p, first, q));
-            _mm512_storeu_pd(to + 16, _mm512_permutex2var_pd(p, second, q));
-        };
-        store_two(packed, both(values[0], low, values[1]), both(values[2], low, values[3]));
-        store_two(packed + 32, both(values[0], high, values[1]), both(values[2], high, values[3]));
+        store_eight(0, turns_of(0)), store_eight(8, turns_of(8));
     }
-    [[gnu::always_inline]] static void load_pairs4(const float* packed, Batch4& a, Batch4& b) {
+    [[gnu::always_inline]] static Batch4 load_runs4(const float* packed, const std::int32_t* rows) {
+        const auto four = [&](int i) { return _mm512_loadu_ps(record4(packed, rows[i])); };
+        return fields_of(four(0), four(4), four(8), four(12));
+    }
+    [[gnu::always_inline]] static void store_runs4(float* packed, const std::int32_t* rows,
+                                                   const Batch4& values) {
+        const Batch4 fours = records_of(values);
+        for (int i = 0; i < 4; ++i) _mm512_storeu_ps(record4(packed, rows[4 * i]), fours.lane[i].raw);
+    }
+    [[gnu::always_inline]] static void load_pairs2(const float* packed, const std::int32_t* rows, Batch2& a,
+                                                   Batch2& b) {
+        const auto four = [&](int i) { return _mm512_loadu_ps(record2(packed, rows[i])); };
+        const Batch4 both = fields_of(four(0), four(4), four(8), four(12));
+        a = {{both[0], both[1]}}, b = {{both[2], both[3]}};
+    }
+    [[gnu::always_inline]] static void store_pairs2(float* packed, const std::int32_t* rows, const Batch2& a,
+                                                    const Batch2& b) {
+        const Batch4 fours = records_of({{a[0], a[1], b[0], b[1]}});
+        for (int i = 0; i < 4; ++i) _mm512_storeu_ps(record2(packed, rows[4 * i]), fours.lane[i].raw);
+    }
+    [[gnu::always_inline]] static void load_pairs4(const float* packed, const std::int32_t* rows, Batch4& a,
+                                                   Batch4& b) {
         __m512 of_a[4], of_b[4];  // of four records each, a quarter a field
         for (int i = 0; i < 4; ++i) {
-            const __m512 low = _mm512_loadu_ps(packed + 32 * i), high = _mm512_loadu_ps(packed + 32 * i + 16);
+            const float* eight = record4(packed, rows[4 * i]);
+            const __m512 low = _mm512_loadu_ps(eight), high = _mm512_loadu_ps(eight + 16);
             of_a[i] = _mm512_permutex2var_ps(low, fields_of_pairs(0), high);
             of_b[i] = _mm512_permutex2var_ps(low, fields_of_pairs(4), high);
         }
         a = quarters_transposed(of_a[0], of_a[1], of_a[2], of_a[3]);
         b = quarters_transposed(of_b[0], of_b[1], of_b[2], of_b[3]);
     }
-    [[gnu::always_inline]] static void store_pairs4(float* packed, const Batch4& a, const Batch4& b) {
+    [[gnu::always_inline]] static void store_pairs4(float* packed, const std::int32_t* rows, const Batch4& a,
+                                                    const Batch4& b) {
         const Batch4 of_a = quarters_transposed(a[0].raw, a[1].raw, a[2].raw, a[3].raw),
                      of_b = quarters_transposed(b[0].raw, b[1].raw, b[2].raw, b[3].raw);
         for (int i = 0; i < 4; ++i) {
+            float* eight = record4(packed, rows[4 * i]);
             const __m512 p = of_a.lane[i].raw, q = of_b.lane[i].raw;
-            _mm512_storeu_ps(packed + 32 * i, _mm512_permutex2var_ps(p, records_of_pairs(0), q));
-            _mm512_storeu_ps(packed + 32 * i + 16, _mm512_permutex2var_ps(p, records_of_pairs(2), q));
+            _mm512_storeu_ps(eight, _mm512_permutex2var_ps(p, two_fields(0), q));
+            _mm512_storeu_ps(eight + 16, _mm512_permutex2var_ps(p, two_fields(2), q));
         }
     }
 
   private:
-    // Orders for _mm512_permutex2var_ps: 0 ... 15 are those of the first operand.
+    template <class Number>
+    static Number* record2(Number* packed, std::int32_t row) {
+        return packed + 2 * static_cast<std::ptrdiff_t>(row);
+    }
+    template <class Number>
+    static Number* record4(Number* packed, std::int32_t row) {
+        return packed + 4 * static_cast<std::ptrdiff_t>(row);
+    }
+
+    // Orders for _mm512_permutex2var_ps: 0 ... 15 are numbers of the first operand.
     /// Every second number from k on.
     static __m512i every_second(int k) {
         return _mm512_setr_epi32(k, k + 2, k + 4, k + 6, k + 8, k + 10, k + 12, k + 14, k + 16, k + 18, k + 20,
@@ -197,10 +215,32 @@ struct Lanes<float, xsimd::avx512bw> : BatchLanes<float, xsimd::avx512bw> {
         return _mm512_setr_epi32(k, k + 8, k + 16, k + 24, k + 1, k + 9, k + 17, k + 25, k + 2, k + 10, k + 18,
                                  k + 26, k + 3, k + 11, k + 19, k + 27);
     }
-    /// The reverse, of pairs k and k + 1.
-    static __m512i records_of_pairs(int k) {
-        return _mm512_setr_epi32(k, k + 4, k + 8, k + 12, k + 16, k + 20, k + 24, k + 28, k + 1, k + 5, k + 9,
-                                 k + 13, k + 17, k + 21, k + 25, k + 29);
+    /// The fields of 16 records, four in a register, and the reverse.
+    [[gnu::always_inline]] static Batch4 fields_of(__m512 a, __m512 b, __m512 c, __m512 d) {
+        const __m512 ab01 = _mm512_permutex2var_ps(a, two_fields(0), b),
+                     cd01 = _mm512_permutex2var_ps(c, two_fields(0), d),
+                     ab23 = _mm512_permutex2var_ps(a, two_fields(2), b),
+                     cd23 = _mm512_permutex2var_ps(c, two_fields(2), d);
+        return {{Batch::Raw(_mm512_shuffle_f32x4(ab01, cd01, 0x44)),
+                 Batch::Raw(_mm512_shuffle_f32x4(ab01, cd01, 0xee)),
+                 Batch::Raw(_mm512_shuffle_f32x4(ab23, cd23, 0x44)),
+                 Batch::Raw(_mm512_shuffle_f32x4(ab23, cd23, 0xee))}};
+    }
+    [[gnu::always_inline]] static Batch4 records_of(const Batch4& fields) {
+        const auto by_turns = [](const Batch& p, __m512i order, const Batch& q) {
+            return _mm512_castps_pd(_mm512_permutex2var_ps(p.raw, order, q.raw));
+        };
+        const auto half = [](__m512d p, __m512i order, __m512d q) {
+            return Batch::Raw(_mm512_castpd_ps(_mm512_permutex2var_pd(p, order, q)));
+        };
+        const __m512d p01 = by_turns(fields[0], turns_of(0), fields[1]),
+                      p23 = by_turns(fields[2], turns_of(0), fields[3]),
+                      q01 = by_turns(fields[0], turns_of(8), fields[1]),
+                      q23 = by_turns(fields[2], turns_of(8), fields[3]);
+        const __m512i first = _mm512_setr_epi64(0, 8, 1, 9, 2, 10, 3, 11),
+                      second = _mm512_setr_epi64(4, 12, 5, 13, 6, 14, 7, 15);
+        return {{half(p01, first, p23), half(p01, second, p23), half(q01, first, q23),
+                 half(q01, second, q23)}};
     }
     /// Quarters of 128 bits, 4 x 4.
     [[gnu::always_inline]] static Batch4 quarters_transposed(__m512 a, __m512 b, __m512 c, __m512 d) {

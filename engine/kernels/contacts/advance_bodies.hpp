@@ -5,6 +5,7 @@
 #include "kernels/contacts/contact_arguments.hpp"
 #include "simd/consecutive_rows.hpp"
 #include "simd/lanes.hpp"
+#include "simd/ordered_lanes.hpp"
 
 namespace carom {
 namespace {
@@ -33,7 +34,7 @@ struct FreeFlight {
 /// rolls. Bodies that have joints go by h v1 always: their rows ask where that takes them.
 template <bool kTurns, bool kJoined, class Real, class Isa>
 void advance_bodies(const AdvanceBodies<Real>& k, std::size_t first, std::size_t last) {
-    using Lanes = simd::Lanes<Real, Isa>;
+    using Lanes = simd::LanesOfRuns<simd::Lanes<Real, Isa>>;
     using F = typename Lanes::Batch;
     const FreeFlight<F> free{F(k.gain_x), F(k.gain_y), F(k.decay), F(k.spin_decay)};
     const F h(k.h), half(Real(0.5));
@@ -77,7 +78,7 @@ void advance_bodies(const AdvanceBodies<Real>& k, std::size_t first, std::size_t
 /// @see BeginSubsteps
 template <bool kTurns, class Real, class Isa>
 void begin_substeps(const BeginSubsteps<Real>& k, std::size_t first, std::size_t last) {
-    using Lanes = simd::Lanes<Real, Isa>;
+    using Lanes = simd::LanesOfRuns<simd::Lanes<Real, Isa>>;
     using F = typename Lanes::Batch;
     const FreeFlight<F> free{F(k.gain_x), F(k.gain_y), F(k.decay), F(k.spin_decay)};
     for (std::size_t row = first; row < last; row += Lanes::size) {
@@ -104,7 +105,7 @@ void begin_substeps(const BeginSubsteps<Real>& k, std::size_t first, std::size_t
 /// @see EndSubsteps. @return how many rows were lost.
 template <bool kTurns, class Real, class Isa>
 std::size_t end_substeps(const EndSubsteps<Real>& k, std::size_t first, std::size_t last) {
-    using Lanes = simd::Lanes<Real, Isa>;
+    using Lanes = simd::LanesOfRuns<simd::Lanes<Real, Isa>>;
     using F = typename Lanes::Batch;
     const F largest_position(k.largest_position), largest_speed(k.largest_speed);
     const F largest_number(std::numeric_limits<Real>::max());

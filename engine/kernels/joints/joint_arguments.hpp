@@ -14,8 +14,8 @@ namespace carom {
 /// see.
 inline constexpr std::size_t kJointBlock = 16;
 
-/// How the rows of a block of joints lie: any, consecutive both of a and of b, or a, b, a, b ... one after the
-/// other.
+/// How the rows of a block of joints lie: any; or of each four joints rows a are consecutive, and so are rows
+/// b; or a, b, a, b, a, b, a, b are.
 enum class RowOrder : std::uint8_t { any, runs, pairs };
 
 /// Joints of one kind, sorted by group and colour: a body that moves is in one joint of a colour.

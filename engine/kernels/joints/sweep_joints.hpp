@@ -279,11 +279,20 @@ template <class Real, class Isa, class Fn>
 [[gnu::always_inline]] inline void for_each_batch(const SweepJoints<Real>& k, std::size_t first,
                                                   std::size_t last, const Fn& batch) {
     using Lanes = simd::Lanes<Real, Isa>;
-    for (std::size_t c = first; c < last; c += Lanes::size) {
-        const RowOrder order = Lanes::size == 1 ? RowOrder::any : k.joints.order[c / kJointBlock];
-        if (order == RowOrder::runs) batch(simd::LanesOfRuns<Lanes>{}, c);
-        else if (order == RowOrder::pairs) batch(simd::LanesOfPairs<Lanes>{}, c);
-        else batch(Lanes{}, c);
+    if constexpr (requires { &Lanes::load_pairs4; }) {
+        for (std::size_t c = first; c < last;) {
+            const RowOrder order = k.joints.order[c / kJointBlock];
+            std::size_t end = c + kJointBlock;  // of those in a row that lie alike
+            while (end < last && k.joints.order[end / kJointBlock] == order) end += kJointBlock;
+            if (order == RowOrder::runs)
+                for (; c < end; c += Lanes::size) batch(simd::LanesOfRuns<Lanes>{}, c);
+            else if (order == RowOrder::pairs)
+                for (; c < end; c += Lanes::size) batch(simd::LanesOfPairs<Lanes>{}, c);
+            else
+                for (; c < end; c += Lanes::size) batch(Lanes{}, c);
+        }
+    } else {
+        for (std::size_t c = first; c < last; c += Lanes::size) batch(Lanes{}, c);
     }
 }
 
@@ -350,7 +359,7 @@ template <class Lanes, bool kArms, bool kFirst, class Real>
 template <bool kArms, bool kFirst, class Real, class Isa>
 void sweep_rods(const SweepJoints<Real>& arguments, std::size_t first, std::size_t last) {
     const SweepJoints<Real> k = arguments;  // a copy: no store can change it
-    for_each_batch<Real, Isa>(k, first, last, [&]<class Lanes>(Lanes, std::size_t c) {
+    for_each_batch<Real, Isa>(k, first, last, [&]<class Lanes>(Lanes, std::size_t c) __attribute__((always_inline)) {
         sweep_batch_of_rods<Lanes, kArms, kFirst>(k, c);
     });
 }
@@ -429,7 +438,7 @@ template <class Lanes, bool kArms, class Real>
 template <bool kArms, class Real, class Isa>
 void give_rods(const SweepJoints<Real>& arguments, std::size_t first, std::size_t last) {
     const SweepJoints<Real> k = arguments;  // a copy: no store can change it
-    for_each_batch<Real, Isa>(k, first, last, [&]<class Lanes>(Lanes, std::size_t c) {
+    for_each_batch<Real, Isa>(k, first, last, [&]<class Lanes>(Lanes, std::size_t c) __attribute__((always_inline)) {
         give_batch_of_rods<Lanes, kArms>(k, c);
     });
 }

@@ -23,23 +23,29 @@ struct Entry {
     std::int32_t a, b;
 };
 
-/// The order that a block of joints has if each of them lies to the next one as these two do.
+constexpr std::size_t kInOrder = 4;  // joints at least that lie in order: RowOrder
+
+/// How joints lie in memory if each of them lies to the next one as these two do.
 RowOrder order_of(std::int32_t a, std::int32_t b, std::int32_t next_a, std::int32_t next_b) {
     if (next_a == a + 1 && next_b == b + 1) return RowOrder::runs;
     return b == a + 1 && next_a == a + 2 && next_b == b + 2 ? RowOrder::pairs : RowOrder::any;
 }
 
 /// Within each colour puts joints whose rows lie in order before all others, in whole blocks: lines of a net,
-/// and what reaches from line to line, if bodies were added in that order. The order within a
-/// colour is free: none of its joints moves what another one moves.
+/// and what reaches from line to line, if bodies were added in that order. The order within a colour is free:
+/// none of its joints moves what another one moves.
 /// @param entries  of one kind, by group and colour
 template <class Moves>
 void put_blocks_first(std::vector<Entry>& entries, const Moves& moves) {
-    std::vector<Entry> blocks, others;
+    std::array<std::vector<Entry>, 3> lying;  // by RowOrder
+    std::vector<Entry>& any = lying[static_cast<std::size_t>(RowOrder::any)];
+    const auto is_of_colour = [&](std::size_t i, const Entry& other) {
+        return i < entries.size() && entries[i].group == other.group && entries[i].colour == other.colour;
+    };
     const auto order_at = [&](std::size_t i) {
-        if (i + 1 == entries.size()) return RowOrder::any;
-        const Entry &here = entries[i], &next = entries[i + 1];
-        if (next.group != here.group || next.colour != here.colour) return RowOrder::any;
+        const Entry& here = entries[i];
+        if (!is_of_colour(i + 1, here)) return RowOrder::any;
+        const Entry& next = entries[i + 1];
         for (const std::int32_t row : {here.a, here.b, next.a, next.b})
             if (!moves(row)) return RowOrder::any;
         return order_of(here.a, here.b, next.a, next.b);
@@ -47,17 +53,22 @@ void put_blocks_first(std::vector<Entry>& entries, const Moves& moves) {
     for (std::size_t i = 0, first = 0; i < entries.size();) {
         const RowOrder order = order_at(i);
         std::size_t length = 1;
-        while (order != RowOrder::any && order_at(i + length - 1) == order) ++length;
-        const std::size_t in_blocks = length / kJointBlock * kJointBlock;
-        for (std::size_t j = 0; j < length; ++j) (j < in_blocks ? blocks : others).push_back(entries[i + j]);
+        while (length < kInOrder && order != RowOrder::any && order_at(i + length - 1) == order) ++length;
+        std::vector<Entry>& to = length == kInOrder ? lying[static_cast<std::size_t>(order)] : any;
+        if (length < kInOrder) length = 1;
+        to.insert(to.end(), &entries[i], &entries[i] + length);
         i += length;
-        if (i < entries.size() && entries[i].group == entries[i - 1].group &&
-            entries[i].colour == entries[i - 1].colour)
-            continue;
-        std::copy(blocks.begin(), blocks.end(), entries.begin() + static_cast<std::ptrdiff_t>(first));
-        std::copy(others.begin(), others.end(),
-                  entries.begin() + static_cast<std::ptrdiff_t>(first + blocks.size()));
-        blocks.clear(), others.clear(), first = i;
+        if (is_of_colour(i, entries[first])) continue;
+        auto out = entries.begin() + static_cast<std::ptrdiff_t>(first);
+        for (const RowOrder of : {RowOrder::runs, RowOrder::pairs}) {
+            std::vector<Entry>& in_order = lying[static_cast<std::size_t>(of)];
+            const auto whole = static_cast<std::ptrdiff_t>(in_order.size() / kJointBlock * kJointBlock);
+            out = std::copy(in_order.begin(), in_order.begin() + whole, out);
+            any.insert(any.begin(), in_order.begin() + whole, in_order.end());
+            in_order.clear();
+        }
+        std::copy(any.begin(), any.end(), out);
+        any.clear(), first = i;
     }
 }
 
@@ -117,15 +128,15 @@ void SweptJoints<Real>::Kind::resize(std::size_t places, unsigned needs) {
 
 template <class Real>
 void SweptJoints<Real>::Kind::find_order() {
+    const auto order_at = [&](std::size_t i) {
+        const bool are_joints = slot[i] >= 0 && slot[i + 1] >= 0;
+        return are_joints ? order_of(a[i], b[i], a[i + 1], b[i + 1]) : RowOrder::any;
+    };
     for (std::size_t block = 0; block < order.size(); ++block) {
         const std::size_t first = block * kJointBlock;
-        const auto order_at = [&](std::size_t i) {
-            const bool are_joints = slot[i] >= 0 && slot[i + 1] >= 0;
-            return are_joints ? order_of(a[i], b[i], a[i + 1], b[i + 1]) : RowOrder::any;
-        };
         order[block] = order_at(first);
-        for (std::size_t i = first + 1; i + 1 < first + kJointBlock; ++i)
-            if (order_at(i) != order[block]) order[block] = RowOrder::any;
+        for (std::size_t i = first; i < first + kJointBlock; ++i)
+            if (i % kInOrder + 1 < kInOrder && order_at(i) != order[block]) order[block] = RowOrder::any;
     }
 }
 

@@ -42,7 +42,10 @@ void SweptJoints<Real>::begin_step(const JointStep<Real>& step, const StepLoops<
         Kind& own = kinds_[kind];
         moments_.resize(std::max(moments_.size(), own.slot.size()));
         for_each_place(own, [&](std::size_t i) {
-            if (own.slot[i] >= 0) begin_joint(step, own, kind, i);
+            if (kind == kRods && own.a[i] < first_beyond_ && own.b[i] < first_beyond_)
+                begin_rod(step.world.bodies, own, i);
+            else if (own.slot[i] >= 0)
+                begin_joint(step, own, kind, i);
         });
         if ((needs_of(kind) & kArms) != 0) add_stiffness(own);
         SweepJoints<Real>& k = arguments_[kind];
@@ -61,6 +64,15 @@ void SweptJoints<Real>::begin_step(const JointStep<Real>& step, const StepLoops<
         for_each_place(
             own, [&](std::size_t i) { own.seen_a[i] = seen(own.a[i]), own.seen_b[i] = seen(own.b[i]); });
     }
+}
+
+/// Does what begin_joint does for a rod between centres of bodies that move: the difference of two floats
+/// has the same bits in both precisions.
+template <class Real>
+void SweptJoints<Real>::begin_rod(const Bodies<Real>& bodies, Kind& own, std::size_t i) {
+    const auto a = static_cast<std::size_t>(own.a[i]), b = static_cast<std::size_t>(own.b[i]);
+    own.start_x[i] = bodies.position_x[b] - bodies.position_x[a];
+    own.start_y[i] = bodies.position_y[b] - bodies.position_y[a];
 }
 
 /// Where a joint is, and how it turns its bodies.
