@@ -197,8 +197,8 @@ struct Lanes<float, xsimd::avx512bw> : BatchLanes<float, xsimd::avx512bw> {
     // Orders for _mm512_permutex2var_ps: 0 ... 15 are numbers of the first operand.
     /// Every second number from k on.
     static __m512i every_second(int k) {
-        return _mm512_setr_epi32(k, k + 2, k + 4, k + 6, k + 8, k + 10, k + 12, k + 14, k + 16, k + 18, k + 20,
-                                 k + 22, k + 24, k + 26, k + 28, k + 30);
+        return _mm512_setr_epi32(k, k + 2, k + 4, k + 6, k + 8, k + 10, k + 12, k + 14, k + 16, k + 18,
+                                 k + 20, k + 22, k + 24, k + 26, k + 28, k + 30);
     }
     /// Of eight records of four: field k of each, then field k + 1.
     static __m512i two_fields(int k) {
@@ -212,8 +212,8 @@ struct Lanes<float, xsimd::avx512bw> : BatchLanes<float, xsimd::avx512bw> {
     }
     /// Of four pairs of records those from number k on, 0 or 4: their fields, one after the other.
     static __m512i fields_of_pairs(int k) {
-        return _mm512_setr_epi32(k, k + 8, k + 16, k + 24, k + 1, k + 9, k + 17, k + 25, k + 2, k + 10, k + 18,
-                                 k + 26, k + 3, k + 11, k + 19, k + 27);
+        return _mm512_setr_epi32(k, k + 8, k + 16, k + 24, k + 1, k + 9, k + 17, k + 25, k + 2, k + 10,
+                                 k + 18, k + 26, k + 3, k + 11, k + 19, k + 27);
     }
     /// The fields of 16 records, four in a register, and the reverse.
     [[gnu::always_inline]] static Batch4 fields_of(__m512 a, __m512 b, __m512 c, __m512 d) {
@@ -239,8 +239,8 @@ struct Lanes<float, xsimd::avx512bw> : BatchLanes<float, xsimd::avx512bw> {
                       q23 = by_turns(fields[2], turns_of(8), fields[3]);
         const __m512i first = _mm512_setr_epi64(0, 8, 1, 9, 2, 10, 3, 11),
                       second = _mm512_setr_epi64(4, 12, 5, 13, 6, 14, 7, 15);
-        return {{half(p01, first, p23), half(p01, second, p23), half(q01, first, q23),
-                 half(q01, second, q23)}};
+        return {
+            {half(p01, first, p23), half(p01, second, p23), half(q01, first, q23), half(q01, second, q23)}};
     }
     /// Quarters of 128 bits, 4 x 4.
     [[gnu::always_inline]] static Batch4 quarters_transposed(__m512 a, __m512 b, __m512 c, __m512 d) {

@@ -21,17 +21,17 @@ enum class RowOrder : std::uint8_t { any, runs, pairs };
 /// Joints of one kind, sorted by group and colour: a body that moves is in one joint of a colour.
 template <class Real>
 struct JointColumns {
-    std::int32_t* a;   // row
-    std::int32_t* b;   // row
+    std::int32_t* a;        // row
+    std::int32_t* b;        // row
     const RowOrder* order;  // of each kJointBlock places
-    Real* start_x;     // m, from a's centre to b's at the start of the step
-    Real* start_y;     //
-    Real* length;      // m; of rods
-    Real* impulse_x;   // N s, of a substep: along the normal; of hinges along x
-    Real* impulse_y;   // N s, along y; of hinges
-    Real* normal_x;    // no unit, in the last substep; of rods
-    Real* normal_y;    //
-    Real* per_length;  // 1/m, of the distance now; of rods
+    Real* start_x;          // m, from a's centre to b's at the start of the step
+    Real* start_y;          //
+    Real* length;           // m; of rods
+    Real* impulse_x;        // N s, of a substep: along the normal; of hinges along x
+    Real* impulse_y;        // N s, along y; of hinges
+    Real* normal_x;         // no unit, in the last substep; of rods
+    Real* normal_y;         //
+    Real* per_length;       // 1/m, of the distance now; of rods
     // Only where anchors are not the centres.
     Real *start_arm_a_x, *start_arm_a_y;  // m, at the start of the step
     Real *start_arm_b_x, *start_arm_b_y;  //

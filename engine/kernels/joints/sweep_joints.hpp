@@ -359,9 +359,10 @@ template <class Lanes, bool kArms, bool kFirst, class Real>
 template <bool kArms, bool kFirst, class Real, class Isa>
 void sweep_rods(const SweepJoints<Real>& arguments, std::size_t first, std::size_t last) {
     const SweepJoints<Real> k = arguments;  // a copy: no store can change it
-    for_each_batch<Real, Isa>(k, first, last, [&]<class Lanes>(Lanes, std::size_t c) __attribute__((always_inline)) {
-        sweep_batch_of_rods<Lanes, kArms, kFirst>(k, c);
-    });
+    for_each_batch<Real, Isa>(
+        k, first, last, [&]<class Lanes>(Lanes, std::size_t c) __attribute__((always_inline)) {
+            sweep_batch_of_rods<Lanes, kArms, kFirst>(k, c);
+        });
 }
 
 /// Hinges.
@@ -438,9 +439,10 @@ template <class Lanes, bool kArms, class Real>
 template <bool kArms, class Real, class Isa>
 void give_rods(const SweepJoints<Real>& arguments, std::size_t first, std::size_t last) {
     const SweepJoints<Real> k = arguments;  // a copy: no store can change it
-    for_each_batch<Real, Isa>(k, first, last, [&]<class Lanes>(Lanes, std::size_t c) __attribute__((always_inline)) {
-        give_batch_of_rods<Lanes, kArms>(k, c);
-    });
+    for_each_batch<Real, Isa>(
+        k, first, last, [&]<class Lanes>(Lanes, std::size_t c) __attribute__((always_inline)) {
+            give_batch_of_rods<Lanes, kArms>(k, c);
+        });
 }
 
 /// Likewise of hinges.

@@ -2,6 +2,7 @@
 
 #include "lane_probe.hpp"
 #include "simd/lanes.hpp"
+#include "simd/ordered_lanes.hpp"
 
 namespace {
 
@@ -106,6 +107,57 @@ void probe_rows4(const Real* packed, const std::int32_t* rows, std::size_t count
     }
 }
 
+template <class L, class Real>
+void probe_ordered_batch(const Real* packed2, const Real* packed4, const std::int32_t* a,
+                         const std::int32_t* b, std::size_t i, std::size_t count, Real* out,
+                         Real* packed2_out, Real* packed4_out) {
+    typename L::Batch2 two_a, two_b;
+    typename L::Batch4 four_a, four_b;
+    if constexpr (requires { L::kPairs; }) {
+        L::load_pairs2(packed2, a + i, two_a, two_b), L::load_pairs4(packed4, a + i, four_a, four_b);
+        L::store_pairs2(packed2_out, a + i, two_a, two_b);
+        L::store_pairs4(packed4_out, a + i, four_a, four_b);
+    } else {
+        two_a = L::load_rows2(packed2, a + i), two_b = L::load_rows2(packed2, b + i);
+        four_a = L::load_rows4(packed4, a + i), four_b = L::load_rows4(packed4, b + i);
+        L::store_rows2(packed2_out, a + i, two_a), L::store_rows2(packed2_out, b + i, two_b);
+        L::store_rows4(packed4_out, a + i, four_a), L::store_rows4(packed4_out, b + i, four_b);
+    }
+    for (std::size_t k = 0; k < 2; ++k) {
+        L::store(out + k * count + i, two_a[k]);
+        L::store(out + (6 + k) * count + i, two_b[k]);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+        L::store(out + (2 + k) * count + i, four_a[k]);
+        L::store(out + (8 + k) * count + i, four_b[k]);
+    }
+}
+
+template <class Real, class Isa>
+bool probe_runs(const Real* packed2, const Real* packed4, const std::int32_t* a, const std::int32_t* b,
+                std::size_t count, Real* out, Real* packed2_out, Real* packed4_out) {
+    using L = simd::LanesOfRuns<simd::Lanes<Real, Isa>>;
+    for (std::size_t i = 0; i < count; i += L::size)
+        probe_ordered_batch<L>(packed2, packed4, a, b, i, count, out, packed2_out, packed4_out);
+    return true;
+}
+
+template <class Real, class Isa>
+bool probe_pairs([[maybe_unused]] const Real* packed2, [[maybe_unused]] const Real* packed4,
+                 [[maybe_unused]] const std::int32_t* a, [[maybe_unused]] const std::int32_t* b,
+                 [[maybe_unused]] std::size_t count, [[maybe_unused]] Real* out,
+                 [[maybe_unused]] Real* packed2_out, [[maybe_unused]] Real* packed4_out) {
+    using Base = simd::Lanes<Real, Isa>;
+    if constexpr (requires { &Base::load_pairs4; }) {
+        using L = simd::LanesOfPairs<Base>;
+        for (std::size_t i = 0; i < count; i += L::size)
+            probe_ordered_batch<L>(packed2, packed4, a, b, i, count, out, packed2_out, packed4_out);
+        return true;
+    } else {
+        return false;
+    }
+}
+
 template <class Real, class Isa>
 void probe_differences4(const Real* packed, const std::int32_t* of, const std::int32_t* from,
                         std::size_t count, Real* out) {
@@ -159,19 +211,11 @@ std::size_t probe_marked_pairs(std::int32_t* to_a, std::int32_t* to_b, const std
 
 template <class Real, class Isa>
 constexpr LaneProbe<Real> make_lane_probe() {
-    return {simd::Lanes<Real, Isa>::size,
-            &probe_arithmetic<Real, Isa>,
-            &probe_comparisons<Real, Isa>,
-            &probe_unaligned_copy<Real, Isa>,
-            &probe_gather<Real, Isa>,
-            &probe_gather_at<Real, Isa>,
-            &probe_compress<Real, Isa>,
-            &probe_compress_reals<Real, Isa>,
-            &probe_rows2<Real, Isa>,
-            &probe_rows4<Real, Isa>,
-            &probe_differences4<Real, Isa>,
-            &probe_row_sums<Real, Isa>,
-            &probe_floor<Isa>};
+    return {simd::Lanes<Real, Isa>::size,     &probe_arithmetic<Real, Isa>,     &probe_comparisons<Real, Isa>,
+            &probe_unaligned_copy<Real, Isa>, &probe_gather<Real, Isa>,         &probe_gather_at<Real, Isa>,
+            &probe_compress<Real, Isa>,       &probe_compress_reals<Real, Isa>, &probe_rows2<Real, Isa>,
+            &probe_rows4<Real, Isa>,          &probe_runs<Real, Isa>,           &probe_pairs<Real, Isa>,
+            &probe_differences4<Real, Isa>,   &probe_row_sums<Real, Isa>,       &probe_floor<Isa>};
 }
 
 template <class Isa>

@@ -287,6 +287,46 @@ TEST_SUITE("simd/lanes") {
         }
     }
 
+    TEST_CASE_TEMPLATE("rows that lie in order by fours give the records that rows anywhere give", Real,
+                       float, double) {
+        constexpr std::size_t kRecords = 400, kRows = 64;
+        Column<Real> packed2(2 * kRecords), packed4(4 * kRecords);
+        for (std::size_t i = 0; i < packed2.size(); ++i) packed2[i] = static_cast<Real>(i) + Real(0.5);
+        for (std::size_t i = 0; i < packed4.size(); ++i) packed4[i] = static_cast<Real>(i) - Real(0.25);
+        for (const bool are_pairs : {false, true}) {
+            CAPTURE(are_pairs);
+            Column<std::int32_t> a(kRows), b(kRows);
+            for (std::size_t i = 0; i < kRows; ++i) {
+                // Each four lanes elsewhere, out of order, at rows that are no multiples of anything.
+                const auto four = static_cast<std::int32_t>(i / 4), lane = static_cast<std::int32_t>(i % 4);
+                const std::int32_t first = 7 + 9 * (5 * four % 16);
+                a[i] = first + (are_pairs ? 2 * lane : lane), b[i] = are_pairs ? a[i] + 1 : a[i] + 200;
+            }
+            Column<Real> expected(12 * kRows), expected2(packed2.size()), expected4(packed4.size());
+            for (std::size_t i = 0; i < kRows; ++i)
+                for (const bool is_b : {false, true}) {
+                    const auto row = static_cast<std::size_t>(is_b ? b[i] : a[i]);
+                    Real* out = expected.data() + (is_b ? 6 * kRows : 0) + i;
+                    for (std::size_t k = 0; k < 2; ++k)
+                        out[k * kRows] = expected2[2 * row + k] = packed2[2 * row + k];
+                    for (std::size_t k = 0; k < 4; ++k)
+                        out[(2 + k) * kRows] = expected4[4 * row + k] = packed4[4 * row + k];
+                }
+            for (const LaneProbes* probes : runnable_lane_probes()) {
+                CAPTURE(probes->isa);
+                Column<Real> actual(expected.size()), actual2(packed2.size()), actual4(packed4.size());
+                const LaneProbe<Real>& probe = probe_of<Real>(*probes);
+                if (!(are_pairs ? probe.pairs : probe.runs)(packed2.data(), packed4.data(), a.data(),
+                                                            b.data(), kRows, actual.data(), actual2.data(),
+                                                            actual4.data()))
+                    continue;
+                CHECK(same_bits(expected, actual));
+                CHECK(same_bits(expected2, actual2));  // rows that were not named stay as they are
+                CHECK(same_bits(expected4, actual4));
+            }
+        }
+    }
+
     TEST_CASE_TEMPLATE("load_differences4 subtracts record from record", Real, float, double) {
         constexpr std::size_t kRecords = 100, kRows = 64;
         std::mt19937 random(19);

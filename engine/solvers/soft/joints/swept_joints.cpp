@@ -387,7 +387,7 @@ template <class Real>
 std::size_t SweptJoints<Real>::bytes() const {
     std::size_t bytes = no_turn_.bytes() + stiffness_.bytes() + moments_.capacity() * sizeof(Moments);
     for (const Kind& kind : kinds_) {
-        bytes += kind.a.bytes() + kind.b.bytes() + kind.slot.bytes() +
+        bytes += kind.a.bytes() + kind.b.bytes() + kind.slot.bytes() + kind.order.bytes() +
                  kind.sources.capacity() * sizeof(typename Kind::Source);
         const_cast<Kind&>(kind).for_each_column(
             [&](Column<Real>& column, unsigned) { bytes += column.bytes(); });

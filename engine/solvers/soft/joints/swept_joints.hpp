@@ -92,7 +92,7 @@ class SweptJoints {
     Real* turn_of(BodyRecords<Real>& records);
     void load(const WorldState<Real>& world);
     void begin_joint(const JointStep<Real>& step, Kind& own, std::size_t kind, std::size_t i);
-    static void begin_rod(const Bodies<Real>& bodies, Kind& own, std::size_t i);
+    void begin_rods(const JointStep<Real>& step, Kind& own, std::size_t first, std::size_t last);
     void begin_drive(Kind& own, std::size_t i, std::size_t kind, const StoredJoint& joint, double h);
     void add_stiffness(const Kind& own);
     static void store_joint(StoredJoint& joint, const Kind& own, std::size_t kind, std::size_t i,

@@ -27,11 +27,10 @@ constexpr double kNanosecondsToBegin = 5, kNanosecondsToStore = 8;
 template <class Real>
 void SweptJoints<Real>::begin_step(const JointStep<Real>& step, const StepLoops<Real>& loops) {
     const auto real = [](double value) { return static_cast<Real>(value); };
-    const auto for_each_place = [&](const Kind& own, const auto& fn) {
-        loops.executor->for_each_chunk(own.slot.size(), kPlacesPerTask, kNanosecondsToBegin,
-                                       [&](std::size_t, std::size_t first, std::size_t last) {
-                                           for (std::size_t i = first; i < last; ++i) fn(i);
-                                       });
+    const auto for_each_task = [&](const Kind& own, const auto& fn) {
+        loops.executor->for_each_chunk(
+            own.slot.size(), kPlacesPerTask, kNanosecondsToBegin,
+            [&](std::size_t, std::size_t first, std::size_t last) { fn(first, last); });
     };
     kernels_ = loops.kernels;
     if (!is_loaded_) load(step.world);
@@ -41,11 +40,10 @@ void SweptJoints<Real>::begin_step(const JointStep<Real>& step, const StepLoops<
     for (std::size_t kind = 0; kind < kKinds; ++kind) {
         Kind& own = kinds_[kind];
         moments_.resize(std::max(moments_.size(), own.slot.size()));
-        for_each_place(own, [&](std::size_t i) {
-            if (kind == kRods && own.a[i] < first_beyond_ && own.b[i] < first_beyond_)
-                begin_rod(step.world.bodies, own, i);
-            else if (own.slot[i] >= 0)
-                begin_joint(step, own, kind, i);
+        for_each_task(own, [&](std::size_t first, std::size_t last) {
+            if (kind == kRods) return begin_rods(step, own, first, last);
+            for (std::size_t i = first; i < last; ++i)
+                if (own.slot[i] >= 0) begin_joint(step, own, kind, i);
         });
         if ((needs_of(kind) & kArms) != 0) add_stiffness(own);
         SweepJoints<Real>& k = arguments_[kind];
@@ -61,18 +59,27 @@ void SweptJoints<Real>::begin_step(const JointStep<Real>& step, const StepLoops<
     for (Kind& own : kinds_) {
         if (own.seen_a.empty()) continue;
         const auto seen = [&](std::int32_t row) { return real(stiffness_.seen(step.world.bodies, row, h)); };
-        for_each_place(
-            own, [&](std::size_t i) { own.seen_a[i] = seen(own.a[i]), own.seen_b[i] = seen(own.b[i]); });
+        for_each_task(own, [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i)
+                own.seen_a[i] = seen(own.a[i]), own.seen_b[i] = seen(own.b[i]);
+        });
     }
 }
 
-/// Does what begin_joint does for a rod between centres of bodies that move: the difference of two floats
-/// has the same bits in both precisions.
+/// Does what begin_joint does for rods between centres, without a look at their sources where both bodies
+/// move: the difference of two floats has the same bits in both precisions.
 template <class Real>
-void SweptJoints<Real>::begin_rod(const Bodies<Real>& bodies, Kind& own, std::size_t i) {
-    const auto a = static_cast<std::size_t>(own.a[i]), b = static_cast<std::size_t>(own.b[i]);
-    own.start_x[i] = bodies.position_x[b] - bodies.position_x[a];
-    own.start_y[i] = bodies.position_y[b] - bodies.position_y[a];
+void SweptJoints<Real>::begin_rods(const JointStep<Real>& step, Kind& own, std::size_t first,
+                                   std::size_t last) {
+    const Real *x = step.world.bodies.position_x.data(), *y = step.world.bodies.position_y.data();
+    const std::int32_t *a = own.a.data(), *b = own.b.data(), beyond = first_beyond_;
+    Real *start_x = own.start_x.data(), *start_y = own.start_y.data();
+    for (std::size_t i = first; i < last; ++i) {
+        if (a[i] < beyond && b[i] < beyond)
+            start_x[i] = x[b[i]] - x[a[i]], start_y[i] = y[b[i]] - y[a[i]];
+        else if (own.slot[i] >= 0)
+            begin_joint(step, own, kRods, i);
+    }
 }
 
 /// Where a joint is, and how it turns its bodies.
