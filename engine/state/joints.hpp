@@ -46,6 +46,7 @@ struct StoredJoint {
     std::array<double, 3> impulse{};  // N s, of a substep, of its rows: constraints/joints/joint_rows.hpp
     Vec2 force;                       // N, on b
     double torque = 0;                // N m, on b
+    double held = 0;  // J, what taut loops of its group have taken from its motion; its first joint has it
 
     bool is_on_world() const { return a == BodyId{}; }
     bool is_spring() const { return frequency > 0; }

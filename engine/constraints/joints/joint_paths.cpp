@@ -153,7 +153,7 @@ void JointSystem::solve_curved(int rounds, double least) {
         follow_tangents();
     }
     take_back_gain(energy);
-    stored_ = energy_of_taut_loops();
+    hold_what_was_taken(energy);
 }
 
 void JointSystem::solve_flat() {
@@ -162,18 +162,18 @@ void JointSystem::solve_flat() {
     list_driven(driven_before_);
     follow_tangents();
     take_back_gain(energy);
-    stored_ = energy_of_taut_loops();
+    hold_what_was_taken(energy);
 }
 
 /// What is held gives no energy. Bends of paths may, and so may bodies that are stiffened: to the system
-/// their spins have an energy that they have not. Where there is more than `before` [J], velocities become
-/// those along the tangents, of bodies that are not stiffened: a projection, which only takes. Taut loops
-/// keep their stiffness where tangents alone take enough: without it they let go of what they pull.
+/// their spins have an energy that they have not. Where there is more than `before` [J] and what springs,
+/// motors and taut loops may give, velocities become those along the tangents, of bodies that are not
+/// stiffened: a projection, which only takes. Taut loops keep their stiffness where tangents alone take
+/// enough: without it they let go of what they pull.
 void JointSystem::take_back_gain(double before) {
     const auto gains = [&] {
         const double work = driven_work();
-        return kinetic_energy() + energy_of_taut_loops() - work >
-               kMostGain * (before + stored_) + kOffWork * std::fabs(work);
+        return kinetic_energy() - work > kMostGain * before + held_ + kOffWork * std::fabs(work);
     };
     if (!gains()) return;
     restore_velocities();
@@ -239,15 +239,38 @@ double JointSystem::kinetic_energy() const {
     return sum;
 }
 
-/// What the springs of taut loops hold [J]: a spring of the softness S per substep that has given l in one.
-double JointSystem::energy_of_taut_loops() const {
-    const double part = part_ == Part::half ? 0.5 : 1;
+/// What the springs of taut loops hold [J] that pull so [N s a substep]: S l² / 2, with the softness S.
+template <class Fn>
+double JointSystem::energy_of_taut_loops(const Fn& pull_of) const {
     double sum = 0;
     for (const TautLoop& loop : taut_) {
-        const double impulse = along(loop, [&](std::size_t e) { return extras_[e].impulse; }) / part;
-        sum += 0.5 * loop.softness * impulse * impulse;
+        const double pull = along(loop, pull_of);
+        sum += 0.5 * loop.softness * pull * pull;
     }
     return sum;
+}
+
+/// Taut loops pull no harder than by what they have taken from motion. In a net that turns, loops that are
+/// taut by chance, each from another side, would pull against each other without bound.
+void JointSystem::limit_pulls() {
+    if (taut_.empty()) {
+        held_ = 0;
+        return;
+    }
+    const double energy = energy_of_taut_loops([&](std::size_t e) { return pulled_of(extras_[e]); });
+    if (!(energy > held_)) return;
+    const double share = std::sqrt(held_ / energy);
+    for (const TautLoop& loop : taut_)
+        for (std::size_t k = 0; k < loop.rows; ++k) pulled_of(extras_[loop.first + k]) *= share;
+}
+
+/// What joints have taken from motion in a solve, of `before` [J], is held by taut loops, as far as their
+/// stretch can hold it.
+void JointSystem::hold_what_was_taken(double before) {
+    if (taut_.empty()) return;
+    const double part = part_ == Part::half ? 0.5 : 1, taken = before + driven_work() - kinetic_energy(),
+                 most = energy_of_taut_loops([&](std::size_t e) { return extras_[e].impulse / part; });
+    held_ = std::fmax(0, std::fmin(held_ + taken, most));
 }
 
 void JointSystem::follow_tangents() {

@@ -176,11 +176,7 @@ void JointSystem::prepare(Part part, bool keeps) {
     list_extras();
     couple_extras();
     if (keeps) recall_extras();
-    stored_ = 0;
-    for (const TautLoop& loop : taut_) {
-        const double impulse = along(loop, [&](std::size_t e) { return pulled_of(extras_[e]); });
-        stored_ += 0.5 * loop.softness * impulse * impulse;
-    }
+    limit_pulls();
 }
 
 /// Rows that were there before have the impulses that they had.

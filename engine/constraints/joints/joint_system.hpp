@@ -118,6 +118,9 @@ class JointSystem {
     /// @param is_rigid  whether taut loops are held as others are
     void begin_step(bool is_rigid = false) { part_ = Part::whole, is_rigid_ = is_rigid; }
     Part part() const { return part_; }
+    /// What taut loops hold [J]. It goes on from step to step with the impulses.
+    double held() const { return held_; }
+    void set_held(double joules) { held_ = joules; }
     std::size_t bytes() const;
 
   private:
@@ -210,7 +213,7 @@ class JointSystem {
         return sum;
     }
     /// What a row of a loop gave in the whole substep before [N s].
-    double pulled_of(const Extra& extra) const {
+    double& pulled_of(const Extra& extra) {
         const auto j = static_cast<std::size_t>(extra.joint);
         return pulled_[j][rows_[j].row[static_cast<std::size_t>(extra.row)].slot];
     }
@@ -239,7 +242,10 @@ class JointSystem {
     void list_driven(std::vector<std::array<double, 2>>& driven) const;
     double driven_work();
     double kinetic_energy() const;
-    double energy_of_taut_loops() const;
+    template <class Fn>
+    double energy_of_taut_loops(const Fn& pull_of) const;
+    void limit_pulls();
+    void hold_what_was_taken(double before);
     void solve_free();
     bool factor_free(double softness);
     void substitute_free();
@@ -262,7 +268,7 @@ class JointSystem {
     bool is_rigid_ = false;
     double largest_error_ = 0;
     std::vector<TautLoop> taut_;
-    double stored_ = 0;           // J, of their springs before a solve
+    double held_ = 0;             // J, what they have taken from motion and may give back
     std::vector<Vector> pulled_;  // N s, by joint and slot, of loops: in the whole substep before
 
     std::vector<JointRows> rows_;                                 // by joint

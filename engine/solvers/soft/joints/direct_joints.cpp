@@ -78,11 +78,14 @@ void DirectJoints<Real>::begin_step(const JointStep<Real>& step, bool touches, b
     // All but round-off: taut chains explode where errors of the world's own precision are let stand and then
     // taken away at once.
     least_error_ = 16 * std::numeric_limits<double>::epsilon() * farthest;
+    double held = 0;
     for (std::size_t j = 0; j < slots_.size(); ++j) {
         system_.joints[j].joint = &step.world.joints[slots_[j]];  // the store may have moved
+        held += system_.joints[j].joint->held;
         system_.joints[j].impulse = system_.joints[j].joint->impulse;
         system_.joints[j].force = {}, system_.joints[j].torque = 0;
     }
+    system_.set_held(held);
     const auto is_free = [&](std::uint32_t slot) { return step.world.joints[slot].is_free; };
     was_free_ = std::all_of(slots_.begin(), slots_.end(), is_free);
     if (was_free_) half_kick(step, -1);
@@ -265,6 +268,7 @@ void DirectJoints<Real>::store(JointStore& joints, double dt) const {
         joint.is_free = !touches_;
         joint.impulse = touches_ ? member.impulse : last_impulse_[j];
         joint.force = (1 / dt) * member.force, joint.torque = member.torque / dt;
+        joint.held = j == 0 ? system_.held() : 0;
     }
 }
 
