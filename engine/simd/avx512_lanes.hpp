@@ -194,28 +194,30 @@ struct Lanes<float, xsimd::avx512bw> : BatchLanes<float, xsimd::avx512bw> {
         return packed + 4 * static_cast<std::ptrdiff_t>(row);
     }
 
-    // Orders for _mm512_permutex2var_ps: 0 ... 15 are numbers of the first operand.
-    /// Every second number from k on.
+    // The next four are orders for _mm512_permutex2var_ps, in which 0 ... 15 name the numbers of the first
+    // operand and 16 ... 31 those of the second.
+    /// This order takes every second number from k on.
     static __m512i every_second(int k) {
         return _mm512_setr_epi32(k, k + 2, k + 4, k + 6, k + 8, k + 10, k + 12, k + 14, k + 16, k + 18,
                                  k + 20, k + 22, k + 24, k + 26, k + 28, k + 30);
     }
-    /// Of eight records of four: field k of each, then field k + 1.
+    /// This order takes field k of each of eight records of four numbers, then field k + 1 of each.
     static __m512i two_fields(int k) {
         return _mm512_setr_epi32(k, k + 4, k + 8, k + 12, k + 16, k + 20, k + 24, k + 28, k + 1, k + 5, k + 9,
                                  k + 13, k + 17, k + 21, k + 25, k + 29);
     }
-    /// Numbers k ... k + 7 of both operands by turns.
+    /// This order takes numbers k ... k + 7 of both operands by turns.
     static __m512i turns_of(int k) {
         return _mm512_setr_epi32(k, k + 16, k + 1, k + 17, k + 2, k + 18, k + 3, k + 19, k + 4, k + 20, k + 5,
                                  k + 21, k + 6, k + 22, k + 7, k + 23);
     }
-    /// Of four pairs of records those from number k on, 0 or 4: their fields, one after the other.
+    /// This order takes, of four pairs of records, the four fields of each first (k = 0) or second (k = 4)
+    /// one, field after field.
     static __m512i fields_of_pairs(int k) {
         return _mm512_setr_epi32(k, k + 8, k + 16, k + 24, k + 1, k + 9, k + 17, k + 25, k + 2, k + 10,
                                  k + 18, k + 26, k + 3, k + 11, k + 19, k + 27);
     }
-    /// The fields of 16 records, four in a register, and the reverse.
+    /// fields_of gives the four fields of 16 records that lie four in a register; records_of is its reverse.
     [[gnu::always_inline]] static Batch4 fields_of(__m512 a, __m512 b, __m512 c, __m512 d) {
         const __m512 ab01 = _mm512_permutex2var_ps(a, two_fields(0), b),
                      cd01 = _mm512_permutex2var_ps(c, two_fields(0), d),
@@ -242,7 +244,7 @@ struct Lanes<float, xsimd::avx512bw> : BatchLanes<float, xsimd::avx512bw> {
         return {
             {half(p01, first, p23), half(p01, second, p23), half(q01, first, q23), half(q01, second, q23)}};
     }
-    /// Quarters of 128 bits, 4 x 4.
+    /// The quarters of 128 bits of four registers are transposed as a matrix of 4 x 4.
     [[gnu::always_inline]] static Batch4 quarters_transposed(__m512 a, __m512 b, __m512 c, __m512 d) {
         const __m512 ab_low = _mm512_shuffle_f32x4(a, b, 0x44), cd_low = _mm512_shuffle_f32x4(c, d, 0x44),
                      ab_high = _mm512_shuffle_f32x4(a, b, 0xee), cd_high = _mm512_shuffle_f32x4(c, d, 0xee);

@@ -31,9 +31,9 @@ struct LaneProbe {
                   Real* packed_out);  // out[2][count], and scattered back to packed_out
     void (*rows4)(const Real* packed, const std::int32_t* rows, std::size_t count, Real* out,
                   Real* packed_out);  // out[4][count], and scattered back to packed_out
-    // Of rows that lie in order (ordered_lanes.hpp): out[12][count], the fields of
-    // rows a of both records, then those of rows b; and put back to packed2_out and packed4_out.
-    // Pairs do nothing, and say false, where the instruction set does not know them.
+    // Both fetch rows that lie in order (ordered_lanes.hpp) and put them back to packed2_out and packed4_out:
+    // out[12][count] has the fields of both records of rows a, then those of rows b. `pairs` does nothing and
+    // returns false where the instruction set has no such lanes.
     bool (*runs)(const Real* packed2, const Real* packed4, const std::int32_t* a, const std::int32_t* b,
                  std::size_t count, Real* out, Real* packed2_out, Real* packed4_out);
     bool (*pairs)(const Real* packed2, const Real* packed4, const std::int32_t* a, const std::int32_t* b,
