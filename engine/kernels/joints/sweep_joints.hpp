@@ -130,35 +130,20 @@ Pair2<typename Lanes::Batch> parting(const JointSide<Lanes, kArms>& a, const Joi
 template <class Lanes, bool kArms, class Real>
 [[gnu::always_inline]] inline void load_velocities(const SweepJoints<Real>& k, std::size_t c,
                                                    JointSide<Lanes, kArms>& a, JointSide<Lanes, kArms>& b) {
-    if constexpr (requires { Lanes::kPairs; }) {
-        Lanes::load_pairs4(k.velocity, k.joints.a + c, a.record, b.record);
-    } else {
-        a.record = Lanes::load_rows4(k.velocity, k.joints.a + c);
-        b.record = Lanes::load_rows4(k.velocity, k.joints.b + c);
-    }
+    simd::load_both4<Lanes>(k.velocity, k.joints.a + c, k.joints.b + c, a.record, b.record);
 }
 
 template <class Lanes, bool kArms, class Real>
 [[gnu::always_inline]] inline void store_velocities(const SweepJoints<Real>& k, std::size_t c,
                                                     const JointSide<Lanes, kArms>& a,
                                                     const JointSide<Lanes, kArms>& b) {
-    if constexpr (requires { Lanes::kPairs; }) {
-        Lanes::store_pairs4(k.velocity, k.joints.a + c, a.record, b.record);
-    } else {
-        Lanes::store_rows4(k.velocity, k.joints.a + c, a.record);
-        Lanes::store_rows4(k.velocity, k.joints.b + c, b.record);
-    }
+    simd::store_both4<Lanes>(k.velocity, k.joints.a + c, k.joints.b + c, a.record, b.record);
 }
 
 template <class Lanes, class Real>
 [[gnu::always_inline]] inline void load_displacements(const SweepJoints<Real>& k, std::size_t c,
                                                       typename Lanes::Batch2& a, typename Lanes::Batch2& b) {
-    if constexpr (requires { Lanes::kPairs; }) {
-        Lanes::load_pairs2(k.displacement, k.joints.a + c, a, b);
-    } else {
-        a = Lanes::load_rows2(k.displacement, k.joints.a + c);
-        b = Lanes::load_rows2(k.displacement, k.joints.b + c);
-    }
+    simd::load_both2<Lanes>(k.displacement, k.joints.a + c, k.joints.b + c, a, b);
 }
 
 template <class Lanes, class Real>
@@ -259,12 +244,7 @@ template <class Lanes, bool kArms, class Real>
     const F wa = a.inverse_mass(), wb = b.inverse_mass();
     moved_a[0] -= wa * p.x, moved_a[1] -= wa * p.y;
     moved_b[0] += wb * p.x, moved_b[1] += wb * p.y;
-    if constexpr (requires { Lanes::kPairs; }) {
-        Lanes::store_pairs2(k.displacement, k.joints.a + c, moved_a, moved_b);
-    } else {
-        Lanes::store_rows2(k.displacement, k.joints.a + c, moved_a);
-        Lanes::store_rows2(k.displacement, k.joints.b + c, moved_b);
-    }
+    simd::store_both2<Lanes>(k.displacement, k.joints.a + c, k.joints.b + c, moved_a, moved_b);
     if constexpr (kArms) {
         const auto moment = [&](const JointSide<Lanes, kArms>& side, F sign) {
             return sign * (side.arm.x * p.y - side.arm.y * p.x);

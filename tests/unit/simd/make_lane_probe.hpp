@@ -113,16 +113,10 @@ void probe_ordered_batch(const Real* packed2, const Real* packed4, const std::in
                          Real* packed2_out, Real* packed4_out) {
     typename L::Batch2 two_a, two_b;
     typename L::Batch4 four_a, four_b;
-    if constexpr (requires { L::kPairs; }) {
-        L::load_pairs2(packed2, a + i, two_a, two_b), L::load_pairs4(packed4, a + i, four_a, four_b);
-        L::store_pairs2(packed2_out, a + i, two_a, two_b);
-        L::store_pairs4(packed4_out, a + i, four_a, four_b);
-    } else {
-        two_a = L::load_rows2(packed2, a + i), two_b = L::load_rows2(packed2, b + i);
-        four_a = L::load_rows4(packed4, a + i), four_b = L::load_rows4(packed4, b + i);
-        L::store_rows2(packed2_out, a + i, two_a), L::store_rows2(packed2_out, b + i, two_b);
-        L::store_rows4(packed4_out, a + i, four_a), L::store_rows4(packed4_out, b + i, four_b);
-    }
+    simd::load_both2<L>(packed2, a + i, b + i, two_a, two_b);
+    simd::load_both4<L>(packed4, a + i, b + i, four_a, four_b);
+    simd::store_both2<L>(packed2_out, a + i, b + i, two_a, two_b);
+    simd::store_both4<L>(packed4_out, a + i, b + i, four_a, four_b);
     for (std::size_t k = 0; k < 2; ++k) {
         L::store(out + k * count + i, two_a[k]);
         L::store(out + (6 + k) * count + i, two_b[k]);
