@@ -58,9 +58,10 @@ struct KernelTable {
     std::array<ContactKernels<Real>, 5> contacts;
     // rods between centres, between anchors; hinges; springs and ropes; what acts on angles
     std::array<JointKernels<Real>, 5> joints;
-    // The last three: without and with rotation; then the same where some bodies have joints.
+    // These four: without and with rotation; then the same where some bodies have joints.
     std::array<void (*)(const BeginSubsteps<Real>&, std::size_t first, std::size_t last), 2> begin_substeps;
     std::array<void (*)(const AdvanceBodies<Real>&, std::size_t first, std::size_t last), 4> advance_bodies;
+    std::array<EnergyGain (*)(const MeasureGain<Real>&, std::size_t first, std::size_t last), 2> measure_gain;
     std::array<std::size_t (*)(const EndSubsteps<Real>&, std::size_t first, std::size_t last), 2>
         end_substeps;
     void (*advance_rotation)(const AdvanceRotation<Real>&, std::size_t first, std::size_t last);

@@ -8,6 +8,7 @@
 #include "kernels/contacts/advance_bodies.hpp"
 #include "kernels/contacts/coarse_correction.hpp"
 #include "kernels/contacts/find_contacts.hpp"
+#include "kernels/contacts/measure_gain.hpp"
 #include "kernels/contacts/solve_contacts.hpp"
 #include "kernels/flight/begin_flight.hpp"
 #include "kernels/flight/end_flight.hpp"
@@ -71,6 +72,7 @@ constexpr KernelTable<Real> make_table(std::string_view isa, const ConvexKernels
         .begin_substeps = {&begin_substeps<false, Real, Isa>, &begin_substeps<true, Real, Isa>},
         .advance_bodies = {&advance_bodies<false, false, Real, Isa>, &advance_bodies<true, false, Real, Isa>,
                            &advance_bodies<false, true, Real, Isa>, &advance_bodies<true, true, Real, Isa>},
+        .measure_gain = {&measure_gain<false, Real, Isa>, &measure_gain<true, Real, Isa>},
         .end_substeps = {&end_substeps<false, Real, Isa>, &end_substeps<true, Real, Isa>},
         .advance_rotation = &advance_rotation<Real, Isa>,
         .convex = convex,

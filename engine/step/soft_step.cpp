@@ -60,6 +60,9 @@ class SoftStep final : public SoftSimulation<Real> {
     static constexpr auto has_joints_in_contact = [](const Sim& sim) {
         return !sim.world.joints.empty() && sim.soft.joints.touches() && sim.can_touch();
     };
+    static constexpr auto may_gain = [](const Sim& sim) {
+        return sim.can_touch() && (!sim.world.joints.empty() || has_shapes(sim));
+    };
     static constexpr auto has_sensors = [](const Sim& sim) { return sim.world.sensing.is_called_for(); };
     static constexpr auto has_lost_bodies = [](const Sim& sim) { return !sim.lost.empty(); };
 
@@ -134,6 +137,8 @@ class SoftStep final : public SoftSimulation<Real> {
         {"solve_joints_and_contacts", [](Sim& sim) { sim.soft.solve_joints_and_contacts(sim.world); },
          has_joints_in_contact, KernelChoice::contacts, "joints, contacts, velocity records",
          "impulses, velocity records"},
+        {"bound_energy", [](Sim& sim) { sim.soft.bound_energy(sim.world); }, may_gain, KernelChoice::none,
+         "joints, contacts, velocity records", "impulses, velocity records"},
         {"book_joints", [](Sim& sim) { sim.soft.end_joints_of_substep(sim.world, sim.world.books); },
          has_joints, KernelChoice::none, "joints, velocity records", "joints, books"},
         {"book_substep", [](Sim& sim) { sim.soft.book_substep(sim.world, sim.world.books); }, has_books,

@@ -41,6 +41,37 @@ TEST_SUITE("hard cases/boxes") {
             if (!collapses) CHECK(run.farthest_shift() < 0.1);  // 0.1 % of its height
         }
     }
+    TEST_CASE_TEMPLATE("a wall of boxes that a heavy one flies into gets no energy", Real, float, double) {
+        double largest = 0;
+        for (const int across : {4, 7, 10, 16})
+            for (const double friction : {0.0, 0.6})
+                for (const double speed : {4.0, 40.0}) {
+                    CAPTURE(across);
+                    CAPTURE(friction);
+                    CAPTURE(speed);
+                    Scene scene;
+                    Body heavy{.shape = Box{5, 5},
+                               .position = {-5, 0.5 * 1.01 * (2 * across - 1)},
+                               .velocity = {speed, 0}};
+                    heavy.material = {.density = 8, .friction = friction};
+                    scene.add(heavy);
+                    for (int i = 0; i < 2 * across * across; ++i)
+                        scene.add(box_at(1.01 * (i % across), 1.01 * (i / across), 1, 1, friction));
+                    BoxRun<Real> run(scene);
+                    const Ledger start = run.world.ledger();
+                    double before = start.energy.total();
+                    for (int step = 0; step < 60; ++step) {
+                        run.steps(1);
+                        const double now = run.world.ledger().energy.total();
+                        largest = std::fmax(largest, (now - before) / start.energy.total());
+                        CHECK((now - before) / start.energy.total() < 0.03);
+                        before = now;
+                    }
+                    CHECK(run.world.ledger().momentum.x == doctest::Approx(start.momentum.x).epsilon(1e-4));
+                }
+        report("walls that are hit: energy rises at most by ", largest, " of it in a step");
+    }
+
     TEST_CASE("a tower that stands falls asleep within three seconds") {
         check_cases<float>(torture::towers_that_sleep(extent()));
     }

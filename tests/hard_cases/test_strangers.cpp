@@ -233,7 +233,8 @@ TEST_SUITE("hard cases/strangers") {
         for (std::uint32_t body = 2000; body < 2030; ++body)
             lowest = std::min(lowest, world.state({body, 0}).position.y);
         CHECK(lowest > 0.39);
-        CHECK(world.overlaps().max < 0.01);
+        CHECK(world.overlaps().max <
+              0.016);  // contacts of shapes leave .015 inradii: docs/how-a-step-works.md
     }
 
     TEST_CASE("a ball rests on a peg of thousands that is added, and falls when it is removed") {

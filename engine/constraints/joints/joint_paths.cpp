@@ -229,6 +229,31 @@ double JointSystem::driven_work() {
     return work;
 }
 
+double JointSystem::work_of_drives() {
+    list_driven(driven_);
+    double work = 0;
+    for (const auto& [impulse, rate] : driven_) work += impulse * rate;
+    // What joints hold takes as much from a body that nothing moves as it gives to others.
+    const auto take = [&](std::size_t joint, int row, double impulse) {
+        for_each_part(joint, row, [&](std::size_t number, const Vector& part) {
+            const SystemBody& body = bodies[number];
+            if (!(body.inverse_mass > 0))
+                work -= impulse * dot3(part, {body.velocity.x, body.velocity.y, body.spin});
+        });
+    };
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        const Member& member = joints[j];
+        for (int k = 0; k < rows_[j].firm; ++k) take(j, k, member.impulse[static_cast<std::size_t>(k)]);
+        if (member.joint->type != JointType::target) continue;
+        const SystemBody& body = bodies[static_cast<std::size_t>(member.b)];
+        const Vec2 arm = rotate(body.pose.turn, member.joint->anchor_b),
+                   impulse{member.impulse[0], member.impulse[1]};
+        work += dot(impulse, body.velocity) + cross(arm, impulse) * body.spin;
+    }
+    for (const Extra& extra : extras_) take(static_cast<std::size_t>(extra.joint), extra.row, extra.impulse);
+    return work;
+}
+
 double JointSystem::kinetic_energy() const {
     double sum = 0;
     for (const SystemBody& body : bodies) {

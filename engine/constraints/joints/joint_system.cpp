@@ -265,6 +265,12 @@ void JointSystem::add_force(std::size_t joint, const JointRow& row, double impul
     member.torque += impulse * (row.jb - cross(arm, row.n));
 }
 
+void JointSystem::scale(double share) {
+    for (Member& member : joints)
+        for (double& impulse : member.impulse) impulse *= share;
+    for (Extra& extra : extras_) extra.impulse *= share;
+}
+
 void JointSystem::note_forces() {
     for (std::size_t j = 0; j < joints.size(); ++j)
         for (std::size_t k = 0; k < static_cast<std::size_t>(rows_[j].firm); ++k)

@@ -96,6 +96,11 @@ class JointSystem {
     void solve_curved(int rounds, double least = 0);
     /// Velocities along what is held now: J v = 0.
     void solve_flat();
+    /// The work [J] that springs, motors, targets and bodies that move by themselves do with the impulses
+    /// given since `prepare`, at the velocities that bodies have now.
+    double work_of_drives();
+    /// Multiplies the impulses that the joints have given since `prepare`; velocities stay as they are.
+    void scale(double share);
     /// Adds what the joints have given since `prepare` to their forces.
     void note_forces();
 

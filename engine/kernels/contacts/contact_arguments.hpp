@@ -124,6 +124,21 @@ struct AdvanceBodies {
     const Real* joined;        // [rows], above zero for bodies that have joints; null where there are none
 };
 
+/// The kinetic energy that impulses have added in a substep, and that which free flight left [J].
+struct EnergyGain {
+    double gain = 0, before = 0;
+};
+
+/// Velocities at the end of a substep, and what free flight made of those at its start.
+template <class Real>
+struct MeasureGain {
+    const Real* velocity;  // [rows][4]
+    StartColumns<Real> start;
+    Real gain_x, gain_y;  // m/s, what gravity adds in a substep
+    Real decay;           // velocity kept under drag in a substep
+    Real spin_decay;      // rim speed kept under angular drag
+};
+
 /// Velocity and displacement records at the start of a step.
 template <class Real>
 struct BeginSubsteps {

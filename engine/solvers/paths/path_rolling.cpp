@@ -87,16 +87,16 @@ void PathRolling<Real>::find(const WorldState<Real>& world, const Manifolds<Real
 
 /// Rim speeds change by twice the inverse mass times the moment over the rim.
 template <class Real>
-void PathRolling<Real>::give(const Contact& contact, Real moment, BodyRecords<Real>& records) const {
-    Real* of_a = &records.velocity[4 * static_cast<std::size_t>(contact.a)];
-    Real* of_b = &records.velocity[4 * static_cast<std::size_t>(contact.b)];
+void PathRolling<Real>::give(const Contact& contact, Real moment, Column<Real>& velocity) {
+    Real* of_a = &velocity[4 * static_cast<std::size_t>(contact.a)];
+    Real* of_b = &velocity[4 * static_cast<std::size_t>(contact.b)];
     of_a[2] -= 2 * std::max(of_a[3], Real(0)) * contact.per_rim_a * moment;
     of_b[2] += 2 * std::max(of_b[3], Real(0)) * contact.per_rim_b * moment;
 }
 
 template <class Real>
 void PathRolling<Real>::warm_start(BodyRecords<Real>& records) const {
-    for (const Contact& contact : contacts_) give(contact, contact.moment, records);
+    for (const Contact& contact : contacts_) give(contact, contact.moment, records.velocity);
 }
 
 template <class Real>
@@ -109,7 +109,7 @@ void PathRolling<Real>::solve(Contact& contact, BodyRecords<Real>& records, Real
     const Real spin = of_b[2] * contact.per_rim_b - of_a[2] * contact.per_rim_a, most = contact.arm * normal;
     const Real wanted = std::clamp(contact.moment - spin / k, -most, most), change = wanted - contact.moment;
     contact.moment = wanted;
-    give(contact, change, records);
+    give(contact, change, records.velocity);
 }
 
 template <class Real>

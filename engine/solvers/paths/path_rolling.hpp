@@ -41,6 +41,32 @@ class PathRolling {
         for (Contact& contact : contacts_) contact.moment *= factor;
     }
 
+    /// Calls fn(row, work) for each contact with a surface that nothing moves: what the surface gives to the
+    /// body in that row, by its own motion [J].
+    template <class Fn>
+    void for_each_drive(const BodyRecords<Real>& records, const Fn& fn) const {
+        for (const Contact& contact : contacts_) {
+            const auto b = static_cast<std::size_t>(contact.b);
+            if (b >= records.count())
+                fn(contact.a, -static_cast<double>(contact.moment) * static_cast<double>(contact.per_rim_b) *
+                                  static_cast<double>(records.velocity[4 * b + 2]));
+        }
+    }
+    /// Takes the moments that contacts of some bodies have from velocities; contacts keep theirs.
+    /// @param is_of  [rows], not 0 for these bodies  @param velocity  [rows][4], as records have them
+    void take_from(const std::vector<std::uint8_t>& is_of, Column<Real>& velocity) const {
+        for (const Contact& contact : contacts_)
+            if ((is_of[static_cast<std::size_t>(contact.a)] | is_of[static_cast<std::size_t>(contact.b)]) !=
+                0)
+                give(contact, -contact.moment, velocity);
+    }
+    /// Multiplies the moment of each contact by share_of(row, row).
+    template <class ShareOf>
+    void scale(const ShareOf& share_of) {
+        for (Contact& contact : contacts_)
+            contact.moment *= static_cast<Real>(share_of(contact.a, contact.b));
+    }
+
     std::size_t bytes() const { return (contacts_.capacity() + old_.capacity()) * sizeof(Contact); }
 
     template <class Self, class Archive>
@@ -58,7 +84,7 @@ class PathRolling {
         Real moment;                // N m s, of b
     };
     void solve(Contact& contact, BodyRecords<Real>& records, Real normal);
-    void give(const Contact& contact, Real moment, BodyRecords<Real>& records) const;
+    static void give(const Contact& contact, Real moment, Column<Real>& velocity);
 
     std::vector<Contact> contacts_, old_;
 };

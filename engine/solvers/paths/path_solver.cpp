@@ -331,7 +331,7 @@ void PathSolver<Real>::warm_start(const SubstepTerms& terms, BodyRecords<Real>& 
             const PathLink<Real>& link = links_[place.link];
             if (link.normal1[place.lane] + link.normal2[place.lane] > 0)
                 give(link, place.lane, static_cast<std::size_t>(near_row(place)),
-                     static_cast<std::size_t>(link.body[place.lane]), 1, records);
+                     static_cast<std::size_t>(link.body[place.lane]), 1, records.velocity);
         }
     }
     rolling_.warm_start(records);
@@ -398,13 +398,13 @@ void PathSolver<Real>::advance(const SubstepTerms& terms, BodyRecords<Real>& rec
 /// Gives the bodies of a contact its impulses.
 template <class Real>
 void PathSolver<Real>::give(const PathLink<Real>& link, std::size_t lane, std::size_t near, std::size_t far,
-                            Real sign, BodyRecords<Real>& records) {
+                            Real sign, Column<Real>& velocity) {
     const Real normal1 = sign * link.normal1[lane], normal2 = sign * link.normal2[lane],
                tangent = sign * link.tangent[lane], normal = normal1 + normal2;
     const Real jx = normal * link.normal_x[lane] - tangent * link.normal_y[lane],
                jy = normal * link.normal_y[lane] + tangent * link.normal_x[lane];
     const auto change = [&](std::size_t row, Real side, Real spin) {
-        Real* record = &records.velocity[4 * row];
+        Real* record = &velocity[4 * row];
         const Real w = side * std::fabs(record[3]), w2 = 2 * side * std::max(record[3], Real(0));
         record[0] += w * jx, record[1] += w * jy, record[2] += w2 * spin;
     };
@@ -413,17 +413,22 @@ void PathSolver<Real>::give(const PathLink<Real>& link, std::size_t lane, std::s
 }
 
 template <class Real>
-void PathSolver<Real>::take_back(const std::vector<std::uint8_t>& is_of, BodyRecords<Real>& records) {
+void PathSolver<Real>::take_from(const std::vector<std::uint8_t>& is_of, Column<Real>& velocity) const {
     if (manifolds.live().empty()) return;  // then the cut is that of an earlier step
     for (const PathCut::Place place : cut().places()) {
-        PathLink<Real>& link = links_[place.link];
-        const std::size_t lane = place.lane;
+        const PathLink<Real>& link = links_[place.link];
         const auto near = static_cast<std::size_t>(near_row(place)),
-                   far = static_cast<std::size_t>(link.body[lane]);
-        if ((is_of[near] | is_of[far]) == 0) continue;
-        give(link, lane, near, far, -1, records);
-        link.normal1[lane] = link.normal2[lane] = link.tangent[lane] = 0;
+                   far = static_cast<std::size_t>(link.body[place.lane]);
+        if ((is_of[near] | is_of[far]) != 0) give(link, place.lane, near, far, -1, velocity);
     }
+    rolling_.take_from(is_of, velocity);
+}
+
+template <class Real>
+void PathSolver<Real>::take_back(const std::vector<std::uint8_t>& is_of, BodyRecords<Real>& records) {
+    take_from(is_of, records.velocity);
+    const auto is_theirs = [&](std::int32_t row) { return is_of[static_cast<std::size_t>(row)] != 0; };
+    scale([&](std::int32_t near, std::int32_t far) { return is_theirs(near) || is_theirs(far) ? 0 : 1; });
 }
 
 template <class Real>

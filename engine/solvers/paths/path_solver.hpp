@@ -94,9 +94,23 @@ class PathSolver {
         while (first > 0 && live[first - 1] < 0) --first;
         for_each_of(first, live.size(), fn);
     }
-    /// Takes the impulses back that contacts of some bodies have.
+    /// The same for all with something that no impulse moves.
+    template <class Fn>
+    void for_each_unmoved(const Fn& fn) const {
+        if (manifolds.live().empty()) return;
+        for (const std::int32_t n : with_kinematic_)
+            for_each_of(static_cast<std::size_t>(n), static_cast<std::size_t>(n) + 1, fn);
+        for_each_surface(fn);
+    }
+    /// Takes the impulses back that contacts of some bodies have, and forgets them.
     /// @param is_of  [rows], not 0 for these bodies
     void take_back(const std::vector<std::uint8_t>& is_of, BodyRecords<Real>& records);
+    /// Takes the impulses that contacts of some bodies have from velocities; contacts keep theirs.
+    /// @param is_of  [rows], not 0 for these bodies  @param velocity  [rows][4], as records have them
+    void take_from(const std::vector<std::uint8_t>& is_of, Column<Real>& velocity) const;
+    /// Multiplies the impulses of each contact by share_of(row, row); velocities stay as they are.
+    template <class ShareOf>
+    void scale(const ShareOf& share_of);
     /// Keeps the impulses for the next step.
     void end(const Executor& executor);
 
@@ -135,7 +149,7 @@ class PathSolver {
                         : links_[place.link - 1].body[place.lane];
     }
     static void give(const PathLink<Real>& link, std::size_t lane, std::size_t near, std::size_t far,
-                     Real sign, BodyRecords<Real>& records);
+                     Real sign, Column<Real>& velocity);
     void solve_watched(const SolvePaths<Real>& arguments, const StepLoops<Real>& loops);
     void lay_out(const WorldState<Real>& world, const EdgeCandidates<Real>& edges, const SubstepTerms& terms,
                  BodyRecords<Real>& records, const StepLoops<Real>& loops);
@@ -180,6 +194,20 @@ void PathSolver<Real>::for_each_of(std::size_t first, std::size_t last, const Fn
                              links_[place.link].body[place.lane], Partner(list.b[i]),
                              static_cast<double>(list.restitution[i])});
     }
+}
+
+template <class Real>
+template <class ShareOf>
+void PathSolver<Real>::scale(const ShareOf& share_of) {
+    if (manifolds.live().empty()) return;  // then the cut is that of an earlier step
+    for (const PathCut::Place place : cut().places()) {
+        PathLink<Real>& link = links_[place.link];
+        const auto share = static_cast<Real>(share_of(near_row(place), link.body[place.lane]));
+        for (Real* impulse :
+             {&link.normal1[place.lane], &link.normal2[place.lane], &link.tangent[place.lane]})
+            *impulse = share > 0 ? share * *impulse : Real(0);
+    }
+    rolling_.scale(share_of);
 }
 
 extern template class PathSolver<float>;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -18,6 +19,8 @@ constexpr int kFirstPasses = 8;
 /// of crowds that are swept.
 constexpr int kTurns = 4;
 constexpr int kTurnsOfCrowd = 1;
+/// Times at most that energy is bounded in a substep, with a turn between each two.
+constexpr int kRounds = 6;
 constexpr std::size_t kRowsPerTask = 1024;  // where there is but one group
 
 static_assert(kContactBlock == kRowPadding);
@@ -115,12 +118,32 @@ void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
 }
 
 template <class Real>
-void SoftSolver<Real>::solve_joints_and_contacts(WorldState<Real>& world) {
+void SoftSolver<Real>::solve_turn(WorldState<Real>& world) {
     const auto next = Sweeps::next(view(), Sweeps::Blocks::all, 1);
-    for (int turn = 0; turn < (joints.touches_exactly() ? kTurns : kTurnsOfCrowd); ++turn) {
-        joints.solve_again(joint_step(world), loops_);
-        if (world.bodies.has_shapes) paths.solve(terms_, records_, loops_, 1, true);
-        sweeps_.run(view(), {next.data(), next.size()});
+    if (!world.joints.empty()) joints.solve_again(joint_step(world), loops_);
+    if (world.bodies.has_shapes) paths.solve(terms_, records_, loops_, 1, true);
+    sweeps_.run(view(), {next.data(), next.size()});
+}
+
+template <class Real>
+void SoftSolver<Real>::solve_joints_and_contacts(WorldState<Real>& world) {
+    for (int turn = 0; turn < (joints.touches_exactly() ? kTurns : kTurnsOfCrowd); ++turn) solve_turn(world);
+}
+
+template <class Real>
+void SoftSolver<Real>::bound_energy(WorldState<Real>& world) {
+    const JointStep<Real> step = joint_step(world);
+    const StepView<Real> contacts = view();
+    const SolvedSubstep<Real> solved{step, contacts, paths, joints};
+    double before = std::numeric_limits<double>::infinity();  // J, gained at the round before
+    for (int round = 1; round <= kRounds; ++round) {
+        const bool is_last = round == kRounds;
+        const double gained = passive_.bound(solved, is_last);
+        // Where exact solves of joints give energy, further turns would only give more.
+        const bool becomes_less = passive_.has_scaled() || gained < before;
+        if (is_last || !(gained > 0) || !becomes_less) break;
+        before = gained;
+        solve_turn(world);
     }
 }
 
@@ -179,7 +202,7 @@ std::size_t SoftSolver<Real>::bytes() const {
     return graph.bytes() + paths.bytes() + impacts.bytes() + joints.bytes() + masses_.bytes() +
            records_.bytes() + supports_.bytes() + support_finder_.bytes() + warm_start_.bytes() +
            warm_start_limit_.bytes() + sweeps_.bytes() + loads_.bytes() + uneven_.bytes() + chains_.bytes() +
-           wedged_.bytes() + projection_.bytes() + pair_finder_.bytes();
+           passive_.bytes() + wedged_.bytes() + projection_.bytes() + pair_finder_.bytes();
 }
 
 template class SoftSolver<float>;

@@ -23,6 +23,7 @@
 #include "solvers/soft/impacts/impacts.hpp"
 #include "solvers/soft/impacts/shape_impacts.hpp"
 #include "solvers/soft/joints/soft_joints.hpp"
+#include "solvers/soft/passive_substeps.hpp"
 #include "solvers/soft/project_positions.hpp"
 #include "solvers/soft/step_view.hpp"
 #include "solvers/substeps/body_masses.hpp"
@@ -147,6 +148,8 @@ class SoftSolver {
     }
     /// Contacts and joints in turns, where they bear on each other.
     void solve_joints_and_contacts(WorldState<Real>& world);
+    /// Scales what joints and contacts gave where that made energy, and solves them once more, in turns.
+    void bound_energy(WorldState<Real>& world);
     void end_joints_of_substep(WorldState<Real>& world, Books& books) {
         joints.end_substep(joint_step(world), books);
     }
@@ -205,6 +208,7 @@ class SoftSolver {
   private:
     using Sweeps = ContactSweeps<Real>;
 
+    void solve_turn(WorldState<Real>& world);
     JointStep<Real> joint_step(WorldState<Real>& world) {
         return {world, records_, terms_, books_.gravity_work};
     }
@@ -230,6 +234,7 @@ class SoftSolver {
     ContactChains<Real> chains_;
     WedgedBodies<Real> wedged_;
     EndProjection<Real> projection_;
+    PassiveSubsteps<Real> passive_;
     SubstepBooks<Real> books_;
     std::vector<Books> parts_of_books_;  // of some contacts of shapes each
 };

@@ -6,7 +6,10 @@ namespace carom {
 namespace {
 
 // ns a body on one thread, for the executor: docs/decisions/0012-threads-of-soft.md.
-constexpr double kNanosecondsToBegin = 0.7, kNanosecondsToAdvance = 1;
+constexpr double kNanosecondsToBegin = 0.7, kNanosecondsToAdvance = 1, kNanosecondsToMeasure = 0.6;
+
+constexpr std::size_t kRowsToMeasure = 2048;  // of a task: sums have the same bits on any number of threads
+static_assert(kContactBlock == kRowPadding);
 
 }  // namespace
 
@@ -88,6 +91,24 @@ void BodyRecords<Real>::advance(bool is_last, const SubstepTerms& terms, const S
 }
 
 template <class Real>
+EnergyGain BodyRecords<Real>::gain(const SubstepTerms& terms, const StepLoops<Real>& loops) {
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    MeasureGain<Real> k{};
+    k.velocity = velocity.data(), k.start = start_columns();
+    k.gain_x = real(terms.gravity_change.x), k.gain_y = real(terms.gravity_change.y);
+    k.decay = real(terms.decay), k.spin_decay = real(terms.spin_decay);
+    const auto kernel = loops.kernels->measure_gain[has_rotation_ ? 1 : 0];
+    gains_.assign(padded(moving_) / kRowsToMeasure + 1, {});
+    loops.executor->for_each_chunk(moving_, kRowsToMeasure, kNanosecondsToMeasure,
+                                   [&](std::size_t chunk, std::size_t first, std::size_t last) {
+                                       gains_[chunk] = kernel(k, first, padded(last));
+                                   });
+    EnergyGain sum;
+    for (const EnergyGain& part : gains_) sum.gain += part.gain, sum.before += part.before;
+    return sum;
+}
+
+template <class Real>
 void BodyRecords<Real>::end(Bodies<Real>& bodies, ChunkedList& lost_rows, std::vector<std::int32_t>& lost,
                             const StepLoops<Real>& loops) {
     EndSubsteps<Real> k{};
@@ -122,7 +143,7 @@ Sums BodyRecords<Real>::sums_of_lost(const WorldState<Real>& world, std::size_t 
 template <class Real>
 std::size_t BodyRecords<Real>::bytes() const {
     return velocity.bytes() + displacement.bytes() + turn_.bytes() + start_x_.bytes() + start_y_.bytes() +
-           start_rim_.bytes();
+           start_rim_.bytes() + gains_.capacity() * sizeof(EnergyGain);
 }
 
 template class BodyRecords<float>;

@@ -30,6 +30,8 @@ class BodyRecords {
     void begin(const WorldState<Real>& world, const Column<Real>& motion, const BodyMasses<Real>& masses,
                std::size_t rows, std::size_t padding_rows, const SubstepTerms& terms,
                const StepLoops<Real>& loops);
+    /// What the impulses of this substep have added to the kinetic energy of all bodies.
+    EnergyGain gain(const SubstepTerms& terms, const StepLoops<Real>& loops);
     /// Moves the bodies through the substep that was solved; foresees the next, unless it was the last.
     /// @param joined  [rows], above zero for bodies that have joints; null where there are none
     void advance(bool is_last, const SubstepTerms& terms, const StepLoops<Real>& loops, const Real* joined);
@@ -67,6 +69,12 @@ class BodyRecords {
         };
         return {value(start_x_), value(start_y_), value(start_rim_)};
     }
+    /// Velocity after a substep of free flight [m/s]: vx, vy, rim speed.
+    std::array<double, 3> free_flight(std::int32_t row, const SubstepTerms& terms) const {
+        const auto [x, y, rim] = start_of_substep(row);
+        return {terms.decay * x + terms.gravity_change.x, terms.decay * y + terms.gravity_change.y,
+                terms.spin_decay * rim};
+    }
     /// What a row that `end` lists as lost had by the books: the velocity that the impulses gave it, at the
     /// place where it stays.
     Sums sums_of_lost(const WorldState<Real>& world, std::size_t row) const;
@@ -78,6 +86,7 @@ class BodyRecords {
     std::size_t count_ = 0, moving_ = 0;
     Column<Real> turn_;                           // m, rim displacement since the start of the step
     Column<Real> start_x_, start_y_, start_rim_;  // m/s, velocities at the start of the substep
+    std::vector<EnergyGain> gains_;               // by chunk of rows
 };
 
 extern template class BodyRecords<float>;

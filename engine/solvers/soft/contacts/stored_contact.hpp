@@ -46,11 +46,12 @@ struct StoredContact {
     }
 };
 
-/// Forgets the impulses of a contact.
+/// Multiplies the impulses of a contact.
 template <class Real>
-void forget_impulses(ContactRows<Real>& rows, std::size_t i) {
+void scale_impulses(ContactRows<Real>& rows, std::size_t i, double share) {
+    if (share == 1) return;
     for (Column<Real>* column : {&rows.normal_impulse, &rows.friction_impulse, &rows.rolling_impulse})
-        if (!column->empty()) (*column)[i] = 0;
+        if (!column->empty()) (*column)[i] = share > 0 ? static_cast<Real>(share) * (*column)[i] : Real(0);
 }
 
 }  // namespace

@@ -27,10 +27,12 @@ DirectJoints<Real>::DirectJoints(const WorldState<Real>& world, const std::vecto
         const auto number = static_cast<std::int32_t>(system_.bodies.size());
         known.insert(place, {id.index, number});
         const std::size_t row = world.handles.row_of_slot(id.index);
+        may_drive_ = may_drive_ || (world.bodies.flags_of(row) & kKinematic) != 0;
         SystemBody& body = system_.bodies.emplace_back();
         rows_.push_back(static_cast<std::int32_t>(row));
         rim_.push_back(rim_of(world.bodies, row));
         body.inverse_mass = world.bodies.inverse_mass(row);
+        if (body.inverse_mass > 0) moving_row_ = rows_.back();
         const bool turns = world.bodies.has_rotation && (world.bodies.flags_of(row) & kFixedAngle) == 0;
         body.inverse_inertia = turns ? 2 * body.inverse_mass / (rim_.back() * rim_.back()) : 0;
         body.seen_inverse_inertia = body.inverse_inertia;
@@ -45,6 +47,7 @@ DirectJoints<Real>::DirectJoints(const WorldState<Real>& world, const std::vecto
         longest = std::max({longest, joint.length, std::sqrt(length_squared(joint.anchor_b))});
         if (!joint.is_on_world()) longest = std::max(longest, std::sqrt(length_squared(joint.anchor_a)));
         system_.joints.push_back(member);
+        may_drive_ = may_drive_ || joint.is_spring() || joint.has_motor || joint.type == JointType::target;
     }
     const auto number_in_system = [&](std::uint32_t slot) {
         const auto place = std::find(slots_.begin(), slots_.end(), slot);
@@ -258,6 +261,19 @@ void DirectJoints<Real>::book(const JointStep<Real>& step, Books& books, bool is
                         0.25 * mass * rim_[i] * given_[i].spin * (rim + static_cast<double>(record[2]));
         books.immovable_momentum += mass * given_[i].velocity;
     }
+}
+
+template <class Real>
+double DirectJoints<Real>::work_of_drives(const JointStep<Real>& step) {
+    for (std::size_t i = 1; i < rows_.size(); ++i) {
+        SystemBody& body = system_.bodies[i];
+        const Real* now = &step.records.velocity[4 * static_cast<std::size_t>(rows_[i])];
+        std::array<double, 3> before{now[0], now[1], now[2]};
+        if (body.inverse_mass > 0) before = step.records.free_flight(rows_[i], step.terms);
+        body.velocity = 0.5 * (Vec2{before[0], before[1]} + Vec2{now[0], now[1]});
+        body.spin = 0.5 * (before[2] + static_cast<double>(now[2])) / rim_[i];
+    }
+    return system_.work_of_drives();
 }
 
 template <class Real>

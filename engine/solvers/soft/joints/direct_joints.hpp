@@ -48,6 +48,17 @@ class DirectJoints {
     void answer_blow(std::int32_t row, Vec2 impulse, double at_rim, const Fn& fn);
     /// Adds what its joints gave in answer to the last blow to their forces.
     void note_answer() { system_.note_answer(); }
+    /// Whether a motor, a spring or a body that moves by itself may give its bodies energy.
+    bool may_drive() const { return may_drive_; }
+    /// The work of these in this substep [J].
+    double work_of_drives(const JointStep<Real>& step);
+    /// A row of it that can move.
+    std::int32_t moving_row() const { return moving_row_; }
+    /// Multiplies the impulses that its joints gave in this substep; velocities stay as they are.
+    void scale(double share) {
+        system_.scale(share);
+        for (Change& given : given_) given.velocity = share * given.velocity, given.spin *= share;
+    }
     /// The work of its joints in this substep, or at the end of the step, and what they gave to what nothing
     /// moves.
     void book(const JointStep<Real>& step, Books& books, bool is_end) const;
@@ -70,14 +81,15 @@ class DirectJoints {
 
     JointSystem system_;
     std::vector<std::size_t> slots_;
-    std::vector<std::int32_t> rows_;                   // by body of the system; -1: the world
-    std::vector<double> rim_;                          // m, likewise
+    std::vector<std::int32_t> rows_;  // by body of the system; -1: the world
+    std::vector<double> rim_;         // m, likewise
+    std::int32_t moving_row_ = 0;
     std::vector<Change> given_;                        // by body: what its joints gave it in this substep
     std::vector<SystemBody> before_;                   // that were read
     std::vector<std::array<double, 3>> last_impulse_;  // N s, by joint: of the last substep of a step
     double least_error_ = 0, length_ = 0;              // m
     bool touches_ = false, was_free_ = true;           // in this step; in the last one
-    bool is_beside_ = false, converges_ = false;
+    bool is_beside_ = false, converges_ = false, may_drive_ = false;
 };
 
 template <class Real>

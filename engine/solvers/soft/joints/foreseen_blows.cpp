@@ -23,9 +23,8 @@ class FreeVelocities {
         : records_(records), terms_(terms) {}
 
     DoubleBody free(std::int32_t row) const {
-        const auto [x, y, rim] = records_.start_of_substep(row);
-        return DoubleBody{{{terms_.decay * x + terms_.gravity_change.x,
-                            terms_.decay * y + terms_.gravity_change.y, terms_.spin_decay * rim, 0}}};
+        const auto [x, y, rim] = records_.free_flight(row, terms_);
+        return DoubleBody{{{x, y, rim, 0}}};
     }
     /// The mean of that and of the velocity now; of what nothing moves, its own.
     DoubleBody mean(std::int32_t row) const {
@@ -159,7 +158,7 @@ void ForeseenBlows<Real>::take_back(const StepView<Real>& contacts, PathSolver<R
     const auto take = [&](ContactRows<Real>& rows, std::size_t i, auto other) {
         DoubleBody a = body_at(velocity, rows.a[i]);
         StoredContact<Real>(rows, i).take_from(a, other);
-        store(rows.a[i], a), forget_impulses(rows, i);
+        store(rows.a[i], a), scale_impulses(rows, i, 0);
         return other;
     };
     ContactRows<Real>& pairs = contacts.graph.pairs;

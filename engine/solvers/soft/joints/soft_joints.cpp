@@ -56,6 +56,10 @@ void SoftJoints<Real>::find_groups(const WorldState<Real>& world) {
             if (moves(row)) joined_[row] = Real(1);
         members.push_back({islands.island_of(static_cast<std::int32_t>(moves(a) ? a : b)), slot});
     });
+    first_of_group_.resize(rows);
+    for (std::size_t row = 0; row < rows; ++row)
+        first_of_group_[row] =
+            joined_[row] > Real(0) ? islands.island_of(static_cast<std::int32_t>(row)) : -1;
     // In the order of slots within a group, and groups by their first slot: rows do not bear on it.
     std::vector<std::size_t> first_slot(rows, SIZE_MAX);
     for (const Member& member : members)
@@ -339,7 +343,8 @@ std::string SoftJoints<Real>::describe() const {
 template <class Real>
 std::size_t SoftJoints<Real>::bytes() const {
     std::size_t bytes = swept_.bytes() + joined_.bytes() + blows_.bytes() +
-                        group_of_.capacity() * sizeof(std::int32_t) + group_touches_.capacity();
+                        (group_of_.capacity() + first_of_group_.capacity()) * sizeof(std::int32_t) +
+                        group_touches_.capacity();
     for (const DirectJoints<Real>& group : direct_) bytes += group.bytes() + sizeof(group);
     return bytes;
 }

@@ -51,6 +51,26 @@ class SoftJoints {
     bool end_step(const JointStep<Real>& step, const StepView<Real>& contacts, const PathSolver<Real>& paths,
                   Books& books, double dt);
 
+    /// Calls fn(row, row, work) for what springs or drives: its work in this substep [J].
+    template <class Fn>
+    void for_each_drive(const JointStep<Real>& step, const Fn& fn) {
+        swept_.for_each_drive(step, fn);
+        for (DirectJoints<Real>& group : direct_)
+            if (group.may_drive()) fn(group.moving_row(), group.moving_row(), group.work_of_drives(step));
+    }
+    /// Multiplies the impulses of each swept joint, and of those beside sweeps, by share_of(row, row);
+    /// velocities stay as they are.
+    template <class ShareOf>
+    void scale(const ShareOf& share_of) {
+        swept_.scale(share_of);
+        for (std::size_t i = first_beside_; i < direct_.size(); ++i)
+            direct_[i].scale(share_of(direct_[i].moving_row(), direct_[i].moving_row()));
+    }
+    /// The smallest row of the bodies that joints connect with this one; -1 where it has no joint.
+    std::int32_t first_of_group(std::size_t row) const { return first_of_group_[row]; }
+    /// Whether the joints of the body in this row are solved exactly, and not beside sweeps.
+    bool is_exact(std::size_t row) const { return group_of_[row] >= 0; }
+
     /// [rows], above zero for bodies that have joints.
     const Real* joined() const { return joined_.data(); }
     /// Whether there are groups with many loops, which want more substeps.
@@ -84,6 +104,7 @@ class SoftJoints {
     std::size_t swept_groups_ = 0, crowd_groups_ = 0;
     std::vector<std::size_t> breakable_;  // slots of joints that can break
     Column<Real> joined_;
+    std::vector<std::int32_t> first_of_group_;  // [rows]
     // Of groups that are solved exactly, in the order of direct_.
     std::vector<std::int32_t> group_of_;  // by row; -1: none
     std::vector<std::uint8_t> group_touches_, is_pressed_;

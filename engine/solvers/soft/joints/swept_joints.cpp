@@ -342,6 +342,74 @@ void SweptJoints<Real>::sweep(const JointStep<Real>& step, const StepLoops<Real>
     });
 }
 
+/// What the spring and the motor of a joint may have given: the motor its impulse times the mean rate of the
+/// length or angle, the spring only that part of its impulse that pulls it to its rest, for the rest of it
+/// damps (constraints/joints/spring_law.hpp).
+template <class Real>
+double SweptJoints<Real>::work_of_drive(const JointStep<Real>& step, std::size_t kind, std::size_t i) const {
+    const Kind& own = kinds_[kind];
+    if ((needs_of(kind) & kDrives) == 0 || (own.impulse_x[i] == 0 && own.impulse_y[i] == 0)) return 0;
+    const bool has_arms = kind != kAngles;
+    struct End {
+        double rate;          // m/s or rad/s, mean of the substep
+        double inverse_mass;  // 1/kg or 1/(kg m²), along the coordinate
+    };
+    const auto end_of = [&](std::int32_t number, Vec2 arm, double per_rim, double seen) -> End {
+        if (number >= first_beyond_) return {};
+        const Real* record = &step.records.velocity[4 * static_cast<std::size_t>(number)];
+        const auto [x, y, rim] = step.records.free_flight(number, step.terms);
+        const double turning = 2 * std::fmax(static_cast<double>(record[3]), 0) * per_rim * per_rim * seen,
+                     spin = turning > 0 ? 0.5 * per_rim * seen * (rim + static_cast<double>(record[2])) : 0;
+        if (!has_arms) return {spin, turning};
+        const Vec2 normal{own.normal_x[i], own.normal_y[i]};
+        const double lever = cross(arm, normal);
+        return {0.5 * dot(normal, Vec2{x, y} + Vec2{record[0], record[1]}) + spin * lever,
+                std::fabs(static_cast<double>(record[3])) + turning * lever * lever};
+    };
+    const Vec2 arm_a = has_arms ? Vec2{own.arm_a_x[i], own.arm_a_y[i]} : Vec2{},
+               arm_b = has_arms ? Vec2{own.arm_b_x[i], own.arm_b_y[i]} : Vec2{};
+    const End a = end_of(own.a[i], arm_a, own.per_rim_a[i], own.seen_a[i]),
+              b = end_of(own.b[i], arm_b, own.per_rim_b[i], own.seen_b[i]);
+    const double inverse = a.inverse_mass + b.inverse_mass, rest = has_arms ? own.length[i] : Real(0),
+                 off = static_cast<double>(own.value[i]) - rest,
+                 pull = inverse > 0 ? -static_cast<double>(own.alpha[i]) * off / inverse : 0;
+    return (pull + static_cast<double>(own.impulse_y[i])) * (b.rate - a.rate);
+}
+
+/// A body goes straight on while it turns, and a joint brings it back to its curved path: it is asked for the
+/// velocity v that a substep's path bends by (kernels/joints/sweep_joints.hpp), and its impulse l then does
+/// the work l v on top of what a joint along a straight path would take.
+template <class Real>
+double SweptJoints<Real>::work_of_bend(const JointStep<Real>& step, std::size_t kind, std::size_t i) const {
+    const Kind& own = kinds_[kind];
+    if (kind == kAngles) return 0;
+    const Vec2 impulse = impulse_on_b(own, i, kind);
+    if (impulse == Vec2{}) return 0;
+    const double half_h = 0.5 * step.terms.substep_dt;
+    const bool has_arms = kind != kRods;
+    struct End {
+        Vec2 velocity, bend;  // m/s, of the anchor
+    };
+    const auto end_of = [&](std::int32_t number, Vec2 arm, double per_rim) -> End {
+        const Real* record = &step.records.velocity[4 * static_cast<std::size_t>(number)];
+        const double spin = per_rim * static_cast<double>(record[2]),
+                     strain = 8 * half_h * std::fabs(dot(arm, impulse)) * 2 * per_rim * per_rim *
+                              std::fmax(static_cast<double>(record[3]), 0),
+                     share = 1 / (1 + strain * strain);
+        return {Vec2{record[0], record[1]} + spin * Vec2{-arm.y, arm.x},
+                (-half_h * share * spin * spin) * arm};
+    };
+    const End a = has_arms ? end_of(own.a[i], {own.arm_a_x[i], own.arm_a_y[i]}, own.per_rim_a[i])
+                           : end_of(own.a[i], {}, 0),
+              b = has_arms ? end_of(own.b[i], {own.arm_b_x[i], own.arm_b_y[i]}, own.per_rim_b[i])
+                           : end_of(own.b[i], {}, 0);
+    const double work = -dot(impulse, b.bend - a.bend);
+    if (kind == kHinges) return work;
+    const Vec2 normal{own.normal_x[i], own.normal_y[i]};
+    const double across = cross(normal, b.velocity - a.velocity);
+    return work - dot(impulse, normal) * half_h * across * across * static_cast<double>(own.per_length[i]);
+}
+
 template <class Real>
 void SweptJoints<Real>::book(const JointStep<Real>& step, Books& books) const {
     for (std::size_t kind = 0; kind < kKinds; ++kind) {

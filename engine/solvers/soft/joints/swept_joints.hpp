@@ -56,6 +56,27 @@ class SweptJoints {
             for (std::size_t i = 0; i < kind.slot.size(); ++i)
                 if (kind.slot[i] >= 0) fn(kind.a[i]), fn(kind.b[i]);
     }
+    /// Calls fn(a, b, work) for each joint: the work that it may do in this substep [J], of its spring and
+    /// motor, and of what keeps bodies on paths that bend.
+    template <class Fn>
+    void for_each_drive(const JointStep<Real>& step, const Fn& fn) const {
+        for (std::size_t kind = 0; kind < kKinds; ++kind)
+            for (std::size_t i = 0; i < kinds_[kind].slot.size(); ++i)
+                if (kinds_[kind].slot[i] >= 0)
+                    fn(kinds_[kind].a[i], kinds_[kind].b[i],
+                       work_of_drive(step, kind, i) + work_of_bend(step, kind, i));
+    }
+    /// Multiplies the impulses of each joint by share_of(a, b); velocities stay as they are.
+    template <class ShareOf>
+    void scale(const ShareOf& share_of) {
+        for (Kind& own : kinds_)
+            for (std::size_t i = 0; i < own.slot.size(); ++i) {
+                const auto share = static_cast<Real>(own.slot[i] >= 0 ? share_of(own.a[i], own.b[i]) : 1);
+                if (share == 1) continue;
+                for (Column<Real>* impulse : {&own.impulse_x, &own.impulse_y, &own.impulse_z, &own.impulse_w})
+                    if (!impulse->empty()) (*impulse)[i] *= share;
+            }
+    }
     std::size_t bytes() const;
 
   private:
@@ -109,6 +130,9 @@ class SweptJoints {
             kind == kSprings ? sum_of_impulses(own, i) : static_cast<double>(own.impulse_x[i]);
         return along * Vec2{own.normal_x[i], own.normal_y[i]};
     }
+
+    double work_of_drive(const JointStep<Real>& step, std::size_t kind, std::size_t i) const;
+    double work_of_bend(const JointStep<Real>& step, std::size_t kind, std::size_t i) const;
 
     std::array<Kind, kKinds> kinds_;
     TaskGroups groups_;
