@@ -27,7 +27,8 @@ Velocity velocity_at(const Column<Real>& records, std::size_t row) {
             static_cast<double>(records[4 * row + 2])};
 }
 
-/// Of a body of mass 1: the inertia is half the mass at the rim.
+/// The product a · M b of two velocities of a body of mass 1 [m²/s²]: its inertia is half the mass at the
+/// rim.
 double product(const Velocity& a, const Velocity& b) {
     return a[0] * b[0] + a[1] * b[1] + 0.5 * a[2] * b[2];
 }

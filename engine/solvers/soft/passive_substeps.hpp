@@ -52,9 +52,9 @@ class PassiveSubsteps {
     };
     struct Island : Gain {
         double work = 0, effort = 0;  // J, of what may give energy: sum, sum of sizes
-        // Of the impulses of bodies that have risen: J, momentum now · velocity they gave; · twice the energy
-        // of what they gave; J, what part of `work` is theirs.
-        double along = 0, square = 0, work_of_risen = 0;
+        double along = 0;          // J, momentum now times the velocities that impulses of risen bodies gave
+        double square = 0;         // J, twice the energy of these velocities alone
+        double work_of_risen = 0;  // J, the part of `work` that those impulses did
         bool has_gained = false;
         double share = 1;
     };
