@@ -182,4 +182,36 @@ TEST_SUITE("physics: struck mechanisms") {
             CHECK(std::fabs(step * world.joint_force(hinge).x - by_hinge) < 2e-3 * impulse);
         }
     }
+
+    // Nothing gives way to a disc that moves by itself and strikes what is held from two sides: joints and
+    // contacts contradict each other. Bodies stay where they are, and no faster than what strikes them.
+    TEST_CASE_TEMPLATE("what is held fast is struck by what nothing holds up", Real, float, double) {
+        constexpr double kSpeed = 5;  // m/s
+        const auto hinge_at = [](double x) { return RevoluteJoint{.anchor = Vec2{x, 0}}; };
+        const std::vector<std::vector<JointKind>> holds{
+            {hinge_at(0)}, {hinge_at(-0.5), hinge_at(0.5)}, {WeldJoint{}}};
+        for (const auto& joints : holds)
+            for (const double e : {0.0, 0.5, 1.0}) {
+                CAPTURE(joints.size());
+                CAPTURE(e);
+                Scene scene;
+                const Material material{.restitution = e};
+                const BodyId held = scene.add({.shape = Disc{0.5}, .mass = 1, .material = material});
+                for (const JointKind& kind : joints) scene.add(Joint{.b = held, .kind = kind});
+                scene.add({.type = BodyType::kinematic_body,
+                           .shape = Disc{0.5},
+                           .position = {-3, 0.1},
+                           .velocity = {kSpeed, 0},
+                           .material = material});
+                BasicWorld<Real> world(scene);
+                for (int i = 0; i < 120; ++i) {
+                    world.step(1.0 / 60);
+                    REQUIRE(world.quarantined().empty());
+                    const Vec2 v = world.state(held).velocity;
+                    CHECK(std::hypot(v.x, v.y) <= kSpeed);
+                }
+                const Vec2 at = world.state(held).position;
+                CHECK(std::hypot(at.x, at.y) < 0.01);
+            }
+    }
 }

@@ -118,10 +118,8 @@ double HeldImpacts<Real>::work_of(Law law) const {
 template <class Real>
 bool HeldImpacts<Real>::solve_impulses(const Materials& materials) {
     bool comes = false;
-    for (std::size_t i = 0; i < directions_.size() && directions_[i].law == Law::normal; ++i) {
-        if (!(masses_[i][i] > 0)) return false;
+    for (std::size_t i = 0; i < directions_.size() && directions_[i].law == Law::normal; ++i)
         comes = comes || velocity_[i] < 0;
-    }
     if (!comes) return false;
     solve_laws(materials, true);
     // Where joints couple the normal to the tangent these laws together can give energy (Kane 1984): then

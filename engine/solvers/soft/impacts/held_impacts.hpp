@@ -67,7 +67,12 @@ class HeldImpacts {
     void begin_joints(SoftJoints<Real>& joints) { joints_ = &joints; }
     /// [rows], above zero for bodies that have joints; null where there are none.
     const Real* joined() const { return joints_ ? joints_->joined() : nullptr; }
-    bool holds(std::int32_t row) const { return joints_ && joints_->small_group_of(row); }
+    bool holds(std::int32_t row) const { return joints_of(row) > 0; }
+    /// How many joints answer a blow on a body; 0: it is that of a free body.
+    std::size_t joints_of(std::int32_t row) const {
+        const DirectJoints<Real>* group = joints_ ? joints_->small_group_of(row) : nullptr;
+        return group ? group->joints() : 0;
+    }
 
     /// Finds the impulses of an impact of bodies of which joints hold one at least.
     /// @param directions  normals first
@@ -86,9 +91,13 @@ class HeldImpacts {
             if (bodies.b != kNothing) strike(i, bodies.b, record_of(bodies.b)[3], 1);
         }
         for (Answer& answer : answers_) add_body(answer, record_of(answer.row));
+        double free = 0;  // 1/kg, what bodies answer with that no joint holds
+        for (const std::int32_t row : {bodies.a, bodies.b})
+            if (row != kNothing) free += std::fabs(record_of(row)[3]);
         for (std::size_t i = 0; i < directions_.size(); ++i) {
             const Direction& d = directions_[i];
             if (d.law != Law::normal) continue;
+            if (!(masses_[i][i] > kLeastAnswer * free)) return false;
             double surfaces = d.surface;
             if (bodies.a != kNothing) surfaces += part_of(d, record_of(bodies.a), -1, d.rim_a);
             if (bodies.b != kNothing) surfaces += part_of(d, record_of(bodies.b), 1, d.rim_b);
@@ -135,6 +144,9 @@ class HeldImpacts {
     /// Share of the velocity of surfaces that joints may not allow. Where they allow less the group is in the
     /// midst of a crowd, and joints and contacts are not solved yet: energy would go round between them.
     static constexpr double kLargestLack = 0.1;
+    /// Share of what free bodies would answer with below which joints let nothing move: it is the round-off
+    /// of bodies that are held from two sides, and a moving surface would be answered by any impulse.
+    static constexpr double kLeastAnswer = 1e-9;
     /// A body's part in the velocity along a direction [m/s].
     static double part_of(const Direction& d, const std::array<double, 4>& record, double sign, double rim) {
         return sign * dot(d.impulse, Vec2{record[0], record[1]}) + rim * record[2];

@@ -9,7 +9,8 @@ namespace carom {
 
 /// How many impacts a body may have in a step. A crowd that collapses has ever more of them, ever slower; a
 /// dense gas has many that are as fast as others. So an impact costs the more the more energy it takes, and a
-/// tenth if it is fast beside the step's fastest of the body; elastic ones are nearly free.
+/// tenth if it is fast beside the step's fastest of the body; elastic ones are nearly free, but for the time
+/// that they take: that of what joints hold is answered by all of its group.
 /// docs/decisions/0022-impacts-in-soft.md has the measurements.
 class ImpactBudget {
   public:
@@ -25,9 +26,11 @@ class ImpactBudget {
     /// Whether it has to wait for the sweeps of the next substep.
     bool is_exhausted(std::int32_t row) { return tally_of(row).spent >= kBudget + kOverdraft; }
     /// Takes the cost of an impact. @param speed  m/s, along the normal
-    void spend(std::int32_t row, double restitution, double speed) {
+    /// @param joints  that answer it
+    void spend(std::int32_t row, double restitution, double speed, std::size_t joints) {
         Tally& tally = tally_of(row);
-        double cost = std::fmin(1, kCostOfLoss * (1 - restitution)) + kCostOfOne;
+        double cost = std::fmin(1, kCostOfLoss * (1 - restitution)) +
+                      kCostOfOne * (1 + kTimeOfJoint * static_cast<double>(joints));
         if (speed > kFastShare * static_cast<double>(tally.fastest)) cost *= kCostOfFast;
         tally.spent += static_cast<float>(cost);
         tally.fastest = std::max(tally.fastest, static_cast<float>(speed));
@@ -41,6 +44,8 @@ class ImpactBudget {
     static constexpr float kOverdraft = 8;
     /// The cost for each unit of 1 - e, but at most 1; and what every impact costs besides.
     static constexpr double kCostOfLoss = 10, kCostOfOne = 0.002;
+    /// What an impact takes longer by each joint that answers it, in times of an impact of free bodies.
+    static constexpr double kTimeOfJoint = 4;
     /// Impacts of this share of the fastest are not those of a collapse: they cost less.
     static constexpr double kFastShare = 0.15, kCostOfFast = 0.1;
 

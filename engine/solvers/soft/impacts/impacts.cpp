@@ -382,28 +382,29 @@ bool Impacts<Real>::carry_out(Place place, double time, Books& books, double& gr
     const auto collide = [&](auto& side) {
         const double speed = -normal_velocity(a, side, n.x, n.y);
         if (!(speed > noise)) return false;
-        bool has_enough = true, is_exhausted = false, is_held = false;
+        bool has_enough = true, is_exhausted = false;
+        std::size_t joints = 0;  // that answer the impact
         for_each_mover([&](std::int32_t row) {
             has_enough = has_enough && budget_.has_enough(row);
             is_exhausted = is_exhausted || budget_.is_exhausted(row);
-            is_held = is_held || held.holds(row);
+            joints += held.joints_of(row);
         });
         if (is_exhausted) return make_contact(place, n, gap, time), false;
         const double called_for = restitution_of(place);
         const bool bounces = has_enough && speed > rest_speed_;
-        for_each_mover([&](std::int32_t row) { budget_.spend(row, called_for, speed); });
+        for_each_mover([&](std::int32_t row) { budget_.spend(row, called_for, speed, joints); });
         ++counters.impacts;
         counters.of_walls += other.is_wall(), counters.inelastic += !bounces;
         terms.floor = bounces ? called_for * speed : 0;
         [[maybe_unused]] const auto before = velocities(a, side, terms);
         // Seen from what stands still, what a support does is its own motion.
-        const std::array<double, 3> of_support = place.is_support() && (is_held || books.is_open)
+        const std::array<double, 3> of_support = place.is_support() && (joints > 0 || books.is_open)
                                                      ? velocities(kStillBody, side, terms)
                                                      : std::array<double, 3>{};
         const StruckDiscs discs{row_a, place.is_support() ? kNothing : other.row(), time};
         Blow blow;
         struck_.clear();
-        if (!is_held ||
+        if (joints == 0 ||
             !strike_held(held, discs, terms, bounces ? called_for : 0, of_support, paths_, blow, struck_))
             strike_free(discs, terms, a, side, paths_, blow);
         gravity_work += blow.gravity_work;

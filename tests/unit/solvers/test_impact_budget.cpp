@@ -1,0 +1,46 @@
+// How many impacts a body may have in a step.
+#include "solvers/soft/impacts/impact_budget.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace carom;
+
+namespace {
+
+int impacts_of(double restitution, double speed, std::size_t joints) {
+    ImpactBudget budget;
+    budget.begin_step(1);
+    int impacts = 0;
+    for (; budget.has_enough(0) && impacts < 1'000'000; ++impacts)
+        budget.spend(0, restitution, impacts == 0 ? 1 : speed, joints);
+    return impacts;
+}
+
+}  // namespace
+
+TEST_SUITE("solvers/soft/impact_budget") {
+    TEST_CASE("a body has fewer impacts the more energy they take") {
+        CHECK(impacts_of(0, 1, 0) <= 20);
+        CHECK(impacts_of(0.5, 1, 0) == impacts_of(0, 1, 0));
+        CHECK(impacts_of(0.99, 1, 0) > 5 * impacts_of(0, 1, 0));
+        CHECK(impacts_of(1, 1, 0) > 20 * impacts_of(0.99, 1, 0));
+    }
+
+    TEST_CASE("slow impacts of a collapse count more than fast ones") {
+        CHECK(impacts_of(0.9, 0.01, 0) < impacts_of(0.9, 1, 0));
+    }
+
+    // Two elastic discs, one of them held, may strike each other without end between two others: their
+    // impacts are bounded by the time that they take, which is that of a free body's and four times that a
+    // joint.
+    TEST_CASE("impacts that joints answer are bounded by the time that they take") {
+        const int free = impacts_of(1, 1, 0);
+        for (const std::size_t joints : {1u, 4u, 16u}) {
+            CAPTURE(joints);
+            const int held = impacts_of(1, 1, joints);
+            CHECK(held * (1 + 4 * static_cast<int>(joints)) <= free + 4 * static_cast<int>(joints) + 1);
+            CHECK(held > 100);  // a cradle has about ten
+        }
+        CHECK(impacts_of(0, 1, 16) >= impacts_of(0, 1, 0) - 3);
+    }
+}
