@@ -12,6 +12,14 @@ namespace carom {
 ///
 /// so ja = r_a × n and jb = r_b × n. A rod holds it; a spring springs; a rope has stops alone, at d = min
 /// and d = max.
+///
+/// Where a path ends on the other side, p · n < 0, the distance says nothing of how far: there p · n counts,
+/// or what draws two points together would draw them on with ever more force once they are through.
+inline double distance_along(const JointArms& arms, Vec2 n) {
+    const double along = dot(n, arms.between);
+    return along > 0 ? std::sqrt(length_squared(arms.between)) : along;
+}
+
 inline void add_distance_rows(const StoredJoint& joint, const JointArms& arms, JointRows& rows) {
     const double length = std::sqrt(length_squared(arms.between));
     // Ends that meet have no direction: any is as good.

@@ -37,21 +37,33 @@ inline JointRows rows_of(const StoredJoint& joint, const JointPose& a, const Joi
     return rows;
 }
 
-/// The values of the firm rows alone, in their order: quicker for the kinds that most systems consist of.
-inline void values_of(const StoredJoint& joint, const JointPose& a, const JointPose& b, int firm,
+/// The values of the firm rows alone, in their order, elsewhere: quicker for the kinds that most systems
+/// consist of. @param from  the rows where the path began
+inline void values_of(const StoredJoint& joint, const JointPose& a, const JointPose& b, const JointRows& from,
                       std::array<double, 3>& values) {
-    if (firm == 0) return;
+    if (from.firm == 0) return;
     if (joint.type == JointType::revolute || joint.type == JointType::distance ||
         joint.type == JointType::weld) {
         const JointArms arms = arms_of(joint, a, b);
         if (joint.type == JointType::distance)
-            values[0] = std::sqrt(length_squared(arms.between)) - joint.length;
+            values[0] = distance_along(arms, from.row[0].n) - joint.length;
         else
             values = {arms.between.x, arms.between.y, arms.angle};
         return;
     }
     const JointRows rows = rows_of(joint, a, b);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(firm); ++k) values[k] = rows.row[k].value;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(from.firm); ++k) values[k] = rows.row[k].value;
+}
+
+/// The value of a limit's row elsewhere. @param number  of the row among those where the path began
+inline double value_of_stop(const StoredJoint& joint, const JointPose& a, const JointPose& b,
+                            const JointRows& from, int number) {
+    const auto i = static_cast<std::size_t>(number);
+    if (joint.type != JointType::distance) return rows_of(joint, a, b).row[i].value;
+    const JointArms arms = arms_of(joint, a, b);
+    const bool is_upper = joint.has_upper && number == from.count - 1;  // the last row, of the other sign
+    return is_upper ? joint.upper - distance_along(arms, -from.row[i].n)
+                    : distance_along(arms, from.row[i].n) - joint.lower;
 }
 
 }  // namespace carom

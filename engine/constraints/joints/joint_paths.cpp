@@ -56,7 +56,7 @@ void JointSystem::find_right_sides(bool is_curved) {
         const Member& member = joints[j];
         const JointRows& rows = rows_[j];
         if (is_curved && member.gear < 0)
-            values_of(*member.joint, pose_of(member.a), pose_of(member.b), rows.firm, values);
+            values_of(*member.joint, pose_of(member.a), pose_of(member.b), rows, values);
         if (is_curved && member.gear >= 0)
             values[0] = value_of_gear(gears_[static_cast<std::size_t>(member.gear)], pose_of);
         for (std::size_t i = 0; i < static_cast<std::size_t>(rows.firm); ++i) {
@@ -76,11 +76,11 @@ void JointSystem::find_right_sides(bool is_curved) {
         } else if (row.law != RowLaw::stop) {
             extra_rhs_[e] = rhs_[j][i];
         } else {
-            const double speed =
-                is_curved
-                    ? per_h * (rows_of(*member.joint, pose_of(member.a), pose_of(member.b)).row[i].value -
-                               row.value)
-                    : row_velocity(j, extra.row);
+            const auto value = [&] {
+                return value_of_stop(*member.joint, pose_of(member.a), pose_of(member.b), rows_[j],
+                                     extra.row);
+            };
+            const double speed = is_curved ? per_h * (value() - row.value) : row_velocity(j, extra.row);
             extra_rhs_[e] = -speed - per_h * std::fmax(row.value, 0);
         }
     }

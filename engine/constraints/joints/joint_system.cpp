@@ -118,7 +118,8 @@ void JointSystem::set_substep(double h) {
     for (Member& member : joints) {
         if (!member.joint->is_spring()) continue;
         has_springs_ = true;
-        member.whole = spring_terms(member.joint->frequency, member.joint->damping_ratio, h);
+        member.whole =
+            spring_terms(member.joint->frequency, member.joint->damping_ratio, h, member.least_gamma);
         member.half = half_of(member.whole);
     }
 }
@@ -384,7 +385,7 @@ bool JointSystem::correct_positions(double least, double length) {
                         &b = bodies[static_cast<std::size_t>(joints[j].b)].pose;
         JointRows& rows = rows_[j];
         if (joints[j].gear < 0)
-            values_of(*joints[j].joint, a, b, rows.firm, values);
+            values_of(*joints[j].joint, a, b, rows, values);
         else
             values[0] = value_of_gear(gears_[static_cast<std::size_t>(joints[j].gear)],
                                       [&](std::int32_t body) -> const JointPose& {

@@ -52,6 +52,7 @@ class JointSystem {
         const StoredJoint* joint = nullptr;
         std::int32_t a = 0, b = 0;
         std::int32_t gear = -1;           // number among the gears, if it is one
+        double least_gamma = 0;           // of a spring that meets with others: spring_law.hpp
         SpringTerms whole, half;          // of the springs, for the length of a substep
         std::array<double, 3> impulse{};  // N s, of this substep, by slot; what it has given so far
         Vec2 force;                       // N s, on b: sum of all impulses of this step

@@ -15,6 +15,11 @@ struct SpringTerms {
     double gamma = 0;  ///< no unit
 };
 
+inline constexpr double kTwoPi = 6.28318530717958647693;
+
+/// Largest w h of a spring alone, of angular frequency w in a substep of h, that has the matched row.
+inline constexpr double kStiffestAlone = 1;
+
 /// The terms that are matched to the exact solution.
 ///
 /// Let V be the velocity before. Then (1 + gamma) V' = V - alpha C and C' = C + h V', a linear map with the
@@ -30,11 +35,11 @@ struct SpringTerms {
 /// implicit row: alpha = w² h, gamma = w² h² + 2 z w h, which no stiffness makes explode.
 ///
 /// @param frequency  Hz  @param ratio  of the damping  @param h  s
+/// @param least_gamma  for springs that meet with others: solvers/soft/joints/spring_loads.hpp
 /// docs/decisions/0026-joints.md has the measurements.
-inline SpringTerms spring_terms(double frequency, double ratio, double h) {
-    constexpr double kTwoPi = 6.28318530717958647693;
+inline SpringTerms spring_terms(double frequency, double ratio, double h, double least_gamma) {
     const double wh = kTwoPi * frequency * h;
-    if (wh > 1) return {wh * wh / h, wh * wh + 2 * ratio * wh};
+    if (wh > kStiffestAlone) return {wh * wh / h, wh * wh + 2 * ratio * wh};
     const double decay = exponential(-ratio * wh), determinant = decay * decay;
     double trace = 2 * decay;
     if (ratio < 1) {
@@ -44,7 +49,7 @@ inline SpringTerms spring_terms(double frequency, double ratio, double h) {
         trace = exponential(-ratio * wh + way) + exponential(-ratio * wh - way);
     }
     const double gamma = 1 / determinant - 1;
-    return {(1 + gamma) * (1 + determinant - trace) / h, gamma};
+    return {(1 + gamma) * (1 + determinant - trace) / h, std::fmax(gamma, least_gamma)};
 }
 
 /// The half of such a row that comes before or after a step between whole ones, where steps begin and end

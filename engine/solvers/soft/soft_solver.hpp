@@ -210,7 +210,7 @@ class SoftSolver {
 
     void solve_turn(WorldState<Real>& world);
     JointStep<Real> joint_step(WorldState<Real>& world) {
-        return {world, records_, terms_, books_.gravity_work};
+        return {world, records_, terms_, books_.gravity_work, joints.springs()};
     }
     StepView<Real> view() { return {graph, supports_, records_, settings_, terms_, loops_}; }
 

@@ -33,8 +33,7 @@ DirectJoints<Real>::DirectJoints(const WorldState<Real>& world, const std::vecto
         rim_.push_back(rim_of(world.bodies, row));
         body.inverse_mass = world.bodies.inverse_mass(row);
         if (body.inverse_mass > 0) moving_row_ = rows_.back();
-        const bool turns = world.bodies.has_rotation && (world.bodies.flags_of(row) & kFixedAngle) == 0;
-        body.inverse_inertia = turns ? 2 * body.inverse_mass / (rim_.back() * rim_.back()) : 0;
+        body.inverse_inertia = inverse_inertia_of(world.bodies, row);
         body.seen_inverse_inertia = body.inverse_inertia;
         return number;
     };
@@ -67,6 +66,9 @@ void DirectJoints<Real>::begin_step(const JointStep<Real>& step, bool touches, b
                                     bool converges) {
     touches_ = touches, is_beside_ = is_beside, converges_ = converges;
     const Bodies<Real>& bodies = step.world.bodies;
+    for (std::size_t j = 0; j < slots_.size(); ++j)
+        system_.joints[j].least_gamma = is_beside ? step.springs.least_gamma_in_turns(slots_[j])
+                                                  : step.springs.least_gamma_at_once(slots_[j]);
     system_.set_substep(step.terms.substep_dt);
     system_.begin_step(converges);
     double farthest = 0;

@@ -124,6 +124,7 @@ void SoftJoints<Real>::find_groups(const WorldState<Real>& world) {
             if (row >= 0 && moves(static_cast<std::size_t>(row)))
                 group_of_[static_cast<std::size_t>(row)] = static_cast<std::int32_t>(i);
     blows_.set_groups(group_of_, first_beside_);
+    springs_.find(world);
 }
 
 /// Whether sweeps hold a group of joints in a heap as well as an exact solve: bodies of like masses, and
@@ -201,6 +202,7 @@ void SoftJoints<Real>::begin_step(const JointStep<Real>& step, const StepView<Re
                                   const PathSolver<Real>& paths, double dt) {
     find_touching(step, contacts, paths, dt);
     touches_ = false;
+    springs_.begin_step(step.terms.substep_dt);
     for (std::size_t i = 0; i < direct_.size(); ++i) {
         const bool is_beside = i >= first_beside_, touches = is_beside || group_touches_[i] != 0;
         touches_ = touches_ || (touches && !is_beside);
@@ -342,7 +344,7 @@ std::string SoftJoints<Real>::describe() const {
 
 template <class Real>
 std::size_t SoftJoints<Real>::bytes() const {
-    std::size_t bytes = swept_.bytes() + joined_.bytes() + blows_.bytes() +
+    std::size_t bytes = swept_.bytes() + springs_.bytes() + joined_.bytes() + blows_.bytes() +
                         (group_of_.capacity() + first_of_group_.capacity()) * sizeof(std::int32_t) +
                         group_touches_.capacity();
     for (const DirectJoints<Real>& group : direct_) bytes += group.bytes() + sizeof(group);

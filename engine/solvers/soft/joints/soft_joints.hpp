@@ -63,9 +63,10 @@ class SoftJoints {
     template <class ShareOf>
     void scale(const ShareOf& share_of) {
         swept_.scale(share_of);
-        for (std::size_t i = first_beside_; i < direct_.size(); ++i)
+        for (std::size_t i = 0; i < direct_.size(); ++i)
             direct_[i].scale(share_of(direct_[i].moving_row(), direct_[i].moving_row()));
     }
+    const SpringLoads& springs() const { return springs_; }
     /// The smallest row of the bodies that joints connect with this one; -1 where it has no joint.
     std::int32_t first_of_group(std::size_t row) const { return first_of_group_[row]; }
     /// Whether the joints of the body in this row are solved exactly, and not beside sweeps.
@@ -101,6 +102,7 @@ class SoftJoints {
     std::vector<DirectJoints<Real>> direct_;
     std::size_t first_beside_ = 0;  // of direct_, that are solved beside sweeps
     SweptJoints<Real> swept_;
+    SpringLoads springs_;
     std::size_t swept_groups_ = 0, crowd_groups_ = 0;
     std::vector<std::size_t> breakable_;  // slots of joints that can break
     Column<Real> joined_;

@@ -114,7 +114,7 @@ class SweptJoints {
     void load(const WorldState<Real>& world);
     void begin_joint(const JointStep<Real>& step, Kind& own, std::size_t kind, std::size_t i);
     void begin_rods(const JointStep<Real>& step, Kind& own, std::size_t first, std::size_t last);
-    void begin_drive(Kind& own, std::size_t i, std::size_t kind, const StoredJoint& joint, double h);
+    void begin_drive(const JointStep<Real>& step, Kind& own, std::size_t kind, std::size_t i);
     void add_stiffness(const Kind& own);
     static void store_joint(StoredJoint& joint, const Kind& own, std::size_t kind, std::size_t i,
                             double substep_dt);

@@ -105,9 +105,7 @@ void SweptJoints<Real>::begin_joint(const JointStep<Real>& step, Kind& own, std:
     const typename Kind::Source& source = own.sources[i];
     const End a = end_of(own.a[i], source.row_a, source.anchor_a),
               b = end_of(own.b[i], source.row_b, source.anchor_b);
-    if (!own.alpha.empty())
-        begin_drive(own, i, kind, step.world.joints[static_cast<std::size_t>(own.slot[i])],
-                    step.terms.substep_dt);
+    if (!own.alpha.empty()) begin_drive(step, own, kind, i);
     if (kind == kAngles) {
         own.start_x[i] = real(b.angle - a.angle - source.angle);
         own.per_rim_a[i] = real(a.per_rim), own.per_rim_b[i] = real(b.per_rim);
@@ -165,19 +163,23 @@ void SweptJoints<Real>::load(const WorldState<Real>& world) {
 /// What springs, drives and bounds a length or an angle. Of its impulses the store keeps the sum: a motor has
 /// as much of it as it can, the rest is of the end that pushes that way.
 template <class Real>
-void SweptJoints<Real>::begin_drive(Kind& own, std::size_t i, std::size_t kind, const StoredJoint& joint,
-                                    double h) {
+void SweptJoints<Real>::begin_drive(const JointStep<Real>& step, Kind& own, std::size_t kind, std::size_t i) {
     const auto real = [](double value) { return static_cast<Real>(value); };
-    constexpr double kTwoPi = 6.28318530717958647693;
+    const auto slot = static_cast<std::size_t>(own.slot[i]);
+    const StoredJoint& joint = step.world.joints[slot];
+    const double h = step.terms.substep_dt;
     // A spring that is too stiff for the substep holds as a rod does: as a spring it would close its gap by
     // velocities, and sweeps that have not converged make energy of that.
-    const bool is_stiff = joint.is_spring() && kTwoPi * joint.frequency * h > 1;
+    const bool is_stiff = joint.is_spring() && kTwoPi * joint.frequency * h > kStiffestAlone;
     const bool is_held = is_stiff || (joint.type == JointType::weld && !joint.is_spring());
     const double rest_at = kind == kAngles ? 0 : joint.length;
     own.lower[i] = real(is_held ? rest_at : joint.has_lower ? joint.lower : -kNoEnd);
     own.upper[i] = real(is_held ? rest_at : joint.has_upper ? joint.upper : kNoEnd);
     const bool springs = joint.is_spring() && !is_stiff;
-    const SpringTerms terms = springs ? spring_terms(joint.frequency, joint.damping_ratio, h) : SpringTerms{};
+    SpringTerms terms;
+    if (springs)
+        terms =
+            spring_terms(joint.frequency, joint.damping_ratio, h, step.springs.least_gamma_in_turns(slot));
     own.alpha[i] = real(terms.alpha), own.gamma[i] = real(terms.gamma);
     const double most = joint.has_motor ? joint.max_motor * h : 0;
     own.speed[i] = real(joint.motor_speed), own.most[i] = real(most);
