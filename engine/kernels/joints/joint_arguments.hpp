@@ -14,6 +14,9 @@ namespace carom {
 /// see.
 inline constexpr std::size_t kJointBlock = 16;
 
+/// Turn in a substep up to which arms and rods bend as they do [rad].
+inline constexpr double kMostBend = 0.3;
+
 /// How the rows of a block of joints lie: any; or of each four joints rows a are consecutive, and so are rows
 /// b; or a, b, a, b, a, b, a, b are.
 enum class RowOrder : std::uint8_t { any, runs, pairs };

@@ -94,7 +94,7 @@ void sweep_springs(const SweepJoints<Real>& arguments, std::size_t first, std::s
         const F share = one / (one + strain * strain);
         const Pair2<F> v = parting<Lanes, true>(a, b, h, share, share);
         const F across = v.y * nx - v.x * ny;
-        const F along = (v.x * nx + v.y * ny) + half_h * across * across * per_length * share;
+        const F along = (v.x * nx + v.y * ny) + growth_of_turn<Lanes>(across, half_h, per_length) * share;
         const F added = rows.solve(k, c, length - Lanes::load(k.joints.length + c), length, along, inverse);
         rows.store(k.joints, c);
         a.push(added * nx, added * ny, F(-1)), b.push(added * nx, added * ny, one);

@@ -33,9 +33,6 @@ struct Pair2 {
     F x, y;
 };
 
-/// Turn in a substep up to which arms bend as they do [rad].
-inline constexpr double kMostBend = 0.3;
-
 /// cos f - 1 and sin f - f over h, for what a substep turns; beyond kMostBend they grow no faster than the
 /// turn: the series would make of a fast spin a bend, and the bend of a faster one, without end.
 template <class Lanes, class F = typename Lanes::Batch>
@@ -44,6 +41,15 @@ Pair2<F> bend_of_turn(F spin, F h) {
     const F f = simd::max(simd::min(spin * h, number(kMostBend)), number(-kMostBend)), q = f * f,
             c2 = number(-0.5), c4 = number(1.0 / 24), s3 = number(-1.0 / 6), s5 = number(1.0 / 120);
     return {spin * f * (c2 + c4 * q), spin * q * (s3 + s5 * q)};
+}
+
+/// What a rod grows by in a substep, over h, where its ends pass each other, were they to go straight on;
+/// beyond kMostBend likewise.
+/// @param across  m/s, velocity of its ends across it  @param half_h  s
+template <class Lanes, class F = typename Lanes::Batch>
+[[gnu::always_inline]] inline F growth_of_turn(F across, F half_h, F per_length) {
+    return simd::min(half_h * across * across * per_length,
+                     constant<Lanes>(0.5 * kMostBend) * simd::abs(across));
 }
 
 /// The same direction within half a turn, as far as the precision tells; beyond kMostTurn all are one.
@@ -329,7 +335,7 @@ template <class Lanes, bool kArms, bool kFirst, class Real>
     const F share = one / (one + strain * strain);
     const Pair2<F> v = parting<Lanes, kArms>(a, b, h, share, share);
     const F along = v.x * nx + v.y * ny, across = v.y * nx - v.x * ny;
-    const F wanted = -half_h * across * across * per_length * share;
+    const F wanted = -growth_of_turn<Lanes>(across, half_h, per_length) * share;
     const F added = simd::select(inverse > zero, F(k.over_relaxation) * (wanted - along) / inverse, zero);
     Lanes::store(k.joints.impulse_x + c, l + added);
     a.push(added * nx, added * ny, F(-1)), b.push(added * nx, added * ny, one);

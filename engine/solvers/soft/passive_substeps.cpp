@@ -56,12 +56,6 @@ std::int32_t first_of_group(const SolvedSubstep<Real>& solved, std::size_t row) 
     return has_joints(solved) ? solved.joints.first_of_group(row) : -1;
 }
 
-/// Whether a body belongs to what exact solves hold, which is left alone: joints/foreseen_blows.hpp.
-template <class Real>
-bool is_exact(const SolvedSubstep<Real>& solved, std::size_t row) {
-    return has_joints(solved) && solved.joints.is_exact(row);
-}
-
 /// Calls fn(row, row, work) for what may give energy in a substep: surfaces that move by themselves, motors
 /// and springs. Work in J.
 template <class Real, class Fn>
@@ -156,7 +150,7 @@ bool PassiveSubsteps<Real>::find_risen(const SolvedSubstep<Real>& solved) {
     has_risen_.assign(records.rows(), 0);
     for (std::size_t row = 0; row < rows; ++row) {
         const Gain& group = group_of(row);
-        has_risen_[row] = !is_exact(solved, row) && group.gain > least_of(group.mass, group.before, terms);
+        has_risen_[row] = group.gain > least_of(group.mass, group.before, terms);
         any = any || has_risen_[row];
     }
     return any;
@@ -300,7 +294,7 @@ double PassiveSubsteps<Real>::bound(const SolvedSubstep<Real>& solved, bool is_l
         Island& island = island_of(row);
         if (!island.has_gained || island.gain - island.work <= kLastShare * (island.before + island.effort))
             continue;
-        has_risen_[row] = !is_exact(solved, row), island.work_of_risen = island.work;
+        has_risen_[row] = true, island.work_of_risen = island.work;
     }
     find_velocities_without(solved);
     has_scaled_ = find_shares(solved);

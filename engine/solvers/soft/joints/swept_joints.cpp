@@ -8,6 +8,9 @@
 namespace carom {
 namespace {
 
+/// The largest mass that a swept joint is taken to swing, in reduced masses of its own two bodies: 64 like
+/// bodies, or four of 16 times the mass, the largest ratio in a crowd.
+constexpr double kBodiesOfBend = 64;
 /// Factor by which the first sweep over rods goes farther. Hinges take 1: more pumps energy into them.
 constexpr double kOverRelaxation = 1.3;
 
@@ -378,36 +381,46 @@ double SweptJoints<Real>::work_of_drive(const JointStep<Real>& step, std::size_t
 
 /// A body goes straight on while it turns, and a joint brings it back to its curved path: it is asked for the
 /// velocity v that a substep's path bends by (kernels/joints/sweep_joints.hpp), and its impulse l then does
-/// the work l v on top of what a joint along a straight path would take.
+/// the work l v on top of what a joint along a straight path would take. What l is to give its bodies v is
+/// worth v² times the mass that moves; joints that press against contacts have l of any size, which gives
+/// bodies no v and no reason to gain.
 template <class Real>
 double SweptJoints<Real>::work_of_bend(const JointStep<Real>& step, std::size_t kind, std::size_t i) const {
     const Kind& own = kinds_[kind];
     if (kind == kAngles) return 0;
     const Vec2 impulse = impulse_on_b(own, i, kind);
     if (impulse == Vec2{}) return 0;
-    const double half_h = 0.5 * step.terms.substep_dt;
+    const double h = step.terms.substep_dt;
     const bool has_arms = kind != kRods;
+    // rad/s · rad, with the bounds of the kernels
+    const auto bend_at = [&](double spin) {
+        return std::fabs(spin) * std::fmin(h * std::fabs(spin), kMostBend);
+    };
     struct End {
         Vec2 velocity, bend;  // m/s, of the anchor
+        double inverse_mass;  // 1/kg, of the body
     };
     const auto end_of = [&](std::int32_t number, Vec2 arm, double per_rim) -> End {
         const Real* record = &step.records.velocity[4 * static_cast<std::size_t>(number)];
         const double spin = per_rim * static_cast<double>(record[2]),
-                     strain = 8 * half_h * std::fabs(dot(arm, impulse)) * 2 * per_rim * per_rim *
+                     strain = 4 * h * std::fabs(dot(arm, impulse)) * 2 * per_rim * per_rim *
                               std::fmax(static_cast<double>(record[3]), 0),
                      share = 1 / (1 + strain * strain);
-        return {Vec2{record[0], record[1]} + spin * Vec2{-arm.y, arm.x},
-                (-half_h * share * spin * spin) * arm};
+        return {Vec2{record[0], record[1]} + spin * Vec2{-arm.y, arm.x}, (-0.5 * share * bend_at(spin)) * arm,
+                std::fabs(static_cast<double>(record[3]))};
     };
     const End a = has_arms ? end_of(own.a[i], {own.arm_a_x[i], own.arm_a_y[i]}, own.per_rim_a[i])
                            : end_of(own.a[i], {}, 0),
               b = has_arms ? end_of(own.b[i], {own.arm_b_x[i], own.arm_b_y[i]}, own.per_rim_b[i])
                            : end_of(own.b[i], {}, 0);
-    const double work = -dot(impulse, b.bend - a.bend);
-    if (kind == kHinges) return work;
-    const Vec2 normal{own.normal_x[i], own.normal_y[i]};
-    const double across = cross(normal, b.velocity - a.velocity);
-    return work - dot(impulse, normal) * half_h * across * across * static_cast<double>(own.per_length[i]);
+    Vec2 bend = b.bend - a.bend;
+    if (kind != kHinges && own.per_length[i] > 0) {
+        const Vec2 normal{own.normal_x[i], own.normal_y[i]};
+        const double across = cross(normal, b.velocity - a.velocity), per_length = own.per_length[i];
+        bend += (0.5 * bend_at(across * per_length) / per_length) * normal;
+    }
+    const double most = kBodiesOfBend * length_squared(bend) / (a.inverse_mass + b.inverse_mass);
+    return std::clamp(-dot(impulse, bend), -most, most);
 }
 
 template <class Real>
