@@ -55,7 +55,7 @@ bool Watch::step(double dt) {
     seconds_.push_back(measure::thread_seconds() - start);
     spent_ += seconds_.back();
     const bool sleeps = scene_.effects.sleep.value_or(false) && simulation_->profile().asleep > 0;
-    if (!sleeps) awake_seconds_.push_back(seconds_.back());
+    is_awake_.push_back(!sleeps);
     return true;
 }
 
@@ -75,8 +75,16 @@ double Watch::longest_step() const {
 
 double Watch::stall() const {
     constexpr double kLeastMedian = 2e-4;  // s
-    const double median = awake_seconds_.empty() ? median_step() : measure::quantile(awake_seconds_, 0.5);
+    std::vector<double> awake;             // s
+    for (std::size_t i = 0; i < seconds_.size(); ++i)
+        if (is_awake_[i]) awake.push_back(seconds_[i]);
+    const double median = awake.empty() ? median_step() : measure::quantile(awake, 0.5);
     return longest_step() / std::fmax(median, kLeastMedian);
+}
+
+void Watch::take_shorter_times(const Watch& again) {
+    for (std::size_t i = 0; i < std::min(seconds_.size(), again.seconds_.size()); ++i)
+        seconds_[i] = std::fmin(seconds_[i], again.seconds_[i]);
 }
 
 std::string Watch::failure() const {
