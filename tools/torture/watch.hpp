@@ -37,7 +37,7 @@ class Watch {
     /// Longest step over the median of those in which all bodies were awake. That counts as 0.2 ms at least:
     /// a step of a few milliseconds may be the machine.
     double stall() const;
-    /// Of each step the shorter of its time here and in another run of the same steps.
+    /// Keeps of each step the shorter of its time here and its time in another run of the same steps [s].
     void take_shorter_times(const Watch& again);
     bool gave_up() const { return spent_ > limit_; }
     /// Empty, or why there are no more steps.

@@ -56,6 +56,7 @@ class DirectJoints {
     std::int32_t moving_row() const { return moving_row_; }
     /// Multiplies the impulses that its joints gave in this substep; velocities stay as they are.
     void scale(double share) {
+        if (share == 1) return;
         system_.scale(share);
         for (Change& given : given_) given.velocity = share * given.velocity, given.spin *= share;
     }

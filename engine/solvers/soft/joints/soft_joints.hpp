@@ -58,19 +58,17 @@ class SoftJoints {
         for (DirectJoints<Real>& group : direct_)
             if (group.may_drive()) fn(group.moving_row(), group.moving_row(), group.work_of_drives(step));
     }
-    /// Multiplies the impulses of each swept joint, and of those beside sweeps, by share_of(row, row);
-    /// velocities stay as they are.
+    /// Multiplies the impulses of each joint by share_of(row, row), which is the same for all joints of a
+    /// group that is solved exactly; velocities stay as they are.
     template <class ShareOf>
     void scale(const ShareOf& share_of) {
         swept_.scale(share_of);
-        for (std::size_t i = 0; i < direct_.size(); ++i)
-            direct_[i].scale(share_of(direct_[i].moving_row(), direct_[i].moving_row()));
+        for (DirectJoints<Real>& group : direct_)
+            group.scale(share_of(group.moving_row(), group.moving_row()));
     }
     const SpringLoads& springs() const { return springs_; }
     /// The smallest row of the bodies that joints connect with this one; -1 where it has no joint.
     std::int32_t first_of_group(std::size_t row) const { return first_of_group_[row]; }
-    /// Whether the joints of the body in this row are solved exactly, and not beside sweeps.
-    bool is_exact(std::size_t row) const { return group_of_[row] >= 0; }
 
     /// [rows], above zero for bodies that have joints.
     const Real* joined() const { return joined_.data(); }

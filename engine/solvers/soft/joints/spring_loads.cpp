@@ -41,7 +41,7 @@ double share_of(const Yield& own, const Yield& others) {
 
 template <class Real>
 void SpringLoads::find(const WorldState<Real>& world) {
-    springs_.clear(), loads_.clear();
+    springs_.clear(), damping_.clear();
     const Bodies<Real>& bodies = world.bodies;
     const auto moving_row_of = [&](BodyId id) {
         if (id == BodyId{}) return std::int32_t{-1};
@@ -85,22 +85,22 @@ double SpringLoads::square_of(const Spring& spring) const {
 }
 
 void SpringLoads::begin_step(double h) {
-    loads_.clear();
+    damping_.clear();
     if (!(h * h * largest_ > kMostTogether)) return;
     // Springs that are too stiff alone take the implicit row, which adds to what holds the others.
     sum_up(kStiffestAlone / h);
-    loads_.assign(slots_, {});
+    damping_.assign(slots_, {});
     for (const Spring& spring : springs_) {
         const double wh = spring.frequency * h, load = h * h * square_of(spring),
                      beyond = load - kMostTogether;
         if (wh > kStiffestAlone || !(beyond > 0)) continue;
-        loads_[spring.slot] = {0.5 * wh * wh * beyond / load, beyond};
+        damping_[spring.slot] = {0.5 * wh * wh * beyond / load, beyond};
     }
 }
 
 std::size_t SpringLoads::bytes() const {
     return springs_.capacity() * sizeof(Spring) + sums_.capacity() * sizeof(double) +
-           loads_.capacity() * sizeof(Load);
+           damping_.capacity() * sizeof(Damping);
 }
 
 template void SpringLoads::find(const WorldState<float>&);

@@ -33,11 +33,11 @@ class SpringLoads {
     void begin_step(double h);
     /// The least gamma of a spring's row, if all springs that meet are solved at once; 0: any.
     double least_gamma_at_once(std::size_t slot) const {
-        return loads_.empty() ? 0 : loads_[slot].least_gamma_at_once;
+        return damping_.empty() ? 0 : damping_[slot].least_gamma_at_once;
     }
     /// Likewise, if they are solved in turns.
     double least_gamma_in_turns(std::size_t slot) const {
-        return loads_.empty() ? 0 : loads_[slot].least_gamma_in_turns;
+        return damping_.empty() ? 0 : damping_[slot].least_gamma_in_turns;
     }
     std::size_t bytes() const;
 
@@ -48,16 +48,16 @@ class SpringLoads {
         double frequency;           // rad/s, alone
         double by_a, by_b;          // rad/s: f of the formula above
     };
-    struct Load {
+    struct Damping {
         double least_gamma_at_once = 0, least_gamma_in_turns = 0;
     };
     void sum_up(double most);
     double square_of(const Spring& spring) const;
 
     std::vector<Spring> springs_;
-    std::vector<double> sums_;  // rad/s, by row: of f
-    std::vector<Load> loads_;   // by slot; empty: none is too stiff
-    double largest_ = 0;        // rad²/s²: of all springs together
+    std::vector<double> sums_;      // rad/s, by row: of f
+    std::vector<Damping> damping_;  // by slot; empty: none is too stiff
+    double largest_ = 0;            // rad²/s²: of all springs together
     std::size_t slots_ = 0;
 };
 
