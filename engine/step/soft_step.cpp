@@ -61,7 +61,8 @@ class SoftStep final : public SoftSimulation<Real> {
         return !sim.world.joints.empty() && sim.soft.joints.touches() && sim.can_touch();
     };
     static constexpr auto may_gain = [](const Sim& sim) {
-        return sim.can_touch() && (!sim.world.joints.empty() || has_shapes(sim));
+        return sim.can_touch() &&
+               (!sim.world.joints.empty() || has_shapes(sim) || !sim.world.immovable_rows.empty());
     };
     static constexpr auto has_sensors = [](const Sim& sim) { return sim.world.sensing.is_called_for(); };
     static constexpr auto has_lost_bodies = [](const Sim& sim) { return !sim.lost.empty(); };

@@ -34,9 +34,9 @@ constexpr Golden kGolden[] = {
     {"falling sizes", 0x4fe0c9b61ea50e9c, 0xc84f698047eb650e},
     {"moving obstacles", 0x9450532e75523df8, 0x81f8d27062c9d725},
     {"stack at rest", 0xa436021f760768ad, 0xfd75b447dc578a50},
-    {"rough sizes", 0x23224f722746413e, 0xb8a2a72b5b05a1e4},
-    {"rolling sizes", 0x13a9356d278a9cfb, 0x61bf8ef0ca44c42a},
-    {"turning chain", 0x1480318ed69015d5, 0x87dd66888a4ab01a},
+    {"rough sizes", 0xa029d00f4fc8fcad, 0x87396337ad79866e},
+    {"rolling sizes", 0x263e12283b58366d, 0x8c50dfc5f6f4e985},
+    {"turning chain", 0x4ec535f1f7be0f7b, 0x7f0345196d58e7f9},
     {"woken sleepers", 0xc96d16ac37412fb, 0x73b51f7b255f0ebe},
     {"falling compounds", 0x44b6b15a62fe6945, 0xf76e6a69390f7a29},
 };

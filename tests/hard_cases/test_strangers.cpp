@@ -289,7 +289,7 @@ TEST_SUITE("hard cases/strangers") {
         steps(100);
         CHECK(world.profile().islands_woken > 0);
         world.set_velocity(ball, {3, 0});
-        steps(900);
+        steps(1200);  // the last of 24 balls like this one, elsewhere, let its heap sleep after 1,160
         CHECK(world.profile().asleep == kHeap + 1);
         world.remove({kHeap, 0});  // one of those that stand
         world.remove({3, 0});

@@ -62,6 +62,7 @@ class TestedRun final : public torture::HardRun {
     BodyState state(std::size_t body) const override { return world_->state(id_of(body)); }
     double energy() const override { return world_->ledger().energy.total(); }
     double unexplained() const override { return world_->ledger().energy_by_cause.unexplained; }
+    double driven() const override { return world_->ledger().energy_by_cause.drive; }
     double overlap() const override { return world_->overlaps().max; }
     double joint_gap() const override { return world_->joint_errors().max; }
     std::size_t quarantined() const override { return world_->quarantined().size(); }

@@ -23,6 +23,9 @@ class WatchedRun final : public HardRun {
         return watch_.simulation().keeps_ledger() ? watch_.simulation().ledger().energy_by_cause.unexplained
                                                   : 0;
     }
+    double driven() const override {
+        return watch_.simulation().keeps_ledger() ? watch_.simulation().ledger().energy_by_cause.drive : 0;
+    }
     double overlap() const override { return watch_.simulation().overlaps().max; }
     double joint_gap() const override { return watch_.simulation().joint_errors().max; }
     std::size_t quarantined() const override { return watch_.quarantined(); }

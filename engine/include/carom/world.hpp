@@ -102,7 +102,8 @@ class BasicWorld {
     /// `impulse` the start of the present substep, under `soft` of the step. (Under these two bodies may have
     /// woken, and forces of contacts at rest are found anew.) What `parallel_for` throws; the step has been
     /// taken then.
-    /// Cost: O(bodies + candidate pairs); no allocation once the world has reached its largest size.
+    /// Cost: O(bodies + candidate pairs); no allocation once the world has reached its largest size and its
+    /// busiest step.
     void step(double dt);
 
     std::size_t body_count() const noexcept;

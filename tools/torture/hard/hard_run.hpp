@@ -24,6 +24,7 @@ class HardRun {
     virtual BodyState state(std::size_t body) const = 0;
     virtual double energy() const = 0;       ///< J
     virtual double unexplained() const = 0;  ///< J, by the ledger; 0 without one
+    virtual double driven() const = 0;       ///< J, what drives have given, by the ledger; 0 without one
     virtual double overlap() const = 0;      ///< the largest, in radii of the smaller body
     virtual double joint_gap() const = 0;    ///< m, the largest
     virtual std::size_t quarantined() const = 0;

@@ -147,7 +147,71 @@ Measures left_the_room(HardRun& run) {
             {"quarantined", static_cast<double>(run.quarantined()), 0}};
 }
 
+/// Discs that fall into a box of edges in which a paddle turns. Its blades reach through the floor, so that
+/// it presses discs out of corners that close.
+Scene paddle_in_a_box(double mass_ratio, double friction, std::uint64_t seed) {
+    constexpr int kDiscs = 200, kInARow = 11;
+    constexpr double kHalfWidth = 5, kHeight = 40, kPitch = 0.85;  // m
+    constexpr double kReach = 3, kAxle = 2, kTurning = 6;          // m, m, rad/s
+    Random random(seed, 37);
+    Scene scene;
+    scene.gravity = {0, -10};
+    scene.effects.ledger = true;
+    const Material material{.friction = friction};
+    scene.add({.type = BodyType::static_body,
+               .shape = Chain{.points = {{-kHalfWidth, kHeight},
+                                         {-kHalfWidth, 0},
+                                         {kHalfWidth, 0},
+                                         {kHalfWidth, kHeight}}},
+               .material = material});
+    scene.add({.type = BodyType::kinematic_body,
+               .shape = Segment{{-kReach, 0}, {kReach, 0}},
+               .position = {0, kAxle},
+               .angular_velocity = kTurning,
+               .material = material});
+    for (int i = 0; i < kDiscs; ++i) {
+        const double radius = random.uniform(0.2, 0.4);
+        scene.add({.shape = Disc{radius},
+                   .position = {-4.3 + kPitch * (i % kInARow) + random.uniform(0, 0.02),
+                                kHalfWidth + kPitch * (i / kInARow)},
+                   .mass = radius * radius * random.log_uniform(1, mass_ratio),
+                   .material = material});
+    }
+    return scene;
+}
+
+/// What the discs get in one step and the paddle does not give.
+Measures energy_from_a_paddle(HardRun& run) {
+    constexpr double kMost = 0.01;  // contacts may give 3 thousandths of a disc's energy in a substep
+    const double start = run.energy();
+    Largest gain;
+    for (int i = 0; i < 480; ++i) {
+        const double before = run.energy() - run.driven();
+        if (!run.step()) break;
+        gain.take((run.energy() - run.driven() - before) / start);
+    }
+    return {{"gain in a step", gain.value(), kMost},
+            {"quarantined", static_cast<double>(run.quarantined()), 0}};
+}
+
 }  // namespace
+
+HardCases discs_that_a_paddle_stirs(Extent extent) {
+    HardCases all;
+    for (const double mass_ratio : {1.0, 30.0})
+        for (const double friction : {0.0, 0.3}) {
+            std::vector<Scene> scenes;
+            for (std::uint64_t seed = 1; seed <= extent.of<std::uint64_t>(2, 1); ++seed)
+                scenes.push_back(paddle_in_a_box(mass_ratio, friction, seed));
+            all.push_back(
+                {.code = "B37",
+                 .name = format("discs that a paddle stirs, masses 1:%g, friction %g", mass_ratio, friction),
+                 .make = [first = scenes.front()] { return first; },
+                 .run = [more = std::vector(scenes.begin() + 1, scenes.end())](
+                            HardRun& run) { return worst_of_all(run, more, energy_from_a_paddle); }});
+        }
+    return all;
+}
 
 HardCases shapes_under_a_plate(Extent extent) {
     HardCases all;
