@@ -151,8 +151,8 @@ Measures left_the_room(HardRun& run) {
 /// it presses discs out of corners that close.
 Scene paddle_in_a_box(double mass_ratio, double friction, std::uint64_t seed) {
     constexpr int kDiscs = 200, kInARow = 11;
-    constexpr double kHalfWidth = 5, kHeight = 40, kPitch = 0.85;  // m
-    constexpr double kReach = 3, kAxle = 2, kTurning = 6;          // m, m, rad/s
+    constexpr double kHalfWidth = 5, kHeight = 40, kPitch = 0.85, kLowest = 5;  // m
+    constexpr double kReach = 3, kAxle = 2, kTurning = 6;                       // m, m, rad/s
     Random random(seed, 37);
     Scene scene;
     scene.gravity = {0, -10};
@@ -173,7 +173,7 @@ Scene paddle_in_a_box(double mass_ratio, double friction, std::uint64_t seed) {
         const double radius = random.uniform(0.2, 0.4);
         scene.add({.shape = Disc{radius},
                    .position = {-4.3 + kPitch * (i % kInARow) + random.uniform(0, 0.02),
-                                kHalfWidth + kPitch * (i / kInARow)},
+                                kLowest + kPitch * (i / kInARow)},
                    .mass = radius * radius * random.log_uniform(1, mass_ratio),
                    .material = material});
     }
