@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -11,10 +12,11 @@
 #include "measure/text.hpp"
 
 // 200 discs, and what has nothing to do with them: static discs far away, the rest of a long terrain, a speed
-// that all share, a disc much smaller than the others.
+// that all share, a disc much smaller than the others; and piles in which some discs are heavier.
 //     strangers/<case>/<float|double>
 // `ratio` is the median time of a step over that of the same scene without it, both in processor time of the
-// thread. docs/decisions/0033-costs-of-strangers.md has the figures.
+// thread. docs/decisions/0033-costs-of-strangers.md has the figures, 0064-uneven-masses-in-sweeps.md those of
+// heavier discs.
 
 namespace carom::bench {
 namespace {
@@ -91,6 +93,23 @@ Scene with_small(double radius) {
     return scene;
 }
 
+/// A pile of so many columns and as many rows in which one disc in `every` at random is heavier.
+Scene of_masses(int columns, double friction, double ratio, unsigned every) {
+    constexpr double kPitch = 1.05;  // m
+    Scene scene = rough();
+    scene.walls = Walls{
+        .min = {0, 0}, .max = {kPitch * columns, 1e4}, .top = false, .material = material_of(friction, 0)};
+    std::mt19937 random(1);
+    for (int row = 0; row < columns; ++row)
+        for (int column = 0; column < columns; ++column)
+            scene.add({.shape = Disc{0.5},
+                       .position = {kPitch * (0.5 + column) + 0.02 * std::sin(1.7 * (row + column)),
+                                    kPitch * (0.5 + row)},
+                       .mass = random() % every == 0 ? ratio : 1,
+                       .material = material_of(friction, 0)});
+    return scene;
+}
+
 /// @return s, median of a step
 template <class World>
 double time_of_step(const Scene& scene) {
@@ -141,6 +160,11 @@ const bool kAdded = [] {
     add("falling-150", falling(150), falling(0));
     add("small-1e-3", with_small(1e-3), with_small(0));
     add("small-1e-6", with_small(1e-6), with_small(0));
+    for (const int ratio : {30, 100, 300})
+        for (const double friction : {0.5, 0.0})
+            add((friction > 0 ? "half-heavier-" : "half-heavier-smooth-") + std::to_string(ratio),
+                of_masses(20, friction, ratio, 2), of_masses(20, friction, 1, 2));
+    add("few-heavier-100", of_masses(60, 0.5, 100, 1000), of_masses(60, 0.5, 1, 1000));
     return true;
 }();
 

@@ -64,7 +64,7 @@ struct SolveContacts {
     Real calm;  // m/s: a contact that changes by no more needs no second sweep; below zero: all need one
     Real over_relaxation;           // of normal impulses, 1 ... 2
     Real calm_over_relaxation;      // of those of calm contacts
-    Real next_over_relaxation = 1;  // of pairs in the other sweeps, without friction alone
+    Real next_over_relaxation = 1;  // of pairs in the other sweeps
     std::uint8_t*
         needs_second_sweep;  // out, [last / kContactBlock]: set where a contact of the block is not calm
     // The rest is for kernels/contacts/coarse_correction.hpp alone.

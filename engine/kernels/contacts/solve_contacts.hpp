@@ -176,7 +176,7 @@ void solve_contacts(const SolveContacts<Real>& arguments, std::size_t first, std
             ContactImpulses<F> impulses = load_impulses<kVariant, Lanes>(k, c);
             // The first sweep over pairs goes less far where it hardly changes: nothing follows on it there.
             const auto relax = [&](F wanted) {
-                if constexpr (!kOtherMoves || (!kFirst && (kVariant & kRough) != 0)) return wanted;
+                if constexpr (!kOtherMoves) return wanted;
                 if constexpr (!kFirst) return wanted * F(k.next_over_relaxation);
                 return wanted * simd::select(simd::abs(wanted) > terms.mass * F(k.calm), F(k.over_relaxation),
                                              F(k.calm_over_relaxation));

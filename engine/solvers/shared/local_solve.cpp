@@ -78,6 +78,11 @@ void LocalSolve<Real>::find(const ContactRows<Real>& pairs, const Column<Real>& 
 }
 
 template <class Real>
+bool LocalSolve<Real>::has_many() const {
+    return pairs_.size() > kFewContacts;
+}
+
+template <class Real>
 std::int32_t LocalSolve<Real>::body_of(std::int32_t row) {
     std::int32_t& number = number_of_[static_cast<std::size_t>(row)];
     if (number < 0) {
@@ -89,7 +94,7 @@ std::int32_t LocalSolve<Real>::body_of(std::int32_t row) {
 
 template <class Real>
 void LocalSolve<Real>::begin_step(const ContactRows<Real>& pairs, const ContactRows<Real>& supports) {
-    rows_.clear(), contacts_.clear();
+    leave_step();
     if (pairs_.empty()) return;
     for (const std::uint32_t i : pairs_) {
         if (!pairs.is_live[i / kContactBlock]) continue;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "constraints/contact_rows.hpp"
@@ -28,9 +29,15 @@ class LocalSolve {
     /// Cost: O(pairs), a few times if there are any.
     void find(const ContactRows<Real>& pairs, const Column<Real>& inverse_mass, std::size_t rows);
     void clear() { pairs_.clear(); }
+    /// Those that were found, as places among all pairs.
+    std::span<const std::uint32_t> found() const { return pairs_; }
+    /// Whether there are too many for all to be solved to their end.
+    bool has_many() const;
 
     /// Those that can touch in this step. Cost: O(supports + what was found).
     void begin_step(const ContactRows<Real>& pairs, const ContactRows<Real>& supports);
+    /// Leaves all to others in this step.
+    void leave_step() { rows_.clear(), contacts_.clear(); }
     /// After the sweeps of a substep.
     /// @param k  of pairs and of supports
     /// @param fall  m/s, what gravity adds in a substep

@@ -62,8 +62,9 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const EdgeCa
     warm_start_.begin_step(graph, terms_.substep_dt, dt);
     const bool is_new = pair_finder_.find(view(), world.bodies, masses_, motion,
                                           flies_together && !world.bodies.has_shapes && world.joints.empty());
-    if (is_new && masses_.are_uneven()) uneven_.find(graph.pairs, masses_.inverse_column(), records_.count());
+    if (is_new) uneven_.find(graph.pairs, masses_, records_.count());
     support_finder_.find(view(), world, edges);
+    settings_.has_uneven_sweeps = uneven_.are_swept();
     uneven_.begin_step(view(), world, masses_.are_mixed());
     chains_.begin_step(view());
     wedged_.begin_step(view(), world.bodies);
@@ -153,9 +154,8 @@ void SoftSolver<Real>::solve_wedged_bodies() {
 }
 
 template <class Real>
-void SoftSolver<Real>::solve_uneven_contacts() {
-    if (masses_.are_uneven())
-        uneven_.solve(view(), Sweeps::arguments(view(), graph.pairs), Sweeps::arguments(view(), supports_));
+void SoftSolver<Real>::solve_uneven_contacts(bool is_last) {
+    if (masses_.are_uneven()) uneven_.solve(view(), sweeps_, is_last);
 }
 
 template <class Real>

@@ -122,7 +122,7 @@ class SoftSolver {
     /// Solves what the sweeps leave of their supports.
     void solve_wedged_bodies();
     /// Solves what the sweeps leave where masses are uneven; nothing where they are not.
-    void solve_uneven_contacts();
+    void solve_uneven_contacts(bool is_last);
     /// What the impulses of this substep did; only the walls' impulses if the ledger is closed.
     void book_substep(const WorldState<Real>& world, Books& books) {
         books_.book_substep(view(), world, books);

@@ -33,8 +33,9 @@ bool BodyMasses<Real>::derive(const Bodies<Real>& bodies, bool has_friction) {
     }
     if (vary_) std::fill(inverse_.begin() + bodies.moving(), inverse_.end(), Real(0));
     are_uneven_ = lightest > LocalSolve<Real>::kUneven * heaviest;
+    are_very_uneven_ = lightest > kVeryUneven * heaviest;
     std::size_t light = 0, heavy = 0;
-    for (std::size_t row = 0; row < bodies.count && lightest > kVeryUneven * heaviest; ++row) {
+    for (std::size_t row = 0; row < bodies.count && are_very_uneven_; ++row) {
         const double inverse = bodies.inverse_mass(row);
         if (!(inverse > 0)) continue;
         light += inverse > kVeryUneven * heaviest ? 1 : 0;

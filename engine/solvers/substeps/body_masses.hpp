@@ -28,13 +28,16 @@ class BodyMasses {
     /// Whether the heaviest body is so much heavier than the lightest one that sweeps do not converge soon
     /// enough: solvers/shared/local_solve.hpp.
     bool are_uneven() const { return are_uneven_; }
-    /// Whether bodies that differ by more than a hundred times are mixed, so that even that may not do.
+    /// Whether the heaviest body is more than a hundred times heavier than the lightest one.
+    bool are_very_uneven() const { return are_very_uneven_; }
+    /// Whether bodies that differ so much are mixed, so that even that may not do.
     bool are_mixed() const { return are_mixed_; }
 
     std::size_t bytes() const { return inverse_.bytes(); }
 
   private:
-    bool are_known_ = false, vary_ = false, some_are_fixed_ = false, are_uneven_ = false, are_mixed_ = false;
+    bool are_known_ = false, vary_ = false, some_are_fixed_ = false;
+    bool are_uneven_ = false, are_very_uneven_ = false, are_mixed_ = false;
     Column<Real> inverse_;
 };
 

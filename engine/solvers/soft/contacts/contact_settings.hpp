@@ -25,6 +25,7 @@ struct ContactSettings {
     bool is_smooth_heap = false;     ///< gravity, and no friction: nothing but more sweeps brings it to rest
     bool heaves_if_slender = false;  ///< few bodies heave, too, where they are a slender pile
     int iterations = 2;              ///< sweeps a substep, >= 1
+    bool has_uneven_sweeps = false;  ///< contacts of uneven masses get more of them
     double friction = 0, rolling = 0;  ///< coefficients, of contacts that have none of their own
     double radius = 1;                 ///< m, of all bodies; 1 where radii vary
     double fall = 0;                   ///< m, by which gravity brings two bodies nearer in a step

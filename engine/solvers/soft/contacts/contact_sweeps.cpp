@@ -19,6 +19,8 @@ constexpr double kSmoothOverRelaxation = 1.7;
 constexpr double kSmoothSlop = 0.005;
 /// A contact is calm if the first sweep changes it by less than gravity does in this share of a substep.
 constexpr double kCalm = 1;
+/// Likewise where masses are uneven: docs/decisions/0064-uneven-masses-in-sweeps.md.
+constexpr double kCalmOfUnevenMasses = 0.1;
 
 // ns a contact on one thread, for the executor: docs/decisions/0012-threads-of-soft.md.
 constexpr double kNanosecondsToSweep = 2;
@@ -31,18 +33,20 @@ void sweep_pairs(ContactRows<Real>& pairs, std::size_t group,
     using Blocks = typename ContactSweeps<Real>::Blocks;
     const std::size_t first = pairs.first_place(group) / kContactBlock,
                       last = pairs.first_place(group + 1) / kContactBlock;
-    const typename ContactRows<Real>::Run* run = pairs.run.data() + first;
+    const std::span<const typename ContactRows<Real>::Run> runs =
+        sweep.of_runs ? sweep.of_runs->of_group(group)
+                      : std::span(pairs.run.data() + first, pairs.run_count[group]);
     std::uint8_t* needs_second_sweep = pairs.needs_second_sweep.data();
     if (sweep.blocks == Blocks::all_and_mark)
         std::fill(needs_second_sweep + first, needs_second_sweep + last, std::uint8_t{0});
     if (sweep.blocks != Blocks::restless) {
-        for (std::size_t i = 0; i < pairs.run_count[group]; ++i)
-            sweep.pair_kernel(on_pairs, kHalfBlock * run[i].first, kHalfBlock * run[i].last);
+        for (const auto& run : runs)
+            sweep.pair_kernel(on_pairs, kHalfBlock * run.first, kHalfBlock * run.last);
         return;
     }
-    for (std::size_t i = 0; i < pairs.run_count[group]; ++i) {
-        const std::size_t end = kHalfBlock * run[i].last;
-        for (std::size_t at = kHalfBlock * run[i].first; at < end; at += kContactBlock) {
+    for (const auto& run : runs) {
+        const std::size_t end = kHalfBlock * run.last;
+        for (std::size_t at = kHalfBlock * run.first; at < end; at += kContactBlock) {
             const std::size_t begin = at;
             while (at < end && needs_second_sweep[at / kContactBlock]) at += kContactBlock;
             if (at > begin) sweep.pair_kernel(on_pairs, begin, std::min(at, end));
@@ -72,8 +76,9 @@ SolveContacts<Real> ContactSweeps<Real>::arguments(const StepView<Real>& step, C
     k.elapsed = real(step.terms.elapsed);
     k.recovery = real(kRecovery), k.push = real(step.settings.largest_correction);
     const double fall = step.terms.fall_speed();
-    const bool is_smooth = step.settings.is_smooth_heap;
-    k.calm = real(fall > 0 && !is_smooth ? kCalm * fall : -1);
+    const bool is_smooth = step.settings.is_smooth_heap, are_uneven = step.settings.has_uneven_sweeps;
+    const bool may_be_calm = fall > 0 && (are_uneven || !is_smooth);
+    k.calm = real(may_be_calm ? (are_uneven ? kCalmOfUnevenMasses : kCalm) * fall : -1);
     k.slop = real(is_smooth ? kSmoothSlop * step.settings.radius : 0);
     const bool has_next = step.settings.iterations > 1;  // which takes back what was too much
     k.over_relaxation = has_next ? real(kOverRelaxation) : Real(1);
@@ -86,7 +91,8 @@ template <class Real>
 auto ContactSweeps<Real>::next(const StepView<Real>& step, Blocks blocks, int times) -> std::array<Sweep, 2> {
     const ContactKernels<Real>& kernels = *step.loops.contacts;
     const int relaxed = step.settings.is_smooth_heap ? std::max(times - 1, 0) : 0;
-    return {{{kernels.next_pairs, kernels.next_supports, blocks, relaxed, true},
+    const double farther = step.settings.has_uneven_sweeps ? kUnevenOverRelaxation : kSmoothOverRelaxation;
+    return {{{kernels.next_pairs, kernels.next_supports, blocks, relaxed, farther},
              {kernels.next_pairs, kernels.next_supports, blocks, times - relaxed}}};
 }
 
@@ -116,13 +122,14 @@ void ContactSweeps<Real>::run(const StepView<Real>& step, std::span<const Sweep>
     using Kind = typename Part::Kind;
     list_parts(sweeps, step.graph);
     const TaskGroups& groups = step.graph.groups;
-    SolveContacts<Real> relaxed = on_pairs;
-    relaxed.next_over_relaxation = static_cast<Real>(kSmoothOverRelaxation);
     const auto part = [&](std::size_t phase, std::size_t task) {
         const Sweep& sweep = *parts_[phase].sweep;
         const Kind kind = parts_[phase].kind;
         const auto pair_group = [&](std::size_t group) {
-            sweep_pairs(step.graph.pairs, group, sweep, sweep.is_relaxed ? relaxed : on_pairs);
+            if (sweep.over_relaxation == 1) return sweep_pairs(step.graph.pairs, group, sweep, on_pairs);
+            SolveContacts<Real> k = on_pairs;
+            k.next_over_relaxation = static_cast<Real>(sweep.over_relaxation);
+            sweep_pairs(step.graph.pairs, group, sweep, k);
         };
         const auto support_group = [&](std::size_t group) {
             sweep_supports(step.graph.supports, step.supports, group, sweep, on_supports);

@@ -10,6 +10,21 @@
 
 namespace carom {
 
+/// Some of the runs of pairs of a step, those of a group together.
+template <class Real>
+struct PairRuns {
+    using Run = typename ContactRows<Real>::Run;
+    std::vector<Run> runs;
+    std::vector<std::size_t> first;  ///< [groups + 1]: group g has runs [first[g], first[g + 1])
+
+    std::span<const Run> of_group(std::size_t group) const {
+        return std::span(runs).subspan(first[group], first[group + 1] - first[group]);
+    }
+    std::size_t bytes() const {
+        return runs.capacity() * sizeof(Run) + first.capacity() * sizeof(std::size_t);
+    }
+};
+
 /// Sweeps over all contacts of a step: a kernel is run once over each pair and each support, always in the
 /// same order, on several threads if there are any.
 ///
@@ -19,13 +34,17 @@ namespace carom {
 template <class Real>
 class ContactSweeps {
   public:
+    /// Factor by which next sweeps go farther where masses are uneven: with more, light bodies rattle
+    /// (docs/decisions/0064-uneven-masses-in-sweeps.md).
+    static constexpr double kUnevenOverRelaxation = 1.4;
     /// Pairs that a sweep looks at: all; all, to mark the blocks that are not calm; those marked alone.
     enum class Blocks { all, all_and_mark, restless };
     struct Sweep {
         typename ContactKernels<Real>::Solve pair_kernel, support_kernel;
         Blocks blocks = Blocks::all;
-        int times = 1;            ///< that it is repeated, >= 0
-        bool is_relaxed = false;  ///< whether impulses of pairs without friction go farther than wanted
+        int times = 1;                            ///< that it is repeated, >= 0
+        double over_relaxation = 1;               ///< factor by which normal impulses of pairs go farther
+        const PairRuns<Real>* of_runs = nullptr;  ///< pairs that it keeps to; null: all that can touch
     };
 
     /// The sweeps after the first: all but the last are over-relaxed where contacts are smooth.

@@ -1,6 +1,7 @@
 #include "solvers/soft/contacts/uneven_contacts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "constraints/contact_law.hpp"
@@ -17,6 +18,11 @@ constexpr double kLittle = 0.02;
 /// Steps in which sweeps must leave little before contacts are solved locally again.
 constexpr int kPatience = 60;
 
+// Sweeps of many contacts of uneven masses, after those that all contacts get: over-relaxed ones, and the
+// last ones that are not. docs/decisions/0064-uneven-masses-in-sweeps.md has what else was tried.
+constexpr int kRelaxedSweeps = 9;
+constexpr int kLastSweeps = 2;
+
 std::size_t index(std::int32_t row) {
     return static_cast<std::size_t>(row);
 }
@@ -30,11 +36,42 @@ void store_impulses(ContactRows<Real>& rows, std::size_t i, const ContactImpulse
 
 }  // namespace
 
+template <class Real>
+void UnevenContacts<Real>::find(const ContactRows<Real>& pairs, const BodyMasses<Real>& masses,
+                                std::size_t rows) {
+    clear();
+    if (!masses.are_uneven()) return;
+    local_.find(pairs, masses.inverse_column(), rows);
+    if (masses.are_very_uneven() || !local_.has_many()) return;
+    blocks_.assign(pairs.is_live.size(), 0);
+    for (const std::uint32_t i : local_.found()) blocks_[i / kContactBlock] = 1;
+}
+
+template <class Real>
+void UnevenContacts<Real>::list_runs(const ContactRows<Real>& pairs) {
+    constexpr std::uint32_t kHalves = kContactBlock / kHalfBlock;
+    runs_.runs.clear(), runs_.first.assign(1, 0);
+    for (std::size_t group = 0; group < pairs.groups(); ++group) {
+        const auto* const run = pairs.run.data() + pairs.first_place(group) / kContactBlock;
+        for (std::size_t r = 0; r < pairs.run_count[group]; ++r)
+            for (std::uint32_t half = run[r].first; half < run[r].last; half += kHalves) {
+                if (!blocks_[half / kHalves]) continue;
+                const bool goes_on = runs_.runs.size() > runs_.first.back() && runs_.runs.back().last == half;
+                if (!goes_on) runs_.runs.push_back({half, half});
+                runs_.runs.back().last = std::min(half + kHalves, run[r].last);
+            }
+        runs_.first.push_back(runs_.runs.size());
+    }
+}
+
 /// Velocities without contacts are those of free flight: not where joints or shapes push bodies, too.
 template <class Real>
 void UnevenContacts<Real>::begin_step(const StepView<Real>& step, const WorldState<Real>& world,
                                       bool are_mixed) {
-    local_.begin_step(step.graph.pairs, step.supports);
+    if (are_swept())
+        local_.leave_step(), list_runs(step.graph.pairs);
+    else
+        local_.begin_step(step.graph.pairs, step.supports);
     is_listed_ = false;
     may_relax_ = are_mixed && world.joints.empty() && !world.bodies.has_shapes && step.terms.fall_speed() > 0;
     if (!may_relax_) steps_left_ = 0;
@@ -159,8 +196,25 @@ void UnevenContacts<Real>::part(const StepView<Real>& step, const SolveContacts<
 }
 
 template <class Real>
-void UnevenContacts<Real>::solve(const StepView<Real>& step, const SolveContacts<Real>& on_pairs,
-                                 const SolveContacts<Real>& on_supports) {
+void UnevenContacts<Real>::sweep(const StepView<Real>& step, ContactSweeps<Real>& sweeps,
+                                 bool is_last) const {
+    using Sweep = typename ContactSweeps<Real>::Sweep;
+    using Blocks = typename ContactSweeps<Real>::Blocks;
+    const ContactKernels<Real>& kernels = *step.loops.contacts;
+    Sweep relaxed{kernels.next_pairs, kernels.next_supports, is_last ? Blocks::all : Blocks::restless};
+    relaxed.of_runs = &runs_;
+    Sweep last = relaxed;
+    relaxed.times = kRelaxedSweeps, relaxed.over_relaxation = ContactSweeps<Real>::kUnevenOverRelaxation;
+    last.times = kLastSweeps;
+    const std::array<Sweep, 2> both{relaxed, last};
+    sweeps.run(step, both);
+}
+
+template <class Real>
+void UnevenContacts<Real>::solve(const StepView<Real>& step, ContactSweeps<Real>& sweeps, bool is_last) {
+    if (are_swept()) return sweep(step, sweeps, is_last);
+    const SolveContacts<Real> on_pairs = ContactSweeps<Real>::arguments(step, step.graph.pairs),
+                              on_supports = ContactSweeps<Real>::arguments(step, step.supports);
     const double fall = step.terms.fall_speed();
     if (!is_listed_) {
         const double left = local_.solve(on_pairs, on_supports, fall);

@@ -4,35 +4,39 @@
 
 #include "solvers/shared/contact_relaxation.hpp"
 #include "solvers/shared/local_solve.hpp"
+#include "solvers/soft/contacts/contact_sweeps.hpp"
 #include "solvers/soft/step_view.hpp"
+#include "solvers/substeps/body_masses.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {
 
 /// What the sweeps of a substep leave where masses are uneven.
 ///
-/// Few contacts around light bodies are solved for their impulses (solvers/shared/local_solve.hpp). Where
-/// that leaves much, since heavy and light bodies are mixed in a pile, all contacts of the world are relaxed
-/// for the velocities of bodies (solvers/shared/contact_relaxation.hpp) from then on, until the sweeps alone
-/// have left little for a while. What overlaps then is parted by equal shares whatever the masses: a light
-/// body between two heavy ones cannot make room. docs/decisions/0032-piles-of-uneven-masses.md.
+/// Few contacts around light bodies are solved for their impulses (solvers/shared/local_solve.hpp). Many are
+/// swept again where masses differ by up to a hundred times: docs/decisions/0064-uneven-masses-in-sweeps.md.
+/// Where masses differ by more and the impulses are still off, since heavy and light bodies are mixed in a
+/// pile, all contacts of the world are relaxed for the velocities of bodies
+/// (solvers/shared/contact_relaxation.hpp) from then on, until the sweeps alone have left little for a while.
+/// What overlaps then is parted by equal shares whatever the masses: a light body between two heavy ones
+/// cannot make room. docs/decisions/0032-piles-of-uneven-masses.md.
 template <class Real>
 class UnevenContacts {
   public:
     /// Pairs are new. Cost: O(pairs) where masses are uneven.
-    void find(const ContactRows<Real>& pairs, const Column<Real>& inverse_mass, std::size_t rows) {
-        local_.find(pairs, inverse_mass, rows);
-    }
-    void clear() { local_.clear(); }
+    void find(const ContactRows<Real>& pairs, const BodyMasses<Real>& masses, std::size_t rows);
+    void clear() { local_.clear(), blocks_.clear(); }
+    /// Whether contacts are swept again.
+    bool are_swept() const { return !blocks_.empty(); }
     /// To be called when the contacts of a step are found.
     /// @param are_mixed  whether bodies that differ by more than a hundred times are mixed
     void begin_step(const StepView<Real>& step, const WorldState<Real>& world, bool are_mixed);
     /// After the sweeps of a substep. Cost: O(contacts), times a few dozen while piles of uneven masses move.
-    void solve(const StepView<Real>& step, const SolveContacts<Real>& on_pairs,
-               const SolveContacts<Real>& on_supports);
+    /// @param is_last  in the last substep contacts at rest are swept again as well
+    void solve(const StepView<Real>& step, ContactSweeps<Real>& sweeps, bool is_last);
 
     std::size_t bytes() const {
-        return local_.bytes() + smooth_.bytes() + rough_.bytes() +
+        return local_.bytes() + blocks_.capacity() + runs_.bytes() + smooth_.bytes() + rough_.bytes() +
                contacts_.capacity() * sizeof(LocalContact) +
                (number_of_.capacity() + rows_.capacity()) * sizeof(std::int32_t);
     }
@@ -45,6 +49,8 @@ class UnevenContacts {
   private:
     using Impulses = ContactImpulses<double>;
 
+    void list_runs(const ContactRows<Real>& pairs);
+    void sweep(const StepView<Real>& step, ContactSweeps<Real>& sweeps, bool is_last) const;
     void list(const StepView<Real>& step);
     void load(const StepView<Real>& step, const SolveContacts<Real>& k, LocalContact& contact) const;
     double residual(const StepView<Real>& step) const;
@@ -53,6 +59,8 @@ class UnevenContacts {
     void part(const StepView<Real>& step, const SolveContacts<Real>& k, const LocalContact& contact) const;
 
     LocalSolve<Real> local_;
+    std::vector<std::uint8_t> blocks_;  // of pairs: which are swept again; empty: none
+    PairRuns<Real> runs_;               // of these blocks, as far as they can touch in this step
     ContactRelaxation<2> smooth_;
     ContactRelaxation<3> rough_;
     bool may_relax_ = false;              // in this step
