@@ -35,28 +35,30 @@ std::size_t index(std::int32_t body) {
     return static_cast<std::size_t>(body);
 }
 
-/// x <- A⁻¹ x, by Cholesky's factor.
+/// Adds k (x, y)ᵀ (x, y) to the first rows of a matrix.
+template <std::size_t kNumbers>
+void add_square(std::array<double, kNumbers>& a, double x, double y, double k) {
+    constexpr std::size_t kSecond = kNumbers == 9 ? 3 : 2;  // row
+    a[0] += k * x * x, a[kSecond] += k * x * y, a[kSecond + 1] += k * y * y;
+}
+
+/// x <- A⁻¹ x, with A = L D Lᵀ.
 template <int kSize>
-void solve_small(const std::array<double, kSize * kSize>& a, std::array<double, kSize>& x) {
-    std::array<double, kSize * kSize> l{};
+void solve_small(std::array<double, kSize * kSize>& a, std::array<double, kSize>& x) {
+    std::array<double, kSize> inverse;  // of D
     for (std::size_t j = 0; j < kSize; ++j) {
-        double pivot = a[kSize * j + j];
-        for (std::size_t k = 0; k < j; ++k) pivot -= l[kSize * j + k] * l[kSize * j + k];
         // What round-off has eaten does not move.
-        l[kSize * j + j] = pivot > 0 ? std::sqrt(pivot) : HUGE_VAL;
+        const double pivot = a[kSize * j + j];
+        inverse[j] = pivot > 0 ? 1 / pivot : 0;
         for (std::size_t i = j + 1; i < kSize; ++i) {
-            double sum = a[kSize * i + j];
-            for (std::size_t k = 0; k < j; ++k) sum -= l[kSize * i + k] * l[kSize * j + k];
-            l[kSize * i + j] = sum / l[kSize * j + j];
+            const double l = a[kSize * i + j] * inverse[j];
+            for (std::size_t k = j + 1; k <= i; ++k) a[kSize * i + k] -= l * a[kSize * k + j];
+            x[i] -= l * x[j];
         }
     }
-    for (std::size_t i = 0; i < kSize; ++i) {
-        for (std::size_t k = 0; k < i; ++k) x[i] -= l[kSize * i + k] * x[k];
-        x[i] /= l[kSize * i + i];
-    }
     for (std::size_t i = kSize; i-- > 0;) {
-        for (std::size_t k = i + 1; k < kSize; ++k) x[i] -= l[kSize * k + i] * x[k];
-        x[i] /= l[kSize * i + i];
+        for (std::size_t k = i + 1; k < kSize; ++k) x[i] -= a[kSize * k + i] * x[k];
+        x[i] *= inverse[i];
     }
 }
 
@@ -122,15 +124,11 @@ void ContactRelaxation<kSize>::describe(std::span<const LocalContact> contacts, 
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         const LocalContact& c = contacts[i];
         Law law{};
-        const double nx = c.terms.nx, ny = c.terms.ny;
         law.a = c.a, law.b = c.b, law.floor = c.terms.floor;
-        law.of_a[0][0] = -nx, law.of_a[0][1] = -ny, law.of_b[0][0] = nx, law.of_b[0][1] = ny;
+        law.nx = c.terms.nx, law.ny = c.terms.ny, law.of_a = c.terms.of_a;
         law.surface[0] = c.b < 0 ? c.surface_normal : 0, law.carried[0] = c.impulses.normal;
         if constexpr (kIsRough) {
-            const double s = c.terms.of_a;
             law.friction = c.terms.friction, law.rolling = c.terms.rolling;
-            law.of_a[1] = {ny, -nx, -1}, law.of_b[1] = {-ny, nx, -1};
-            law.of_a[2] = {0, 0, -s}, law.of_b[2] = {0, 0, 1 - s};
             if (c.b < 0) law.surface[1] = c.surface_tangent, law.surface[2] = c.surface_rolling;
             law.carried[1] = c.impulses.tangent, law.carried[2] = c.impulses.rolling;
         }
@@ -142,20 +140,33 @@ void ContactRelaxation<kSize>::describe(std::span<const LocalContact> contacts, 
     bound_loads();
 }
 
+/// What a velocity of one of its bodies is of those of a contact: of v_n, v_t and v_r as
+/// constraints/contact_law.hpp has them.
+template <int kSize>
+auto ContactRelaxation<kSize>::part_of_velocity(const Law& law, bool is_b, const Velocity& velocity) -> Rows {
+    const double sign = is_b ? 1 : -1, nx = sign * law.nx, ny = sign * law.ny;
+    const double along = velocity[0] * nx + velocity[1] * ny;
+    if constexpr (kIsRough)
+        return {along, velocity[1] * nx - velocity[0] * ny - velocity[2],
+                (is_b ? 1 - law.of_a : -law.of_a) * velocity[2]};
+    else
+        return {along};
+}
+
 template <int kSize>
 auto ContactRelaxation<kSize>::velocity_of(const Law& law) const -> Rows {
     Rows velocity = law.surface;
-    for (std::size_t r = 0; r < kRows; ++r)
-        for (std::size_t k = 0; k < kSize; ++k) {
-            velocity[r] += law.of_a[r][k] * velocity_[index(law.a)][k];
-            if (law.b >= 0) velocity[r] += law.of_b[r][k] * velocity_[index(law.b)][k];
-        }
+    const Rows by_a = part_of_velocity(law, false, velocity_[index(law.a)]);
+    for (std::size_t r = 0; r < kRows; ++r) velocity[r] += by_a[r];
+    if (law.b < 0) return velocity;
+    const Rows by_b = part_of_velocity(law, true, velocity_[index(law.b)]);
+    for (std::size_t r = 0; r < kRows; ++r) velocity[r] += by_b[r];
     return velocity;
 }
 
 template <int kSize>
 double ContactRelaxation<kSize>::impulse_of(const Law& law, std::size_t row, double velocity) {
-    if (row == 0) return std::fmax(0.0, law.carried[0] + law.stiffness * (law.floor - velocity));
+    if (row == 0) return std::max(0.0, law.carried[0] + law.stiffness * (law.floor - velocity));
     return law.share[row] * (law.carried[row] - law.stiffness * velocity);
 }
 
@@ -225,32 +236,52 @@ double ContactRelaxation<kSize>::gain() const {
 /// Brings a body to where the function is least for it alone. @return whether that changed its velocity
 template <int kSize>
 bool ContactRelaxation<kSize>::relax(std::size_t body) {
+    const std::size_t first = first_[body], count = first_[body + 1] - first;
+    const auto law_of = [&](std::size_t e) -> const Law& { return laws_[of_bodies_[first + e]]; };
+    if (by_others_.size() < count) by_others_.resize(count);
+    for (std::size_t e = 0; e < count; ++e) {
+        const Law& law = law_of(e);
+        const bool is_b = index(law.a) != body;
+        by_others_[e] = law.surface;
+        const std::int32_t other = is_b ? law.a : law.b;
+        if (other < 0) continue;
+        const Rows part = part_of_velocity(law, !is_b, velocity_[index(other)]);
+        for (std::size_t r = 0; r < kRows; ++r) by_others_[e][r] += part[r];
+    }
     bool has_moved = false;
     for (int step = 0; step < kSteps; ++step) {
         Velocity gradient;
-        std::array<double, kSize * kSize> second{};
+        Matrix second{};
         for (std::size_t k = 0; k < kSize; ++k) {
             gradient[k] = mass_[body][k] * (velocity_[body][k] - free_[body][k]);
             second[(kSize + 1) * k] = mass_[body][k];
         }
-        for (std::size_t e = first_[body]; e < first_[body + 1]; ++e) {
-            const Law& law = laws_[of_bodies_[e]];
-            const Directions& side = index(law.a) == body ? law.of_a : law.of_b;
-            const Rows velocity = velocity_of(law);
-            for (std::size_t r = 0; r < kRows; ++r) {
-                const double impulse = impulse_of(law, r, velocity[r]);
-                if (impulse == 0) continue;
-                const double stiffness = (r == 0 ? 1 : law.share[r]) * law.stiffness;
-                for (std::size_t m = 0; m < kSize; ++m) {
-                    gradient[m] -= side[r][m] * impulse;
-                    for (std::size_t n = 0; n <= m; ++n)
-                        second[kSize * m + n] += stiffness * side[r][m] * side[r][n];
-                }
+        for (std::size_t e = 0; e < count; ++e) {
+            const Law& law = law_of(e);
+            const bool is_b = index(law.a) != body;
+            const Rows part = part_of_velocity(law, is_b, velocity_[body]);
+            const double sign = is_b ? 1 : -1, nx = sign * law.nx, ny = sign * law.ny;
+            const double normal = impulse_of(law, 0, by_others_[e][0] + part[0]);
+            if (normal > 0) {
+                gradient[0] -= nx * normal, gradient[1] -= ny * normal;
+                add_square(second, nx, ny, law.stiffness);
+            }
+            if constexpr (kIsRough) {
+                // Along the tangent (-ny, nx, -1), and round the rim alone.
+                const double tangent = impulse_of(law, 1, by_others_[e][1] + part[1]);
+                const double stiffness = law.share[1] * law.stiffness;
+                gradient[0] += ny * tangent, gradient[1] -= nx * tangent, gradient[2] += tangent;
+                add_square(second, -ny, nx, stiffness);
+                second[6] += stiffness * ny, second[7] -= stiffness * nx, second[8] += stiffness;
+                const double share = is_b ? 1 - law.of_a : -law.of_a;
+                const double rolling = impulse_of(law, 2, by_others_[e][2] + part[2]);
+                gradient[2] -= share * rolling;
+                second[8] += law.share[2] * law.stiffness * share * share;
             }
         }
         double largest = 0;
         for (std::size_t k = 0; k < kSize; ++k)
-            largest = std::fmax(largest, std::fabs(gradient[k]) / mass_[body][k]);
+            largest = std::max(largest, std::fabs(gradient[k]) / mass_[body][k]);
         if (!(largest > kAccuracy * fall_)) break;
         has_moved = true;
         solve_small<kSize>(second, gradient);
@@ -356,7 +387,7 @@ template <int kSize>
 std::size_t ContactRelaxation<kSize>::bytes() const {
     return laws_.capacity() * sizeof(Law) + is_due_.capacity() +
            (first_.capacity() + of_bodies_.capacity()) * sizeof(std::uint32_t) + touching_.bytes() +
-           most_.capacity() * sizeof(double) +
+           most_.capacity() * sizeof(double) + by_others_.capacity() * sizeof(Rows) +
            (mass_.capacity() + start_.capacity() + free_.capacity() + velocity_.capacity() +
             swept_.capacity()) *
                sizeof(Velocity) +

@@ -54,14 +54,15 @@ class ContactRelaxation {
     static constexpr bool kIsRough = kSize == 3;
     static constexpr std::size_t kRows = kIsRough ? 3 : 1;  // of a contact: normal, tangent, rolling
     using Rows = std::array<double, kRows>;
-    using Directions = std::array<Velocity, kRows>;
+    using Matrix = std::array<double, kSize * kSize>;  // the lower triangle is used
 
     struct Law {
         std::int32_t a, b;
-        Directions of_a, of_b;  // how velocities of bodies enter those of the contact
-        Rows surface;           // m/s, of what does not move
-        double floor;           // m/s
-        double stiffness;       // kg
+        double nx, ny;
+        double of_a;       // the share s of body a's rim speed in the rolling velocity
+        Rows surface;      // m/s, of what does not move
+        double floor;      // m/s
+        double stiffness;  // kg
         double friction, rolling;
         Rows carried;  // N s, λ₀
         Rows share;    // of tangential and rolling impulses that the law leaves
@@ -69,6 +70,7 @@ class ContactRelaxation {
 
     void bound_loads();
     void describe(std::span<const LocalContact> contacts, double fall);
+    static Rows part_of_velocity(const Law& law, bool is_b, const Velocity& velocity);
     Rows velocity_of(const Law& law) const;
     static double impulse_of(const Law& law, std::size_t row, double velocity);
     Rows impulses_of(const Law& law) const;
@@ -87,6 +89,7 @@ class ContactRelaxation {
     std::vector<Law> laws_;                         // of the contacts
     std::vector<std::uint32_t> first_, of_bodies_;  // contacts of each body
     std::vector<std::uint8_t> is_due_;              // bodies to be looked at
+    std::vector<Rows> by_others_;                   // m/s, of the contacts of a body: by all but that body
     std::vector<Velocity> mass_;                    // kg
     std::vector<Velocity> start_, free_, velocity_, swept_;  // m/s
     std::vector<Rows> impulses_;                             // N s, of the contacts
