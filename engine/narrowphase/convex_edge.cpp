@@ -10,7 +10,8 @@ namespace {
 
 /// Half the length of a wall [m]: beyond any body, and its square is a number.
 constexpr double kFar = 1e15;
-/// Edges whose normals are closer than this, and whose lines are in shares of the body's inradius, are one.
+/// Edges whose normals are closer than this [rad], and whose lines are in shares of the body's inradius, are
+/// one.
 constexpr double kSameLine = 1e-3;
 /// Sine of the angle between normal and edge below which the body's centre says on which side it is.
 constexpr double kEndOn = 0.1;
@@ -107,10 +108,12 @@ int crosses(const Edge& other, Vec2 centre, const Edge& edge, Vec2 p) {
     return place > 0 && place < length_squared(way) ? 1 : -1;
 }
 
-/// Positive where the chain turns to the left from one edge to the next: towards a body on that side.
+/// Sine of the angle by which the chain turns from one edge to the next, positive to the left: towards a body
+/// on that side.
 double bend(const Edge& edge, const Edge& neighbour, bool is_before) {
     const Vec2 along = edge.b - edge.a, way = neighbour.b - neighbour.a;
-    return is_before ? cross(way, along) : cross(along, way);
+    const double sine = cross(along, way) / std::sqrt(length_squared(along) * length_squared(way));
+    return is_before ? -sine : sine;
 }
 
 /// Whether all that a body touches of an edge lies behind the edge before or after it, or is the corner of a
@@ -124,8 +127,9 @@ bool is_behind_neighbour(const SeenEdge& seen, std::span<const Edge> edges, cons
         const int first = crosses(other, seen.body.centre, seen.edge, place_of(m, m.lever_b1));
         const int second = crosses(other, seen.body.centre, seen.edge, place_of(m, m.lever_b2));
         if (first + second > 0) return true;
-        if (first == 0 && second == 0 && side * bend(seen.edge, other, number == seen.edge.previous) > 0)
-            return true;
+        // Of edges in one line neither has anything behind it; round-off may say that they are bent.
+        const double towards = side * bend(seen.edge, other, number == seen.edge.previous);
+        if (first == 0 && second == 0 && towards > kSameLine) return true;
     }
     return false;
 }

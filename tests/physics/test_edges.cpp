@@ -119,6 +119,48 @@ TEST_SUITE("physics/edges") {
               doctest::Approx(2 * friction * kGravity * std::cos(slope) / kRadius).epsilon(1e-5));
     }
 
+    TEST_CASE_TEMPLATE("A10: boxes, capsules and polygons slide down a straight chain as on a plane", Real,
+                       float, double) {
+        // Whether joints of a tilted line are bent is a matter of round-off.
+        const Polygon triangle{{{-0.5, -0.2}, {0.5, -0.2}, {0, 0.4}}};
+        const struct {
+            Shape shape;
+            double below;  // m, from the centre to what lies on the chain
+        } shapes[] = {{Box{1, 0.6}, 0.3}, {Capsule{0.5, 0.3}, 0.3}, {triangle, 0.2}};
+        for (const double slope : {0.12, 0.6, 0.9})  // height over way
+            for (const double spacing : {0.3, 1.0, 1.7}) {
+                CAPTURE(slope);
+                CAPTURE(spacing);
+                const double angle = std::atan(slope), friction = 0.5 * slope;
+                Chain chain;
+                for (double x = -2; x < 40; x += spacing) chain.points.push_back({x, -slope * x});
+                Scene scene;
+                scene.gravity = {0, -kGravity};
+                scene.add(line(chain, friction));
+                for (int i = 0; i < 12; ++i) {
+                    const auto& [shape, below] = shapes[i % 3];
+                    const double along = 0.37 * i;  // m
+                    Body body{.shape = shape, .angle = -angle, .material = {.friction = friction}};
+                    body.group = -1;
+                    body.position = {along * std::cos(angle) + below * std::sin(angle),
+                                     below * std::cos(angle) - along * std::sin(angle)};
+                    scene.add(body);
+                }
+                BasicWorld<Real> world(scene);
+                for (int i = 0; i < 120; ++i) world.step(kStep);
+                CHECK(world.overlaps().max < 0.02);
+                const double acceleration = kGravity * (std::sin(angle) - friction * std::cos(angle));
+                for (std::uint32_t i = 0; i < 12; ++i) {
+                    CAPTURE(i);
+                    const BodyState state = world.state({i + 1, 0});
+                    const double along =
+                        state.position.x * std::cos(angle) - state.position.y * std::sin(angle);
+                    CHECK(along - 0.37 * i == doctest::Approx(0.5 * acceleration * 4).epsilon(0.01));
+                    CHECK(state.angle == doctest::Approx(-angle).epsilon(1e-3));
+                }
+            }
+    }
+
     TEST_CASE_TEMPLATE("a disc that rolls over the joints of a level chain keeps its velocity", Real, float,
                        double) {
         for (const double spacing : {0.1, 1.0, 5.0})
