@@ -114,6 +114,8 @@ class PathSolver {
     /// Keeps the impulses for the next step.
     void end(const Executor& executor);
 
+    /// Whether all contacts of the step are along one path.
+    bool is_single_path() const { return cut().paths() <= 1; }
     /// Whether the loops over the contacts of the last step are long enough for more than one thread.
     bool has_long_loops() const;
 

@@ -23,6 +23,15 @@ constexpr int kPatience = 60;
 constexpr int kRelaxedSweeps = 9;
 constexpr int kLastSweeps = 2;
 
+/// Turns over contacts of shapes in a substep, at most: where masses differ by up to a hundred times, and by
+/// more. The same decision has what fewer leave.
+constexpr int kTurns = 15;
+constexpr int kTurnsOfVeryUneven = 31;
+/// They end when a sweep changes no velocity by more than this share of what gravity adds in a substep, and
+/// after a few where the change has not become less.
+constexpr double kSettled = 0.2;
+constexpr int kFewTurns = 7;
+
 std::size_t index(std::int32_t row) {
     return static_cast<std::size_t>(row);
 }
@@ -72,7 +81,7 @@ void UnevenContacts<Real>::begin_step(const StepView<Real>& step, const WorldSta
         local_.leave_step(), list_runs(step.graph.pairs);
     else
         local_.begin_step(step.graph.pairs, step.supports);
-    is_listed_ = false;
+    is_listed_ = false, turns_of_shapes_ = 0;
     may_relax_ = are_mixed && world.joints.empty() && !world.bodies.has_shapes && step.terms.fall_speed() > 0;
     if (!may_relax_) steps_left_ = 0;
     if (steps_left_ == 0) return;
@@ -208,6 +217,55 @@ void UnevenContacts<Real>::sweep(const StepView<Real>& step, ContactSweeps<Real>
     last.times = kLastSweeps;
     const std::array<Sweep, 2> both{relaxed, last};
     sweeps.run(step, both);
+}
+
+template <class Real>
+void UnevenContacts<Real>::begin_shapes(const PathSolver<Real>& paths, const BodyMasses<Real>& masses) {
+    turns_of_shapes_ = 0;
+    // A single path is solved exactly: sweeps would only add their round-off, in units of the heaviest body.
+    if (!masses.are_uneven() || paths.is_single_path()) return;
+    const Manifolds<Real>& manifolds = paths.manifolds;
+    const Column<Real>& inverse = masses.inverse_column();
+    const auto is_uneven = [&](std::int32_t contact) {
+        if (contact < 0) return false;
+        const ManifoldList<Real>& list = manifolds.list_of(contact);
+        const std::size_t i = Manifolds<Real>::place_of(contact);
+        const Partner partner(list.b[i]);
+        if (!partner.is_body()) return false;
+        const Real of_a = std::fabs(inverse[index(list.a[i])]),
+                   of_b = std::fabs(inverse[index(partner.row())]);
+        const auto uneven = static_cast<Real>(LocalSolve<Real>::kUneven);
+        return of_a > 0 && of_b > 0 && (of_a > uneven * of_b || of_b > uneven * of_a);
+    };
+    const std::span<const std::int32_t> live = manifolds.live();
+    if (std::any_of(live.begin(), live.end(), is_uneven))
+        turns_of_shapes_ = masses.are_very_uneven() ? kTurnsOfVeryUneven : kTurns;
+}
+
+/// A path hands on the load of a heavy body along it whatever the masses; what a light body owes to the other
+/// paths through it takes a turn a body.
+template <class Real>
+void UnevenContacts<Real>::settle(const StepView<Real>& step, ContactSweeps<Real>& sweeps,
+                                  PathSolver<Real>& paths) {
+    const auto next = ContactSweeps<Real>::next(step, ContactSweeps<Real>::Blocks::all, 1);
+    const bool has_discs = step.graph.pairs.contacts() > 0;
+    const auto settled = static_cast<Real>(kSettled * step.terms.fall_speed());
+    Real first = 0;  // change [m/s]
+    bool is_last = turns_of_shapes_ == 0;
+    for (int turn = 1; !is_last; ++turn) {
+        Column<Real>& velocity = step.records.velocity;
+        before_.resize_for_overwrite(velocity.size());
+        std::copy(velocity.begin(), velocity.end(), before_.begin());
+        paths.solve(step.terms, step.records, step.loops, 0, true);
+        if (has_discs) sweeps.run(step, next);
+        Real change = 0;
+        for (std::size_t i = 0; i < velocity.size(); ++i)
+            change = std::max(change, std::abs(velocity[i] - before_[i]));
+        if (!(change > settled)) return;
+        if (turn == 1) first = change;
+        is_last = turn == turns_of_shapes_ || (turn == kFewTurns && change > first);
+        paths.solve(step.terms, step.records, step.loops, 1, false);
+    }
 }
 
 template <class Real>

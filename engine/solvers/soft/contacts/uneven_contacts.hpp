@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "solvers/paths/path_solver.hpp"
 #include "solvers/shared/contact_relaxation.hpp"
 #include "solvers/shared/local_solve.hpp"
 #include "solvers/soft/contacts/contact_sweeps.hpp"
@@ -15,6 +16,7 @@ namespace carom {
 ///
 /// Few contacts around light bodies are solved for their impulses (solvers/shared/local_solve.hpp). Many are
 /// swept again where masses differ by up to a hundred times: docs/decisions/0064-uneven-masses-in-sweeps.md.
+/// Contacts of shapes are solved by turns with all others until little is left.
 /// Where masses differ by more and the impulses are still off, since heavy and light bodies are mixed in a
 /// pile, all contacts of the world are relaxed for the velocities of bodies
 /// (solvers/shared/contact_relaxation.hpp) from then on, until the sweeps alone have left little for a while.
@@ -31,13 +33,20 @@ class UnevenContacts {
     /// To be called when the contacts of a step are found.
     /// @param are_mixed  whether bodies that differ by more than a hundred times are mixed
     void begin_step(const StepView<Real>& step, const WorldState<Real>& world, bool are_mixed);
+    /// To be called when the contacts of shapes of a step are found. Cost: O(contacts of shapes) where masses
+    /// are uneven.
+    void begin_shapes(const PathSolver<Real>& paths, const BodyMasses<Real>& masses);
+    /// Solves contacts of shapes and of discs by turns after all of them were solved in a substep, until a
+    /// sweep over them changes little: nothing where no two shapes of uneven masses touch. Cost: O(contacts),
+    /// at most `kTurns` times that of a substep.
+    void settle(const StepView<Real>& step, ContactSweeps<Real>& sweeps, PathSolver<Real>& paths);
     /// After the sweeps of a substep. Cost: O(contacts), times a few dozen while piles of uneven masses move.
     /// @param is_last  in the last substep contacts at rest are swept again as well
     void solve(const StepView<Real>& step, ContactSweeps<Real>& sweeps, bool is_last);
 
     std::size_t bytes() const {
         return local_.bytes() + blocks_.capacity() + runs_.bytes() + smooth_.bytes() + rough_.bytes() +
-               contacts_.capacity() * sizeof(LocalContact) +
+               contacts_.capacity() * sizeof(LocalContact) + before_.bytes() +
                (number_of_.capacity() + rows_.capacity()) * sizeof(std::int32_t);
     }
 
@@ -63,6 +72,8 @@ class UnevenContacts {
     PairRuns<Real> runs_;               // of these blocks, as far as they can touch in this step
     ContactRelaxation<2> smooth_;
     ContactRelaxation<3> rough_;
+    int turns_of_shapes_ = 0;             // in a substep, at most; 0: none of uneven masses touch
+    Column<Real> before_;                 // velocity records before a sweep
     bool may_relax_ = false;              // in this step
     bool is_listed_ = false;              // likewise
     int steps_left_ = 0;                  // for which all contacts are looked at
