@@ -313,6 +313,37 @@ TEST_SUITE("physics: joints") {
         CHECK(world.state(b).angle == doctest::Approx(-1.2).epsilon(1e-4));
     }
 
+    TEST_CASE_TEMPLATE("what a motor drives against its limit stands there", Real, float, double) {
+        for (const double gravity : {0.0, -10.0})
+            for (const double force : {5.0, 50.0, 500.0})  // N, and N m
+                for (const double speed : {0.25, -2.0}) {
+                    CAPTURE(gravity);
+                    CAPTURE(force);
+                    CAPTURE(speed);
+                    const double end = speed > 0 ? 1 : -0.5;
+                    Scene scene;
+                    scene.gravity = {0, gravity};
+                    const BodyId slider = scene.add(bob({0, 0}, 4, 0.3)),
+                                 arm = scene.add(bob({8, 0}, 4, 0.3));
+                    scene.add(Joint{.b = slider,
+                                    .kind = PrismaticJoint{.axis = {1, 0},
+                                                           .lower = -0.5,
+                                                           .upper = 1,
+                                                           .motor_speed = speed,
+                                                           .max_motor_force = force}});
+                    scene.add(Joint{
+                        .b = arm,
+                        .kind = RevoluteJoint{
+                            .lower = -0.5, .upper = 1, .motor_speed = speed, .max_motor_torque = force}});
+                    BasicWorld<Real> world(scene);
+                    for (int i = 0; i < 600; ++i) world.step(kStep);
+                    CHECK(world.state(slider).position.x == doctest::Approx(end).epsilon(1e-5));
+                    CHECK(std::fabs(world.state(slider).velocity.x) < 1e-5);
+                    CHECK(world.state(arm).angle == doctest::Approx(end).epsilon(1e-5));
+                    CHECK(std::fabs(world.state(arm).angular_velocity) < 1e-5);
+                }
+    }
+
     TEST_CASE("a slider goes down its axis with g sin, up to its end") {
         Scene scene;
         scene.gravity = {0, -10};

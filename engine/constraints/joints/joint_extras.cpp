@@ -140,6 +140,29 @@ double JointSystem::change_of_row(const Extra& extra, const std::vector<Vector>&
     return sum;
 }
 
+/// A motor and a limit of its joint are one row, which cannot have the velocities that both ask for. Where
+/// the limit is nearer than where the motor drives to, the limit decides and the motor pushes with all it
+/// has; else the motor decides alone.
+void JointSystem::part_motors_from_limits() {
+    const std::size_t count = extras_.size();
+    const auto law_of = [&](const Extra& extra) {
+        return rows_[static_cast<std::size_t>(extra.joint)].row[static_cast<std::size_t>(extra.row)].law;
+    };
+    for (std::size_t motor = 0; motor < count; ++motor) {
+        if (law_of(extras_[motor]) != RowLaw::motor) continue;
+        for (std::size_t limit = motor + 1; limit < count; ++limit) {
+            if (extras_[limit].joint != extras_[motor].joint) break;
+            if (state_[motor] != End::none || state_[limit] != End::none) continue;
+            const double sign = matrix_[motor * count + limit] < 0 ? -1 : 1;
+            const bool is_beyond = sign * extra_rhs_[motor] < extra_rhs_[limit];
+            if (is_beyond)
+                state_[motor] = sign < 0 ? End::high : End::low;
+            else
+                state_[limit] = End::low;
+        }
+    }
+}
+
 /// The impulses x of the extra rows, low <= x <= high, where their residual A x - b is zero between the ends,
 /// >= 0 at the low and <= 0 at the high one: block principal pivoting (Júdice & Pires 1994), one row at a
 /// time once blocks have not come to an end. Projected sweeps over this matrix do not converge.
@@ -148,6 +171,7 @@ void JointSystem::solve_bounded() {
     const std::size_t count = extras_.size();
     solution_.assign(count, 0);
     for (int round = 0; round < kMostRounds; ++round) {
+        part_motors_from_limits();
         solve_free();
         bool any = false;
         for (std::size_t i = 0; i < count && !(any && round >= kBlockRounds); ++i) {

@@ -199,6 +199,7 @@ class JointSystem {
     void solve_all();
     static constexpr double kUnbounded = 1e301;  // bound of an impulse: none
 
+    void part_motors_from_limits();
     void find_displacements(double share);
     double find_small_displacements(double share, double most, double length);
     double displacement_of(const Link& link, double length) const;
