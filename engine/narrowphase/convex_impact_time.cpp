@@ -16,11 +16,13 @@ PlacedConvex at_time(const MovingConvex& body, double time) {
     return {body.shape, body.centre + time * body.velocity, rotation_by(body.angle + time * body.spin)};
 }
 
-ConvexImpact impact_time(const MovingConvex& a, const MovingConvex& b, double dt, double target) {
+ConvexImpact impact_time(const MovingConvex& a, const MovingConvex& b, double dt, double target,
+                         double depth) {
     const double turning = rim_speed(a) + rim_speed(b);
     double time = 0;
     for (int i = 0;; ++i) {
-        const Separation apart = separation_of(at_time(a, time), at_time(b, time));
+        Separation apart = separation_of(at_time(a, time), at_time(b, time));
+        apart.distance += depth;
         if (apart.distance <= target || i == kMostAdvances) return {time, true, apart.normal, apart.distance};
         if (time == dt) return {dt, false, apart.normal, apart.distance};
         const double approach = dot(a.velocity - b.velocity, apart.normal) + turning;

@@ -30,6 +30,8 @@ inline constexpr int kMostAdvances = 64;
 /// of them it says that they touch, wherever it has got to: they do not meet before.
 /// @param dt      s, > 0
 /// @param target  m, > 0
-ConvexImpact impact_time(const MovingConvex& a, const MovingConvex& b, double dt, double target);
+/// @param depth   m, how deep in each other they do not touch yet: all distances are larger by that
+ConvexImpact impact_time(const MovingConvex& a, const MovingConvex& b, double dt, double target,
+                         double depth = 0);
 
 }  // namespace carom

@@ -27,7 +27,7 @@ namespace {
 constexpr int kSteps = 90;
 
 constexpr Golden kGolden[] = {
-    {"mixed shapes", 0x5ced56f711b09fca, 0x26fbd25bcc7cc172},
+    {"mixed shapes", 0xa5cf37fdcfe72194, 0xb5a747137dad3628},
     {"bouncing crowd", 0x32f5cf7cf7591ae8, 0x5d0e0f7fea4c8122},
     {"rough gas", 0xc009256aceff94e4, 0xb74961daf77a2622},
     {"gas", 0x680b8eec4001de52, 0x87bedad9b790c353},
@@ -38,7 +38,7 @@ constexpr Golden kGolden[] = {
     {"rolling sizes", 0x263e12283b58366d, 0x8c50dfc5f6f4e985},
     {"turning chain", 0x4ec535f1f7be0f7b, 0x7f0345196d58e7f9},
     {"woken sleepers", 0xc96d16ac37412fb, 0x73b51f7b255f0ebe},
-    {"falling compounds", 0x44b6b15a62fe6945, 0xf76e6a69390f7a29},
+    {"falling compounds", 0x5153b1e443572cb2, 0xf0c644649765c5ce},
 };
 
 }  // namespace

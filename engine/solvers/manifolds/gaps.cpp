@@ -23,8 +23,9 @@ void Gaps<Real>::look_at(std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
         const Real gap = std::min(contacts_.separation1[i], contacts_.separation2[i]);
         if (!(gap > 0) || !(gap < none)) continue;
-        if (!find_meeting(i, static_cast<double>(gap)) && !can_close(i))
-            contacts_.separation1[i] = contacts_.separation2[i] = none;
+        const Manifold<double> facing = contacts_.manifold(i);
+        const bool may_touch = find_meeting(i, static_cast<double>(gap)) || can_close(i);
+        if (!may_touch || do_pass(i, facing)) contacts_.separation1[i] = contacts_.separation2[i] = none;
     }
 }
 
@@ -50,6 +51,17 @@ bool Gaps<Real>::stay_parted(std::size_t i) const {
     add(static_cast<std::size_t>(contacts_.a[i]), contacts_.item_a, -1);
     add(static_cast<std::size_t>(contacts_.b[i]), contacts_.item_b, 1);
     return gap > 0 && gap + in_.dt * opening > 0;
+}
+
+/// Whether the bodies pass each other in the step.
+/// @param facing  how they face each other at its start
+template <class Real>
+bool Gaps<Real>::do_pass(std::size_t i, const Manifold<double>& facing) const {
+    const WorldState<Real>& world = in_.world;
+    const auto a = static_cast<std::size_t>(contacts_.a[i]), b = static_cast<std::size_t>(contacts_.b[i]);
+    return pass_each_other(moving_row(world, a, shape_of(a, contacts_.item_a, i)),
+                           moving_row(world, b, shape_of(b, contacts_.item_b, i)), facing, in_.dt,
+                           static_cast<double>(contacts_.thickness[i]));
 }
 
 /// @return whether the bodies meet later than at once

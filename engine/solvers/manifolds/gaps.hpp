@@ -28,6 +28,7 @@ class Gaps {
   private:
     bool stay_parted(std::size_t i) const;
     bool find_meeting(std::size_t i, double gap);
+    bool do_pass(std::size_t i, const Manifold<double>& facing) const;
     bool can_close(std::size_t i) const;
     /// @param items  of contacts, of the side where `row` is
     std::int32_t shape_of(std::size_t row, const Column<std::int32_t>& items, std::size_t i) const {

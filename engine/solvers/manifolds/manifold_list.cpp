@@ -55,6 +55,12 @@ void ManifoldList<Real>::set_manifold(std::size_t i, const Manifold<double>& fou
 }
 
 template <class Real>
+Manifold<double> ManifoldList<Real>::manifold(std::size_t i) const {
+    return {normal_x[i], normal_y[i],  lever_a1[i],  lever_a2[i],    lever_b1[i],
+            lever_b2[i], lever_a_t[i], lever_b_t[i], separation1[i], separation2[i]};
+}
+
+template <class Real>
 std::size_t ManifoldList<Real>::bytes() const {
     std::size_t bytes = a.bytes() + b.bytes() + item_a.bytes() + item_b.bytes() + margin.bytes() +
                         thickness.bytes() + friction.bytes() + restitution.bytes() +

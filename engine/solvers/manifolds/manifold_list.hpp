@@ -98,6 +98,8 @@ struct ManifoldList {
     ManifoldColumns<Real> columns();
     /// Writes what was found of a contact in double precision.
     void set_manifold(std::size_t i, const Manifold<double>& found);
+    /// What was found of a contact, in double precision.
+    Manifold<double> manifold(std::size_t i) const;
 
     std::size_t bytes() const;
 

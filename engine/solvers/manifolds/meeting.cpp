@@ -6,6 +6,50 @@
 #include "math/vec2_math.hpp"
 
 namespace carom {
+namespace {
+
+/// Vertices are of one face if they are as far out along its normal but for this share of how long the shape
+/// is: an angle of 0.3 degrees.
+constexpr double kSameFace = 0.005;
+
+struct Interval {
+    double low, high;  // m
+};
+
+/// What of a body is farthest out along a normal, as an interval along the tangent: a face, or one vertex.
+Interval outermost(const MovingConvex& body, Vec2 normal, Vec2 tangent, double time) {
+    const Rotation turn = rotation_by(body.angle);
+    const Vec2 n = rotate_back(turn, normal), t = rotate_back(turn, tangent);
+    const ConvexShape<double>& shape = body.shape;
+    double farthest = -HUGE_VAL, length = 0;
+    for (int i = 0; i < shape.count; ++i) {
+        farthest = std::fmax(farthest, shape.x[i] * n.x + shape.y[i] * n.y);
+        const Vec2 from_first{shape.x[i] - shape.x[0], shape.y[i] - shape.y[0]};
+        length = std::fmax(length, std::sqrt(length_squared(from_first)));
+    }
+    Interval found{HUGE_VAL, -HUGE_VAL};
+    for (int i = 0; i < shape.count; ++i) {
+        if (shape.x[i] * n.x + shape.y[i] * n.y < farthest - kSameFace * length) continue;
+        const double along = shape.x[i] * t.x + shape.y[i] * t.y;
+        found.low = std::fmin(found.low, along), found.high = std::fmax(found.high, along);
+    }
+    const double centre = dot(body.centre + time * body.velocity, tangent);
+    return {centre + found.low, centre + found.high};
+}
+
+/// Whether one of the bodies has a face along the gap, and what of the other is nearest to it is over it when
+/// the gap has closed, farther from its ends than `grazing` [m].
+bool meets_face(const MovingConvex& a, const MovingConvex& b, Vec2 normal, double dt, double gap,
+                double grazing) {
+    const double closing = dot(a.velocity - b.velocity, normal);
+    const double time = closing * dt > gap ? gap / closing : dt;
+    const Vec2 tangent{-normal.y, normal.x};
+    const Interval of_a = outermost(a, normal, tangent, time), of_b = outermost(b, -normal, tangent, time);
+    const double longer = std::fmax(of_a.high - of_a.low, of_b.high - of_b.low);
+    return longer > grazing && std::fmin(of_a.high - of_b.low, of_b.high - of_a.low) > grazing;
+}
+
+}  // namespace
 
 MovingConvex still_edge(const Edge& edge) {
     const Vec2 centre = 0.5 * (edge.a + edge.b), half = 0.5 * (edge.b - edge.a);
@@ -26,6 +70,20 @@ void move_back(Manifold<double>& manifold, const MovingConvex& a, const MovingCo
     manifold.separation1 -= time * (closing + b.spin * manifold.lever_b1 - a.spin * manifold.lever_a1);
     if (manifold.separation2 < kNoPoint)
         manifold.separation2 -= time * (closing + b.spin * manifold.lever_b2 - a.spin * manifold.lever_a2);
+}
+
+bool pass_each_other(const MovingConvex& a, const MovingConvex& b, const Manifold<double>& manifold,
+                     double dt, double thickness) {
+    const double gap = std::fmin(manifold.separation1, manifold.separation2);
+    if (!(gap > 0)) return false;
+    Manifold<double> then = manifold;
+    move_back(then, a, b, -dt);
+    const double beyond =
+        -std::fmin(then.separation1, then.separation2);  // the plane, at the end of the step
+    if (!(beyond > kPassing * thickness)) return false;
+    const double grazing = kGrazing * thickness, target = kMeetingTarget * thickness;
+    if (meets_face(a, b, {manifold.normal_x, manifold.normal_y}, dt, gap, grazing)) return false;
+    return !impact_time(a, b, dt, target, grazing + target).touches;
 }
 
 bool meeting_manifold(const MovingConvex& a, const MovingConvex& b, double dt, double thickness,

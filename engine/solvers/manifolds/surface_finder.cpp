@@ -8,6 +8,7 @@
 #include "effects/restitution.hpp"
 #include "kernels/manifolds/manifold_arguments.hpp"
 #include "math/rotation.hpp"
+#include "narrowphase/convex.hpp"
 #include "shapes/walls.hpp"
 #include "solvers/manifolds/meeting.hpp"
 
@@ -56,6 +57,27 @@ Manifold<double> turned(Manifold<double> m, const Rotation& turn) {
     const Vec2 n = rotate(turn, {m.normal_x, m.normal_y});
     m.normal_x = n.x, m.normal_y = n.y;
     return m;
+}
+
+/// An edge, made longer at ends where its chain goes straight on or bends towards a body: there it has no end
+/// that the body could pass. @param body  in the frame of the chain
+Edge with_what_goes_on(std::span<const Edge> edges, std::int32_t number, const MovingConvex& body) {
+    Edge edge = edges[static_cast<std::size_t>(number)];
+    const Vec2 along = edge.b - edge.a;
+    const double length = std::sqrt(length_squared(along)),
+                 side = cross(along, body.centre - edge.a) < 0 ? -1 : 1;
+    const auto goes_on = [&](std::int32_t neighbour, double sign) {
+        if (neighbour < 0) return false;
+        const Edge& other = edges[static_cast<std::size_t>(neighbour)];
+        const Vec2 way = other.b - other.a;
+        const double of_both = length * std::sqrt(length_squared(way));
+        return dot(along, way) >= kParallel * of_both || sign * side * cross(along, way) > 0;
+    };
+    const Vec2 longer = (2 * body.shape.extent / length) * along;
+    const bool goes_on_before = goes_on(edge.previous, -1), goes_on_after = goes_on(edge.next, 1);
+    if (goes_on_before) edge.a -= longer;
+    if (goes_on_after) edge.b += longer;
+    return edge;
 }
 
 }  // namespace
@@ -214,7 +236,8 @@ void SurfaceFinder<Real>::find_on_chain(const WorldState<Real>& world, const Edg
         (1 / terms.dt) *
         (rotate_back(pose.end_turn, centre + terms.dt * moving.velocity - pose.end_position) - body.centre);
     moving.spin -= (pose.end_angle - pose.angle) / terms.dt;
-    const double met = time_of_meeting_edges(world, moving, angle_in_chain, terms.dt, thickness);
+    moving.angle = angle_in_chain;
+    const double met = time_of_meeting_edges(world, moving, terms.dt, thickness);
     // What an edge that turns does in the step is in turning_edges.hpp.
     const double time = met > 0 ? met : pose.angle == pose.end_angle ? ahead : 0;
     PlacedConvex then = body;
@@ -227,6 +250,8 @@ void SurfaceFinder<Real>::find_on_chain(const WorldState<Real>& world, const Edg
     for (ChainManifold& found : found_) {
         if (piece) found.manifold = about_body(found.manifold, rotate(then.turn, offset));
         if (time > 0) move_back(found.manifold, moving, {}, time);
+        const Edge edge = with_what_goes_on(world.edges.edges, found.edge, moving);
+        if (pass_each_other(moving, still_edge(edge), found.manifold, terms.dt, thickness)) continue;
         list.add(static_cast<std::int32_t>(row), Partner::edge(found.edge).stored(),
                  {bodies.id[row], bodies.id[pose.row], ManifoldName::place_of_side(0, number)});
         manifolds_.push_back(turned(found.manifold, pose.turn)), pieces_.push_back(piece);
@@ -237,12 +262,11 @@ void SurfaceFinder<Real>::find_on_chain(const WorldState<Real>& world, const Edg
 /// near edges [s]; 0 if it does not, or is not so fast.
 /// @param body  in the frame of the chain
 template <class Real>
-double SurfaceFinder<Real>::time_of_meeting_edges(const WorldState<Real>& world, MovingConvex body,
-                                                  double angle, double dt, double thickness) const {
+double SurfaceFinder<Real>::time_of_meeting_edges(const WorldState<Real>& world, const MovingConvex& body,
+                                                  double dt, double thickness) const {
     const double way = dt * (std::sqrt(length_squared(body.velocity)) +
                              std::fabs(body.spin) * static_cast<double>(body.shape.extent));
     if (!(way > kFastThicknesses * thickness)) return 0;
-    body.angle = angle;
     double first = 0;
     for (const std::int32_t number : near_edges_) {
         const Edge& edge = world.edges[number];

@@ -61,7 +61,7 @@ class SurfaceFinder {
                        const ContactDistance& near, double ahead, std::size_t row,
                        const ConvexShape<Real>& shape, std::int32_t number, const StoredPiece* piece,
                        ManifoldList<Real>& list);
-    double time_of_meeting_edges(const WorldState<Real>& world, MovingConvex body, double angle, double dt,
+    double time_of_meeting_edges(const WorldState<Real>& world, const MovingConvex& body, double dt,
                                  double thickness) const;
 
     std::vector<Near> pairs_;

@@ -1,0 +1,154 @@
+// Shapes that pass corners under solver `soft`: what does not touch is not deflected, and what slides over
+// the seam of two tiles goes on as on one slab (docs/decisions/0065-corners-that-pass.md).
+#include "support/effort.hpp"
+#include "support/report.hpp"
+
+#include <carom/carom.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+using namespace carom;
+using namespace carom::test;
+
+namespace {
+
+constexpr double kStep = 1.0 / 60, kGravity = 9.81;
+
+/// Shapes that reach 0.3 m below their centre.
+std::vector<Shape> flying_shapes() {
+    return {Box{0.8, 0.6}, Capsule{0.6, 0.3}, Polygon{{{-0.4, -0.3}, {0.4, -0.3}, {0, 0.6}}}};
+}
+
+Body smooth(Shape shape, Vec2 position, BodyType type = BodyType::dynamic_body) {
+    return {.type = type, .shape = std::move(shape), .position = position, .material = {.friction = 0}};
+}
+
+struct Obstacle {
+    std::string name;
+    std::vector<Body> bodies;  // up to a height of zero, about x = 0
+};
+
+std::vector<Obstacle> obstacles() {
+    const BodyType fixed = BodyType::static_body;
+    Body heavy = smooth(Box{4, 1}, {0, -0.5});
+    heavy.mass = 1000;
+    return {{"a static box", {smooth(Box{4, 1}, {0, -0.5}, fixed)}},
+            {"a heavy box", {heavy}},
+            {"the end of a segment", {smooth(Segment{{0, -2}, {0, 0}}, {}, fixed)}},
+            {"a segment below", {smooth(Segment{{-2, 0}, {2, 0}}, {}, fixed)}},
+            {"the ridge of a chain", {smooth(Chain{{{-2, -2}, {0, 0}, {2, -2}}}, {}, fixed)}}};
+}
+
+/// Tiles 1 m wide from x = -0.5 on, their tops at a height of zero.
+Scene tiled(const std::string& kind, int count) {
+    Scene scene;
+    scene.gravity = {0, -kGravity};
+    const BodyType fixed = BodyType::static_body;
+    Compound all;
+    for (int i = 0; i < count; ++i) {
+        const auto x = static_cast<double>(i);
+        if (kind == "boxes") scene.add(smooth(Box{1, 1}, {x, -0.5}, fixed));
+        if (kind == "segments") scene.add(smooth(Segment{{-0.5, 0}, {0.5, 0}}, {x, 0}, fixed));
+        all.pieces.push_back({Box{1, 1}, {x, -0.5}});
+    }
+    if (kind == "pieces of one body") scene.add(smooth(all, {0.5 * (count - 1), -0.5}, fixed));
+    return scene;
+}
+
+}  // namespace
+
+TEST_SUITE("physics/passing shapes") {
+    TEST_CASE_TEMPLATE("what passes a corner keeps its velocity", Real, float, double) {
+        std::mt19937 random(1);
+        std::uniform_real_distribution<double> uniform(0, 1);
+        const int flights = scaled(12, 3);
+        for (const Obstacle& obstacle : obstacles())
+            for (const double speed : {3.0, 10.0, 30.0})
+                for (const double clearance : {0.005, 0.02, 0.05}) {
+                    double largest = 0;
+                    for (int i = 0; i < flights; ++i)
+                        for (const Shape& shape : flying_shapes()) {
+                            Scene scene;
+                            scene.accuracy.solver = Solver::soft;
+                            for (const Body& body : obstacle.bodies) scene.add(body);
+                            const double low = mass_properties_of(shape).centroid.y + 0.3;
+                            Body body = smooth(shape, {-4 - 0.3 * speed * uniform(random), low + clearance});
+                            body.velocity = {speed, 0};
+                            const BodyId id = scene.add(body);
+                            BasicWorld<Real> world(scene);
+                            while (world.state(id).position.x < 4) world.step(kStep);
+                            const Vec2 v = world.state(id).velocity;
+                            largest = std::fmax(largest, std::hypot(v.x - speed, v.y) / speed);
+                        }
+                    report(obstacle.name, ", ", speed, " m/s, clear by ", clearance, " m: off by ", largest);
+                    INFO(obstacle.name, ", ", speed, " m/s, clear by ", clearance, " m");
+                    CHECK(largest < 0.01);
+                }
+    }
+
+    TEST_CASE_TEMPLATE("what touches a corner is struck", Real, float, double) {
+        for (const double speed : {3.0, 10.0, 30.0})
+            for (const Obstacle& obstacle : obstacles()) {
+                if (obstacle.name == "a segment below") continue;
+                Scene scene;
+                scene.accuracy.solver = Solver::soft;
+                for (const Body& body : obstacle.bodies) scene.add(body);
+                Body body = smooth(Box{0.8, 0.6}, {-4, 0.2});
+                body.velocity = {speed, 0};
+                const BodyId id = scene.add(body);
+                BasicWorld<Real> world(scene);
+                double deepest = 0;
+                for (double time = 0; time < 8 / speed; time += kStep)
+                    world.step(kStep), deepest = std::fmax(deepest, world.overlaps().max);
+                INFO(obstacle.name, ", ", speed, " m/s");
+                CHECK(world.state(id).velocity.x < 0.8 * speed);
+                CHECK(deepest <
+                      0.3);  // of its inradius: what is struck turns into the corner within the step
+            }
+    }
+
+    TEST_CASE_TEMPLATE("smooth shapes slide over tiles as over one slab", Real, float, double) {
+        for (const char* kind : {"boxes", "segments", "pieces of one body"})
+            for (const double speed : {1.0, 3.0, 15.0})
+                for (const Shape& shape : flying_shapes()) {
+                    Scene scene = tiled(kind, 40);
+                    const double low = mass_properties_of(shape).centroid.y + 0.3;
+                    Body body = smooth(shape, {1, low});
+                    body.velocity = {speed, 0};
+                    const BodyId id = scene.add(body);
+                    BasicWorld<Real> world(scene);
+                    double highest = 0;
+                    for (int i = 0; i < 120; ++i) {
+                        world.step(kStep);
+                        highest = std::fmax(highest, world.state(id).position.y - low);
+                    }
+                    INFO(kind, ", ", speed, " m/s");
+                    CHECK(world.state(id).velocity.x == doctest::Approx(speed).epsilon(0.01));
+                    CHECK(highest < 0.005);
+                }
+    }
+
+    TEST_CASE("a car rolls over tiles as over one slab") {
+        Scene scene = tiled("boxes", 40);
+        for (Body& body : scene.bodies) body.material.friction = 0.8;
+        const Material rubber{.friction = 0.8};
+        const BodyId chassis =
+            scene.add({.shape = Box{1.6, 0.3}, .position = {2, 0.6}, .velocity = {6, 0}, .material = rubber});
+        for (const double x : {1.4, 2.6}) {
+            const BodyId wheel = scene.add({.shape = Disc{0.3},
+                                            .position = {x, 0.3},
+                                            .velocity = {6, 0},
+                                            .angular_velocity = -6 / 0.3,
+                                            .material = rubber});
+            scene.add(Joint{.a = chassis, .b = wheel, .kind = RevoluteJoint{}});
+        }
+        World world(scene);
+        for (int i = 0; i < 300; ++i) world.step(kStep);
+        CHECK(world.state(chassis).velocity.x == doctest::Approx(6).epsilon(0.01));
+    }
+}
