@@ -23,10 +23,10 @@ constexpr int kPatience = 60;
 constexpr int kRelaxedSweeps = 9;
 constexpr int kLastSweeps = 2;
 
-/// Turns over contacts of shapes in a substep, at most: where masses differ by up to a hundred times, and by
-/// more. The same decision has what fewer leave.
-constexpr int kTurns = 15;
-constexpr int kTurnsOfVeryUneven = 31;
+/// Turns over contacts of shapes in a substep, at most: a share of the ratio of masses, and whatever that is.
+/// The same decision has what fewer leave.
+constexpr double kTurnsOfRatio = 0.05;
+constexpr int kMostTurns = 31;
 /// They end when a sweep changes no velocity by more than this share of what gravity adds in a substep, and
 /// after a few where the change has not become less.
 constexpr double kSettled = 0.2;
@@ -239,7 +239,7 @@ void UnevenContacts<Real>::begin_shapes(const PathSolver<Real>& paths, const Bod
     };
     const std::span<const std::int32_t> live = manifolds.live();
     if (std::any_of(live.begin(), live.end(), is_uneven))
-        turns_of_shapes_ = masses.are_very_uneven() ? kTurnsOfVeryUneven : kTurns;
+        turns_of_shapes_ = static_cast<int>(std::min<double>(kTurnsOfRatio * masses.ratio(), kMostTurns));
 }
 
 /// A path hands on the load of a heavy body along it whatever the masses; what a light body owes to the other

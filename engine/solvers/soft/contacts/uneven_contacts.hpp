@@ -38,7 +38,7 @@ class UnevenContacts {
     void begin_shapes(const PathSolver<Real>& paths, const BodyMasses<Real>& masses);
     /// Solves contacts of shapes and of discs by turns after all of them were solved in a substep, until a
     /// sweep over them changes little: nothing where no two shapes of uneven masses touch. Cost: O(contacts),
-    /// at most `kTurns` times that of a substep.
+    /// at most `kMostTurns` times that of a substep.
     void settle(const StepView<Real>& step, ContactSweeps<Real>& sweeps, PathSolver<Real>& paths);
     /// After the sweeps of a substep. Cost: O(contacts), times a few dozen while piles of uneven masses move.
     /// @param is_last  in the last substep contacts at rest are swept again as well
