@@ -127,7 +127,7 @@ bool is_behind_neighbour(const SeenEdge& seen, std::span<const Edge> edges, cons
         const int first = crosses(other, seen.body.centre, seen.edge, place_of(m, m.lever_b1));
         const int second = crosses(other, seen.body.centre, seen.edge, place_of(m, m.lever_b2));
         if (first + second > 0) return true;
-        // Of edges in one line neither has anything behind it; round-off may say that they are bent.
+        // Neither of two edges in one line has anything behind it, though round-off may bend them.
         const double towards = side * bend(seen.edge, other, number == seen.edge.previous);
         if (first == 0 && second == 0 && towards > kSameLine) return true;
     }

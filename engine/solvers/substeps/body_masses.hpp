@@ -28,7 +28,7 @@ class BodyMasses {
     /// Whether the heaviest body is so much heavier than the lightest one that sweeps do not converge soon
     /// enough: solvers/shared/local_solve.hpp.
     bool are_uneven() const { return are_uneven_; }
-    /// Of the heaviest body to the lightest one, of those that impulses move.
+    /// The ratio of the heaviest mass to the lightest one among bodies that impulses move; 1 without any.
     double ratio() const { return ratio_; }
     /// Whether the heaviest body is more than a hundred times heavier than the lightest one.
     bool are_very_uneven() const { return are_very_uneven_; }

@@ -221,7 +221,6 @@ void UnevenContacts<Real>::sweep(const StepView<Real>& step, ContactSweeps<Real>
 
 template <class Real>
 void UnevenContacts<Real>::begin_shapes(const PathSolver<Real>& paths, const BodyMasses<Real>& masses) {
-    turns_of_shapes_ = 0;
     // A single path is solved exactly: sweeps would only add their round-off, in units of the heaviest body.
     if (!masses.are_uneven() || paths.is_single_path()) return;
     const Manifolds<Real>& manifolds = paths.manifolds;
@@ -247,11 +246,12 @@ void UnevenContacts<Real>::begin_shapes(const PathSolver<Real>& paths, const Bod
 template <class Real>
 void UnevenContacts<Real>::settle(const StepView<Real>& step, ContactSweeps<Real>& sweeps,
                                   PathSolver<Real>& paths) {
+    if (turns_of_shapes_ == 0) return;
     const auto next = ContactSweeps<Real>::next(step, ContactSweeps<Real>::Blocks::all, 1);
     const bool has_discs = step.graph.pairs.contacts() > 0;
     const auto settled = static_cast<Real>(kSettled * step.terms.fall_speed());
     Real first = 0;  // change [m/s]
-    bool is_last = turns_of_shapes_ == 0;
+    bool is_last = false;
     for (int turn = 1; !is_last; ++turn) {
         Column<Real>& velocity = step.records.velocity;
         before_.resize_for_overwrite(velocity.size());
