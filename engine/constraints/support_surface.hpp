@@ -103,9 +103,13 @@ EdgeClearance clearance_of_edge(const WorldState<Real>& world, const EdgeCandida
 /// In the frame of the edge's body, where the edge is at rest and the disc's way is nearly straight, so that
 /// a disc is met wherever it comes from, however fast one of them turns. The normal is that of the moment
 /// they meet, and so is the velocity of the surface; the separation is such that they then touch.
+///
+/// What presses already is found in the middle of the step: a disc that rolls to and fro in a bowl of many
+/// edges would gain energy from contacts that lag behind it (solvers/manifolds/poses_ahead.hpp).
+/// @param presses  whether the disc pressed on this edge or another one in the step before
 template <class Real>
 SupportSurface surface_of_edge(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
-                               std::size_t row, std::int32_t number, double dt) {
+                               std::size_t row, std::int32_t number, double dt, bool presses) {
     const Bodies<Real>& bodies = world.bodies;
     const Edge& edge = world.edges[number];
     const EdgePose& pose = edges.pose_of(edge);
@@ -113,7 +117,10 @@ SupportSurface surface_of_edge(const WorldState<Real>& world, const EdgeCandidat
     const Vec2 v{bodies.velocity_x[row], bodies.velocity_y[row]};
     const auto [p, way] = relative_way(bodies, pose, row, dt);
 
-    const double time = time_of_meeting(p, way, edge.a, edge.b, radius);
+    const double met = time_of_meeting(p, way, edge.a, edge.b, radius);
+    // Edges that turn take what they press along: nothing swings on them.
+    const bool rolls_on = presses && pose.angle == pose.end_angle && length_squared(way) < radius * radius;
+    const double time = rolls_on ? 0.5 : met;
     const Vec2 there = p + time * way;
     const double share = nearest_share(there, edge.a, edge.b);
     const Vec2 point = point_at(edge.a, edge.b, share), d = point - there;

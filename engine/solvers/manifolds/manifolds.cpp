@@ -96,7 +96,8 @@ void Manifolds<Real>::take_near(const WorldState<Real>& world, double dt, const 
     const bool is_crowd = kContactsOfBody * world.bodies.moving() >= kContactsOfSmallWorld;
     const auto taken =
         distant_.take_near(world, dt, is_crowd, poses_, near, *loops.kernels->convex, *loops.executor);
-    if (shapes_of_boxes_ != world.shapes.revision()) list_boxes(world.shapes);
+    if (shapes_of_boxes_ != world.shapes.revision())
+        list_boxes(world.shapes), ahead_.note_shapes(world.shapes);
     // Boxes first: blocks of them alone have a quicker kernel.
     for (const bool boxes : {true, false})
         for (const auto& pair : taken)
@@ -241,22 +242,6 @@ void Manifolds<Real>::recall_surfaces() {
     }
 }
 
-/// What presses on a wall or an edge is looked for ahead, as in place_block().
-template <class Real>
-void Manifolds<Real>::look_ahead_at_surfaces(const WorldState<Real>& world, const SubstepTerms& terms) {
-    const Bodies<Real>& bodies = world.bodies;
-    ahead_on_surfaces_.assign(bodies.rows(), 0);
-    if (ahead_.empty()) return;
-    for (std::size_t i = 0; i < old_surfaces_.count(); ++i) {
-        const BodyId id = old_surfaces_.names[i].a;
-        if (!world.handles.is_alive(id)) continue;
-        const std::size_t row = world.handles.row_of_slot(id.index);
-        if (looks_ahead(old_surfaces_.memory[i], old_surfaces_.friction[i], bodies.inradius(row),
-                        bodies.mass[row], terms))
-            ahead_on_surfaces_[row] = ahead_.time(row);
-    }
-}
-
 template <class Real>
 void Manifolds<Real>::rescale(double factor) {
     if (factor == 1) return;
@@ -298,11 +283,11 @@ bool Manifolds<Real>::find(const WorldState<Real>& world, const EdgeCandidates<R
     poses_.look(world, terms.dt, near, finds_all, loops.kernels->convex->turn_angles, *loops.executor);
     take_near(world, terms.dt, near, loops);
     ahead_.look(world, terms.dt, poses_, items_, *loops.executor);
-    look_ahead_at_surfaces(world, terms);
-    surface_finder_.find(world, edges, terms, near, ahead_on_surfaces_, surfaces_, *loops.executor);
+    ahead_.look_at_surfaces(world, terms, old_surfaces_);
+    surface_finder_.find(world, edges, terms, near, ahead_.on_surfaces(), surfaces_, *loops.executor);
     recall_surfaces();
     block_is_found_.assign(padded(bodies_.count()) / kRowPadding, 0);
-    if (!ahead_.empty()) pose_a_.resize(padded(bodies_.count())), pose_b_.resize(padded(bodies_.count()));
+    ahead_.resize_places(bodies_.count());
     loops.executor->for_each_chunk(bodies_.count(), kContactsPerTask, kNanosecondsToFind,
                                    [&](std::size_t, std::size_t first, std::size_t last) {
                                        find_chunk(world, terms, near, *loops.kernels->convex, first, last);
@@ -383,36 +368,6 @@ void Manifolds<Real>::describe_pieces(const WorldState<Real>& world, const Conta
     bodies_.restitution[i] = static_cast<Real>(pair_restitution(at_a.restitution, at_b.restitution));
 }
 
-/// Notes where the bodies of each contact of a block are looked for.
-/// @return whether some are looked for ahead; if not, nothing is noted
-template <class Real>
-bool Manifolds<Real>::place_block(const Bodies<Real>& bodies, const SubstepTerms& terms, std::size_t first) {
-    if (ahead_.empty()) return false;
-    const std::size_t last = std::min(bodies_.count(), first + kRowPadding);
-    std::array<bool, kRowPadding> is_ahead{};
-    const bool were_found = first / kRowPadding < first_new_block_;  // what was none then carries nothing
-    bool any = false;
-    for (std::size_t i = first; i < last; ++i) {
-        if (were_found && !(bodies_.separation1[i] < static_cast<Real>(kNoPoint))) continue;
-        if (!bodies_.memory[i].is_loaded()) continue;
-        const auto a = static_cast<std::size_t>(bodies_.a[i]), b = static_cast<std::size_t>(bodies_.b[i]);
-        const bool b_moves = b < bodies.count && !bodies.is_immovable(b);
-        const Real mass = b_moves ? std::min(bodies.mass[a], bodies.mass[b]) : bodies.mass[a];
-        is_ahead[i - first] =
-            looks_ahead(bodies_.memory[i], bodies_.friction[i], bodies_.thickness[i], mass, terms);
-        any = any || is_ahead[i - first];
-    }
-    if (!any) return false;
-    const bool all_rows = items_.empty();
-    const Column<std::int32_t>&a = all_rows ? bodies_.a : bodies_.item_a,
-          &b = all_rows ? bodies_.b : bodies_.item_b;
-    for (std::size_t k = 0; k < kRowPadding; ++k) {
-        const std::int32_t ahead = is_ahead[k] ? ahead_.items() : 0;
-        pose_a_[first + k] = a[first + k] + ahead, pose_b_[first + k] = b[first + k] + ahead;
-    }
-    return true;
-}
-
 /// @param first  a multiple of kRowPadding
 template <class Real>
 void Manifolds<Real>::find_pairs(const WorldState<Real>& world, const SubstepTerms& terms,
@@ -428,11 +383,13 @@ void Manifolds<Real>::find_pairs(const WorldState<Real>& world, const SubstepTer
                                   bodies_.margin.data(),
                                   bodies_.columns()};
     FindManifolds<Real> ahead = now;
-    ahead.come = ahead_.come.data(), ahead.a = pose_a_.data(), ahead.b = pose_b_.data();
+    ahead.come = ahead_.come.data(), ahead.a = ahead_.a.data(), ahead.b = ahead_.b.data();
     for (std::size_t i = first; i < last; i += kRowPadding) {
         const bool are_boxes = blocks_are_boxes_[i / kRowPadding] != 0;
         const auto find = are_boxes ? kernels.find_box_manifolds : kernels.find_manifolds;
-        find(place_block(world.bodies, terms, i) ? ahead : now, i, i + kRowPadding);
+        const bool were_found = i / kRowPadding < first_new_block_;
+        const bool are_ahead = ahead_.place(world, terms, bodies_, were_found, i);
+        find(are_ahead ? ahead : now, i, i + kRowPadding);
     }
 }
 
@@ -488,8 +445,8 @@ std::size_t Manifolds<Real>::bytes() const {
     return bodies_.bytes() + surfaces_.bytes() + old_.bytes() + old_surfaces_.bytes() +
            surface_finder_.bytes() + items_.bytes() + distant_.bytes() + of(asleep_) + of(is_recalled_) +
            of(loaded_) + of(is_box_of_) + of(blocks_are_boxes_) + of(first_of_slot_) + of(next_of_slot_) +
-           poses_.bytes() + of(ahead_on_surfaces_) + ahead_.bytes() + pose_a_.bytes() + pose_b_.bytes() +
-           of(block_is_found_) + of(live_) + of(was_live_) + live_of_bodies_.bytes() + chosen_pairs_.bytes();
+           poses_.bytes() + ahead_.bytes() + of(block_is_found_) + of(live_) + of(was_live_) +
+           live_of_bodies_.bytes() + chosen_pairs_.bytes();
 }
 
 template class Manifolds<float>;

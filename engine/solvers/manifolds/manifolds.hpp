@@ -119,11 +119,9 @@ class Manifolds {
     void file_by_slot(const ManifoldList<Real>& old);
     void recall(ManifoldList<Real>& list, const ManifoldList<Real>& old, const Executor& executor);
     void recall_surfaces();
-    void look_ahead_at_surfaces(const WorldState<Real>& world, const SubstepTerms& terms);
     /// Finds the contacts of a chunk of pairs that must be found in this step.
     void find_chunk(const WorldState<Real>& world, const SubstepTerms& terms, const ContactDistance& near,
                     const ConvexKernels<Real>& kernels, std::size_t first, std::size_t last);
-    bool place_block(const Bodies<Real>& bodies, const SubstepTerms& terms, std::size_t first);
     bool must_find(std::size_t block) const;
     void note_thicknesses(std::size_t first);
     void describe_pairs(const WorldState<Real>& world, const ContactDistance& near, std::size_t first,
@@ -154,8 +152,6 @@ class Manifolds {
     std::vector<std::uint8_t> blocks_are_boxes_;  // by block of kRowPadding contacts of bodies_
     PoseWatch<Real> poses_;
     PosesAhead<Real> ahead_;
-    Column<std::int32_t> pose_a_, pose_b_;   // by contact of bodies_: where its bodies are in ahead_
-    std::vector<double> ahead_on_surfaces_;  // s, by row
     /// What contacts are found within, by block of the last step; all zero: all are to be found anew.
     struct Within {
         double share = 0, fall = 0, dt = 0;  // ContactDistance; s

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "parallel/executor.hpp"
 #include "solvers/manifolds/manifold_list.hpp"
 #include "solvers/manifolds/piece_items.hpp"
@@ -10,58 +13,79 @@
 
 namespace carom {
 
-/// A contact whose load alone would move the lighter body by more than this in a step, in thicknesses, is not
-/// looked for ahead: what swings so fast the steps cannot follow, and its velocity is noise.
-inline constexpr double kLargestWayOfLoad = 0.25;
+/// How far ahead of the start of a step a contact is looked for: not at all, half of the step, all of it.
+enum class Lead : std::uint8_t { none, half, whole };
 
-/// Whether a contact is looked for ahead: if it has no friction, which would hold what swings, and presses,
-/// but not so hard. What does not press may be an impact.
-/// @param friction  coefficient of the contact
-/// @param mass      kg, of the lighter body
-template <class Real>
-bool looks_ahead(const ManifoldMemory<Real>& memory, Real friction, Real thickness, Real mass,
-                 const SubstepTerms& terms) {
-    if (friction > 0) return false;
-    const Real load = memory.normal1 + memory.normal2;
-    const auto way = static_cast<Real>(terms.dt * terms.dt / terms.substep_dt) * load;  // kg m
-    return load > 0 && way < static_cast<Real>(kLargestWayOfLoad) * thickness * mass;
-}
-
-/// Where bodies will be at the end of the step if they go on as they fly: there contacts are found.
+/// Where bodies will be in the middle and at the end of the step if they go on as they fly: there contacts
+/// that press are found.
 ///
 /// A contact keeps its normal and its arms over a step. Were they those of its start, forces would lag behind
-/// what bodies do by half a step, and whatever swings about a place where it could rest, like a smooth box
-/// that hangs in a gap by two of its sides, would gain energy from nothing: its swing grows as
-/// exp(w² dt t / 4), at w = 6 / s and 60 steps a second by 4.5 times in ten seconds. With those of the end
-/// swings fade as fast. docs/decisions/0057-contacts-ahead.md.
+/// what bodies do by half a step, and whatever swings about a place where it could rest would gain energy
+/// from nothing: its swing grows as exp(w² dt t / 4), at w = 6 / s and 60 steps a second by 4.5 times in ten
+/// seconds. With those of the middle swings keep their energy, with those of the end they fade as fast.
+/// - A contact with friction of something round, on which bodies roll, rock and swing (a roly-poly, a plank
+///   on a disc), is found in the middle.
+/// - A contact without friction is found at the end: a smooth box that hangs in a gap by two of its sides
+///   would swing for ever, and a heap of them never rest.
+/// - Other contacts with friction are found where they are: their friction holds what would swing.
+/// docs/decisions/0057-contacts-ahead.md, 0066-what-rolls-keeps-its-energy.md.
 ///
-/// Cost: about 15 ns a body, where some surface has no friction.
+/// Cost: about 10 ns a body, where some surface has no friction or some shape is round.
 template <class Real>
 class PosesAhead {
   public:
-    // These columns hold the items of PieceItems as they are now, then the same items ahead.
-    Column<Real> pose;           ///< [2 items()][4]: x, y [m], cosine, sine of the angle
-    Column<Real> come;           ///< [2 items()][4]: m in x and y, rad from now on; s, how far ahead that is
-    Column<std::int32_t> shape;  ///< [2 items()], number in the ShapeStore
+    // These columns hold the items of PieceItems as they are now, then in the middle, then at the end.
+    Column<Real> pose;           ///< [3 items()][4]: x, y [m], cosine, sine of the angle
+    Column<Real> come;           ///< [3 items()][4]: m in x and y, rad from now on; s, how far ahead that is
+    Column<std::int32_t> shape;  ///< [3 items()], number in the ShapeStore
+    Column<std::int32_t> a, b;   ///< by contact of two bodies that place() has placed: where to find them
 
-    /// Reads the poses at the start of a step, unless every contact has friction.
+    /// Must be told when shapes have changed.
+    void note_shapes(const ShapeStore<Real>& shapes);
+    bool is_round(std::int32_t shape_number) const {
+        return is_round_[static_cast<std::size_t>(shape_number)] != 0;
+    }
+    /// Reads the poses at the start of a step, unless every contact is found where it is.
     /// @param dt  s, of the step
     void look(const WorldState<Real>& world, double dt, const PoseWatch<Real>& now,
               const PieceItems<Real>& pieces, const Executor& executor);
-    /// Whether every contact has friction, so that nothing is looked for ahead in this step.
+    /// Whether every contact is found where it is in this step.
     bool empty() const { return items_ == 0; }
-    std::int32_t items() const { return items_; }
-    /// How far ahead a row is [s].
-    double time(std::size_t row) const {
-        return static_cast<double>(come[4 * (static_cast<std::size_t>(items_) + row) + 3]);
-    }
 
-    std::size_t bytes() const { return pose.bytes() + come.bytes() + shape.bytes(); }
+    /// Chooses how far ahead each body is looked for at walls and edges, from what pressed there.
+    /// @param surfaces  contacts of the step before
+    void look_at_surfaces(const WorldState<Real>& world, const SubstepTerms& terms,
+                          const ManifoldList<Real>& surfaces);
+    /// s, by row: how far ahead a body is looked for at walls and edges.
+    std::span<const double> on_surfaces() const { return on_surfaces_; }
+
+    /// Makes room for the places of so many contacts.
+    void resize_places(std::size_t contacts);
+    /// Chooses how far ahead each contact of a block of two bodies is looked for, and notes its places.
+    /// @param first       of the block, a multiple of kRowPadding
+    /// @param were_found  whether the contacts were found in the step before
+    /// @return whether some are looked for ahead; if not, nothing is noted
+    bool place(const WorldState<Real>& world, const SubstepTerms& terms, const ManifoldList<Real>& contacts,
+               bool were_found, std::size_t first);
+
+    std::size_t bytes() const;
 
   private:
-    void look_at(const Bodies<Real>& bodies, Real dt, const PoseWatch<Real>& now, std::size_t row);
+    /// Whether contacts may be found so far ahead in this step; if not, no poses are made.
+    bool is_used(Lead lead) const {
+        return lead == Lead::none || (lead == Lead::half ? some_are_round_ : some_are_smooth_);
+    }
+    void look_at(const Bodies<Real>& bodies, Real dt, const PoseWatch<Real>& now, std::size_t first,
+                 std::size_t last);
+    void move(const Bodies<Real>& bodies, std::size_t row, Lead lead, Real ahead);
+    std::size_t place_of(std::size_t item, Lead lead) const {
+        return item + static_cast<std::size_t>(lead) * items_;
+    }
 
-    std::int32_t items_ = 0;
+    std::vector<std::uint8_t> is_round_;  // by shape
+    bool some_are_round_ = false, some_are_smooth_ = false;
+    std::size_t items_ = 0;
+    std::vector<double> on_surfaces_;
 };
 
 extern template class PosesAhead<float>;

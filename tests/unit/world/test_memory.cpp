@@ -172,7 +172,7 @@ TEST_SUITE("world/memory") {
             }
             return count;
         };
-        allocations(80);  // until some blow has called for the room of the energy bound
+        allocations(140);  // until blows and wedges have called for their room
         times_asleep = 0;
         CHECK(allocations(10) == 0);
         CHECK(times_asleep > 5);

@@ -64,6 +64,7 @@ void SupportFinder<Real>::find(const StepView<Real>& step, const WorldState<Real
     const std::size_t groups = candidates.groups();
     left_edges_of_.resize(std::max(left_edges_of_.size(), groups));
     const Search search{step, world, edges};
+    note_pressing(search);
     const double work = kNanosecondsToFind * static_cast<double>(candidates.a.size());
     step.loops.executor->for_each_task(groups, work,
                                        [&](std::size_t group) { find_in_group(group, search); });
@@ -71,6 +72,18 @@ void SupportFinder<Real>::find(const StepView<Real>& step, const WorldState<Real
     for (std::size_t group = 0; group < groups; ++group)
         left_edges_.insert(left_edges_.end(), left_edges_of_[group].begin(), left_edges_of_[group].end());
     hand_on_impulses(search);
+}
+
+/// Notes which bodies pressed on an edge in the step before.
+template <class Real>
+void SupportFinder<Real>::note_pressing(const Search& search) {
+    if (search.world.edges.empty()) return;
+    presses_on_edges_.assign(search.world.bodies.rows(), 0);
+    const ContactRows<Real>& candidates = search.step.graph.supports;
+    candidates.for_each([&](std::size_t i) {
+        if (candidates.normal_impulse[i] > 0 && candidates.partner(i).is_edge())
+            presses_on_edges_[static_cast<std::size_t>(candidates.a[i])] = 1;
+    });
 }
 
 /// The supports of a group stand where its candidates stand, closer together.
@@ -105,7 +118,8 @@ void SupportFinder<Real>::find_in_group(std::size_t group, const Search& search)
                 }
             }
             const SupportSurface s = support.is_edge()
-                                         ? surface_of_edge(world, edges, row, support.edge_number(), dt)
+                                         ? surface_of_edge(world, edges, row, support.edge_number(), dt,
+                                                           presses_on_edges_[row] != 0)
                                          : surface_of(world, row, support);
             const Vec2 dv = s.velocity - Vec2{bodies.velocity_x[row], bodies.velocity_y[row]};
             // A wall is a wall everywhere, so it is kept however slowly a body nears it: in a crowd another

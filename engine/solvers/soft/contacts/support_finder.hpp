@@ -17,7 +17,9 @@ class SupportFinder {
     /// Fills step.supports. Cost: O(supports).
     void find(const StepView<Real>& step, const WorldState<Real>& world, const EdgeCandidates<Real>& edges);
 
-    std::size_t bytes() const { return left_edges_.capacity() * sizeof(LeftEdge); }
+    std::size_t bytes() const {
+        return left_edges_.capacity() * sizeof(LeftEdge) + presses_on_edges_.capacity();
+    }
 
   private:
     /// What a body felt from an edge that it has left.
@@ -31,10 +33,12 @@ class SupportFinder {
         const WorldState<Real>& world;
         const EdgeCandidates<Real>& edges;
     };
+    void note_pressing(const Search& search);
     void find_in_group(std::size_t group, const Search& search);
     void note_left_edge(std::size_t candidate, std::size_t group, const Search& search);
     void hand_on_impulses(const Search& search);
 
+    std::vector<std::uint8_t> presses_on_edges_;        // by row; unused where there are no edges
     std::vector<LeftEdge> left_edges_;                  // of this step
     std::vector<std::vector<LeftEdge>> left_edges_of_;  // a group of supports
 };
