@@ -21,6 +21,7 @@ template <class Real>
 void SoftSimulation<Real>::keep_former_place(std::size_t row) {
     const std::int32_t former = soft.graph.trail.old_row(row);
     const Bodies<Real>& bodies = this->world.bodies;
+    if (bodies.has_shapes && !bodies.is_immovable(row)) soft.note_lost(bodies.mass[row]);
     if (former >= 0)
         soft.graph.former_places.push_back({former, {bodies.position_x[row], bodies.position_y[row]}});
 }

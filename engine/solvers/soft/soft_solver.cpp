@@ -79,7 +79,7 @@ template <class Real>
 void SoftSolver<Real>::find_manifolds(const WorldState<Real>& world, const EdgeCandidates<Real>& edges) {
     paths.rescale(warm_start_.kept());
     paths.find(world, edges, terms_, {kNearFraction, settings_.fall}, records_, loops_);
-    uneven_.begin_shapes(paths, masses_);
+    uneven_.begin_shapes(world, paths, masses_);
     counters.contacts += paths.counters.contacts;
 }
 
@@ -156,8 +156,7 @@ void SoftSolver<Real>::solve_wedged_bodies() {
 
 template <class Real>
 void SoftSolver<Real>::solve_uneven_contacts(bool is_last) {
-    if (!masses_.are_uneven()) return;
-    uneven_.solve(view(), sweeps_, is_last);
+    if (masses_.are_uneven()) uneven_.solve(view(), sweeps_, is_last);
     uneven_.settle(view(), sweeps_, paths);
 }
 

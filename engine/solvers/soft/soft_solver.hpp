@@ -90,6 +90,8 @@ class SoftSolver {
     bool has_lost_loads() const { return !graph.lost.empty(); }
     /// Spreads what they carried over other contacts.
     void rebalance_loads(const Bodies<Real>& bodies) { warm_start_.rebalance(view(), bodies); }
+    /// Tells that a body was removed or put elsewhere between steps. @param mass  kg
+    void note_lost(double mass) { uneven_.note_lost(mass); }
     /// Gives the bodies last step's impulses.
     void warm_start();
 

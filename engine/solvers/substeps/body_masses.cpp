@@ -32,7 +32,6 @@ bool BodyMasses<Real>::derive(const Bodies<Real>& bodies, bool has_friction) {
         heaviest = heaviest > 0 ? std::fmin(heaviest, inverse) : inverse;
     }
     if (vary_) std::fill(inverse_.begin() + bodies.moving(), inverse_.end(), Real(0));
-    ratio_ = heaviest > 0 ? lightest / heaviest : 1;
     are_uneven_ = lightest > LocalSolve<Real>::kUneven * heaviest;
     are_very_uneven_ = lightest > kVeryUneven * heaviest;
     std::size_t light = 0, heavy = 0;

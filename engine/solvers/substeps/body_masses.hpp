@@ -28,8 +28,6 @@ class BodyMasses {
     /// Whether the heaviest body is so much heavier than the lightest one that sweeps do not converge soon
     /// enough: solvers/shared/local_solve.hpp.
     bool are_uneven() const { return are_uneven_; }
-    /// The ratio of the heaviest mass to the lightest one among bodies that impulses move; 1 without any.
-    double ratio() const { return ratio_; }
     /// Whether the heaviest body is more than a hundred times heavier than the lightest one.
     bool are_very_uneven() const { return are_very_uneven_; }
     /// Whether bodies that differ so much are mixed, so that even that may not do.
@@ -38,7 +36,6 @@ class BodyMasses {
     std::size_t bytes() const { return inverse_.bytes(); }
 
   private:
-    double ratio_ = 1;
     bool are_known_ = false, vary_ = false, some_are_fixed_ = false;
     bool are_uneven_ = false, are_very_uneven_ = false, are_mixed_ = false;
     Column<Real> inverse_;

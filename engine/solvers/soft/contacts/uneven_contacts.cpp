@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "constraints/contact_law.hpp"
 
@@ -23,14 +24,18 @@ constexpr int kPatience = 60;
 constexpr int kRelaxedSweeps = 9;
 constexpr int kLastSweeps = 2;
 
-/// Turns over contacts of shapes in a substep, at most: a share of the ratio of masses, and whatever that is.
-/// The same decision has what fewer leave.
+/// Turns over contacts of shapes in a substep, at most: a share of the largest ratio of masses of two that
+/// touch, and whatever that is. The same decision has what fewer leave.
 constexpr double kTurnsOfRatio = 0.05;
 constexpr int kMostTurns = 31;
 /// They end when a sweep changes no velocity by more than this share of what gravity adds in a substep, and
 /// after a few where the change has not become less.
 constexpr double kSettled = 0.2;
 constexpr int kFewTurns = 7;
+/// Where a body has gone that was heavier than so many others in the mean, the first step without it takes
+/// turns, too, and until less is left: docs/decisions/0067-weights-taken-off-heaps.md.
+constexpr double kHeavyLost = 10;
+constexpr double kSettledOfLost = 0.05;
 
 std::size_t index(std::int32_t row) {
     return static_cast<std::size_t>(row);
@@ -220,25 +225,34 @@ void UnevenContacts<Real>::sweep(const StepView<Real>& step, ContactSweeps<Real>
 }
 
 template <class Real>
-void UnevenContacts<Real>::begin_shapes(const PathSolver<Real>& paths, const BodyMasses<Real>& masses) {
+void UnevenContacts<Real>::begin_shapes(const WorldState<Real>& world, const PathSolver<Real>& paths,
+                                        const BodyMasses<Real>& masses) {
+    const double lost = std::exchange(heaviest_lost_, 0);
     // A single path is solved exactly: sweeps would only add their round-off, in units of the heaviest body.
-    if (!masses.are_uneven() || paths.is_single_path()) return;
+    if (paths.is_single_path()) return;
+    const double mean_mass = world.dynamic_mass / static_cast<double>(world.bodies.moving());
+    if (lost > kHeavyLost * mean_mass) {
+        turns_of_shapes_ = kMostTurns, settled_ = kSettledOfLost;
+        return;
+    }
+    settled_ = kSettled;
+    if (!masses.are_uneven()) return;
     const Manifolds<Real>& manifolds = paths.manifolds;
     const Column<Real>& inverse = masses.inverse_column();
-    const auto is_uneven = [&](std::int32_t contact) {
-        if (contact < 0) return false;
+    Real most = 1;  // ratio of masses of two that touch
+    for (const std::int32_t contact : manifolds.live()) {
+        if (contact < 0) break;  // what nothing moves comes last
         const ManifoldList<Real>& list = manifolds.list_of(contact);
         const std::size_t i = Manifolds<Real>::place_of(contact);
         const Partner partner(list.b[i]);
-        if (!partner.is_body()) return false;
+        if (!partner.is_body()) continue;
         const Real of_a = std::fabs(inverse[index(list.a[i])]),
                    of_b = std::fabs(inverse[index(partner.row())]);
-        const auto uneven = static_cast<Real>(LocalSolve<Real>::kUneven);
-        return of_a > 0 && of_b > 0 && (of_a > uneven * of_b || of_b > uneven * of_a);
-    };
-    const std::span<const std::int32_t> live = manifolds.live();
-    if (std::any_of(live.begin(), live.end(), is_uneven))
-        turns_of_shapes_ = static_cast<int>(std::min<double>(kTurnsOfRatio * masses.ratio(), kMostTurns));
+        if (of_a > 0 && of_b > 0) most = std::max(most, std::max(of_a, of_b) / std::min(of_a, of_b));
+    }
+    if (most > static_cast<Real>(LocalSolve<Real>::kUneven))
+        turns_of_shapes_ = static_cast<int>(
+            std::min(kTurnsOfRatio * static_cast<double>(most), static_cast<double>(kMostTurns)));
 }
 
 /// A path hands on the load of a heavy body along it whatever the masses; what a light body owes to the other
@@ -249,7 +263,7 @@ void UnevenContacts<Real>::settle(const StepView<Real>& step, ContactSweeps<Real
     if (turns_of_shapes_ == 0) return;
     const auto next = ContactSweeps<Real>::next(step, ContactSweeps<Real>::Blocks::all, 1);
     const bool has_discs = step.graph.pairs.contacts() > 0;
-    const auto settled = static_cast<Real>(kSettled * step.terms.fall_speed());
+    const auto settled = static_cast<Real>(settled_ * step.terms.fall_speed());
     Real first = 0;  // change [m/s]
     bool is_last = false;
     for (int turn = 1; !is_last; ++turn) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "solvers/paths/path_solver.hpp"
@@ -16,7 +17,8 @@ namespace carom {
 ///
 /// Few contacts around light bodies are solved for their impulses (solvers/shared/local_solve.hpp). Many are
 /// swept again where masses differ by up to a hundred times: docs/decisions/0064-uneven-masses-in-sweeps.md.
-/// Contacts of shapes are solved by turns with all others until little is left.
+/// Contacts of shapes are solved by turns with all others until little is left; so they are in the step after
+/// a heavy shape was removed, whose weight they still carry (docs/decisions/0067-weights-taken-off-heaps.md).
 /// Where masses differ by more and the impulses are still off, since heavy and light bodies are mixed in a
 /// pile, all contacts of the world are relaxed for the velocities of bodies
 /// (solvers/shared/contact_relaxation.hpp) from then on, until the sweeps alone have left little for a while.
@@ -35,10 +37,13 @@ class UnevenContacts {
     void begin_step(const StepView<Real>& step, const WorldState<Real>& world, bool are_mixed);
     /// To be called when the contacts of shapes of a step are found. Cost: O(contacts of shapes) where masses
     /// are uneven.
-    void begin_shapes(const PathSolver<Real>& paths, const BodyMasses<Real>& masses);
+    void begin_shapes(const WorldState<Real>& world, const PathSolver<Real>& paths,
+                      const BodyMasses<Real>& masses);
+    /// Tells that a body was removed or put elsewhere between steps. @param mass  kg
+    void note_lost(double mass) { heaviest_lost_ = std::max(heaviest_lost_, mass); }
     /// Solves contacts of shapes and of discs by turns after all of them were solved in a substep, until a
-    /// sweep over them changes little: nothing where no two shapes of uneven masses touch. Cost: O(contacts),
-    /// at most `kMostTurns` times that of a substep.
+    /// sweep over them changes little: nothing where no two shapes of uneven masses touch and no heavy one
+    /// has gone. Cost: O(contacts), at most `kMostTurns` times that of a substep.
     void settle(const StepView<Real>& step, ContactSweeps<Real>& sweeps, PathSolver<Real>& paths);
     /// After the sweeps of a substep. Cost: O(contacts), times a few dozen while piles of uneven masses move.
     /// @param is_last  in the last substep contacts at rest are swept again as well
@@ -52,7 +57,7 @@ class UnevenContacts {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.steps_left_);
+        archive(self.steps_left_, self.heaviest_lost_);
     }
 
   private:
@@ -72,7 +77,9 @@ class UnevenContacts {
     PairRuns<Real> runs_;               // of these blocks, as far as they can touch in this step
     ContactRelaxation<2> smooth_;
     ContactRelaxation<3> rough_;
-    int turns_of_shapes_ = 0;             // in a substep, at most; 0: none of uneven masses touch
+    int turns_of_shapes_ = 0;             // in a substep, at most
+    double heaviest_lost_ = 0;            // kg, of what went where it was since the step before
+    double settled_ = 0;                  // turns end at this change, in what gravity adds in a substep
     Column<Real> before_;                 // velocity records before a sweep
     bool may_relax_ = false;              // in this step
     bool is_listed_ = false;              // likewise
