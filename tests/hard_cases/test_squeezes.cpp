@@ -19,6 +19,9 @@ TEST_SUITE("hard cases/squeezes") {
     TEST_CASE_TEMPLATE("B37: discs get no energy from a paddle but its work", Real, float, double) {
         check_cases<Real>(torture::discs_that_a_paddle_stirs(extent()));
     }
+    TEST_CASE_TEMPLATE("B37: shapes that a cross stirs are not shot out", Real, float, double) {
+        check_cases<Real>(torture::shapes_that_a_cross_stirs(extent()));
+    }
     TEST_CASE_TEMPLATE("B37: discs leave a wedge that closes at its limit speed", Real, float, double) {
         check_cases<Real>(torture::discs_in_closing_wedges(extent()));
     }

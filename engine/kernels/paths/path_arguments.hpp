@@ -68,6 +68,7 @@ struct SolvePaths {
     Real slop;                      // share of the thickness by which a contact that is slow may overlap
     Real slow;                      // m/s: contacts whose points are slower than this are slow
     Real velocity_tolerance;        // m/s, by which a contact may miss its law
+    Real fall;                      // m/s, what gravity adds to a velocity in a substep
     Real* restless;                 // [bundles][kPathLanes], m/s: the largest relative speed that each path
                                     // had when it was solved last, where bodies thinner than
                                     // resting_thickness count as faster in proportion; kUnsettled if it

@@ -22,6 +22,13 @@ constexpr double kRegularisation = 1e-5;
 /// as heavy as the heaviest: a squeeze between two things that nothing moves has no solution, and that of a
 /// matrix which is regularised is as large as the regularisation is small. docs/decisions/0040-squeezes.md.
 constexpr double kMostChange = 64;
+/// Nor does a path that a kinematic body drives change a velocity by more than so many times the speed of
+/// that body, or the largest relative speed there is: what it pushes may have nowhere to go. What gravity
+/// adds to all of its bodies in a substep it may always take up.
+constexpr double kMostChangeOfDriven = 1.1;
+/// And less where the path ends at something else that nothing moves, as a squeeze does.
+/// docs/decisions/0068-what-stirs-shapes.md.
+constexpr double kMostChangeOfSqueezed = 0.5;
 /// By which friction may be beyond its limit, in shares of what a normal impulse may pull by: what a contact
 /// holds beyond its limit never slides.
 constexpr double kFrictionTolerance = 0.1;
@@ -65,10 +72,13 @@ void store_changed(typename Lanes::Number* velocity, const std::int32_t* rows, t
 /// Relative velocities of the links and a first guess of the active set.
 /// @param restless  becomes what SolvePaths::restless says of each lane
 /// @param inverse_mass  becomes that of the heaviest body of each lane [1/kg]
+/// @param drive  becomes the largest speed of what drives each lane, as nothing moves it; 0: nothing does
+/// [m/s]
 /// @return the largest relative speed of each lane [m/s]
 template <class Lanes, class Real>
 typename Lanes::Batch begin_paths(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch,
-                                  typename Lanes::Batch& restless, typename Lanes::Batch& inverse_mass) {
+                                  typename Lanes::Batch& restless, typename Lanes::Batch& inverse_mass,
+                                  typename Lanes::Batch& drive) {
     using F = typename Lanes::Batch;
     const SolvePaths<Real>& k = p.k;
     const F zero(0), tolerance(k.velocity_tolerance);
@@ -83,13 +93,18 @@ typename Lanes::Batch begin_paths(const PathBatch<Real>& p, LinkScratch<Lanes>* 
         inverse_mass = simd::min(inverse_mass, simd::select(w > zero, w, no_mass));
     };
     inverse_mass = no_mass, note_mass(head.w);
+    const auto note_drive = [&](const PathBody<Lanes>& body, F w) {
+        const F speed = simd::abs(body.record[0]) + simd::abs(body.record[1]) + simd::abs(body.record[2]);
+        drive = simd::max(drive, simd::select(w > zero, zero, speed));
+    };
+    drive = zero, note_drive(a, head.w);
     for (std::size_t i = 0; i < p.length; ++i) {
         const PathLink<Real>& link = p.link[i];
         LinkScratch<Lanes>& s = scratch[i];
         const LinkLanes<Lanes, Real> l(link, p.lane);
         const PathBody<Lanes> b{Lanes::load_rows4(k.velocity, p.far_rows(i))};
         s.body = b, s.w = b.inverse_mass(), s.w2 = b.inverse_rim_mass();
-        note_mass(s.w);
+        note_mass(s.w), note_drive(b, s.w);
         l.relative(b.record[0] - a.record[0], b.record[1] - a.record[1], a.record[2], b.record[2], s.v1, s.v2,
                    s.vt);
         s.floor1 = Lanes::load(link.floor1 + p.lane), s.floor2 = Lanes::load(link.floor2 + p.lane);
@@ -328,19 +343,38 @@ void apply_changes(const PathBatch<Real>& p, const LinkScratch<Lanes>* scratch, 
 
 /// Solves the paths of a batch, or pieces of them, exactly; the lanes in `where` alone take the solution.
 /// @param restless  becomes what SolvePaths::restless says of each lane
+/// By how much an exact solve may change velocities [m/s].
+/// @param fastest, drive  as begin_paths() found them
+template <class Lanes, class Real>
+typename Lanes::Batch most_change(const PathBatch<Real>& p, const LinkScratch<Lanes>* scratch,
+                                  typename Lanes::Batch fastest, typename Lanes::Batch drive) {
+    using F = typename Lanes::Batch;
+    const auto times = [](double count) { return F(static_cast<Real>(count)); };
+    const F zero(0);
+    const LinkScratch<Lanes>&head = scratch[p.length], &tail = scratch[p.length - 1];
+    F apart = zero;  // m/s, of the two ends
+    for (std::size_t i = 0; i < 3; ++i) apart += simd::abs(head.body.record[i] - tail.body.record[i]);
+    const auto is_squeezed = (head.w <= zero) & (tail.w <= zero) & (apart > zero);
+    const F load = times(static_cast<double>(p.length + 1)) * F(p.k.fall),  // of the path's own weight
+        of_drive = simd::select(is_squeezed, times(kMostChangeOfSqueezed), times(kMostChangeOfDriven)) *
+                   simd::max(fastest, drive);
+    const F most = times(kMostChange) * (fastest + F(p.k.velocity_tolerance));
+    return simd::select(drive > zero, simd::min(most, simd::max(of_drive, load)), most);
+}
+
 /// @return lanes whose active set did not settle
 template <class Lanes, class Real>
 typename Lanes::Mask solve_exactly(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch, int most_iterations,
                                    typename Lanes::Mask where, typename Lanes::Batch& restless) {
     using F = typename Lanes::Batch;
     const SolvePaths<Real>& k = p.k;
-    F heaviest;  // 1/kg
-    const F fastest = begin_paths<Lanes>(p, scratch, restless, heaviest);
+    F heaviest, drive;  // 1/kg, m/s
+    const F fastest = begin_paths<Lanes>(p, scratch, restless, heaviest, drive);
     const F inverse_mass = heaviest / F(static_cast<Real>(p.length + 1));
     // Round-off of velocities, in shares of the largest.
     const F by_speed = F(k.velocity_tolerance) + fastest * F(static_cast<Real>(4e-6)),
             by_impulse = F(k.velocity_tolerance) + fastest * F(static_cast<Real>(1e-6)),
-            most = F(static_cast<Real>(kMostChange)) * (fastest + F(k.velocity_tolerance));
+            most = most_change<Lanes>(p, scratch, fastest, drive);
     auto bad = F(0) <= F(0);
     for (int i = 0; i < most_iterations && simd::any(bad & where); ++i) {
         eliminate<Lanes>(p, scratch);

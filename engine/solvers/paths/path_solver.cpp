@@ -249,6 +249,7 @@ SolvePaths<Real> PathSolver<Real>::arguments(const SubstepTerms& terms, BodyReco
     k.h = static_cast<Real>(terms.substep_dt), k.inverse_h = static_cast<Real>(1 / terms.substep_dt);
     k.recovery = static_cast<Real>(kRecovery), k.push = static_cast<Real>(kPushThicknesses);
     k.slop = static_cast<Real>(kSlop), k.slow = static_cast<Real>(kSlowShare * terms.fall_speed());
+    k.fall = static_cast<Real>(terms.fall_speed());
     k.velocity_tolerance = static_cast<Real>(kTolerance * terms.fall_speed());
     k.closing = closing_.data();
     k.restless = restless_.data(), k.is_slender = cut().is_slender().data(), k.resting_speed = 0;

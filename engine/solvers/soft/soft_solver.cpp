@@ -157,7 +157,7 @@ void SoftSolver<Real>::solve_wedged_bodies() {
 template <class Real>
 void SoftSolver<Real>::solve_uneven_contacts(bool is_last) {
     if (masses_.are_uneven()) uneven_.solve(view(), sweeps_, is_last);
-    uneven_.settle(view(), sweeps_, paths);
+    if (uneven_.takes_turns()) uneven_.settle(view(), sweeps_, paths);
 }
 
 template <class Real>

@@ -53,6 +53,7 @@ HardCases all_hard_cases(Extent extent) {
                              shapes_in_a_room_that_is_left,
                              rooms_that_many_leave,
                              discs_that_a_paddle_stirs,
+                             shapes_that_a_cross_stirs,
                              discs_in_closing_wedges,
                              discs_thrown_into_wedges,
                              overhangs,

@@ -71,6 +71,7 @@ HardCases shapes_under_a_plate(Extent extent);
 HardCases shapes_in_a_room_that_is_left(Extent extent);
 HardCases rooms_that_many_leave(Extent extent);
 HardCases discs_that_a_paddle_stirs(Extent extent);
+HardCases shapes_that_a_cross_stirs(Extent extent);
 HardCases discs_in_closing_wedges(Extent extent);
 HardCases discs_thrown_into_wedges(Extent extent);
 HardCases discs_between_a_box_and_a_post(Extent extent);

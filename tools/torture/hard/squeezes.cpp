@@ -194,7 +194,68 @@ Measures energy_from_a_paddle(HardRun& run) {
             {"quarantined", static_cast<double>(run.quarantined()), 0}};
 }
 
+constexpr double kArm = 2.5, kStirring = 2;  // m, rad/s: of the cross below
+
+/// Boxes, or discs, boxes and capsules, that fall on a kinematic cross which turns in a box. What lies under
+/// its arms has nowhere to go.
+/// @param gap  m, between its arms and the floor; bodies are .4 to .7 m thick
+Scene cross_in_a_box(double gap, double friction, bool are_mixed, std::uint64_t seed) {
+    constexpr int kBodies = 120, kInARow = 10;
+    constexpr double kHalfWidth = 4, kHeight = 16, kPitch = 0.75, kLowest = 6.2, kThickness = 0.3;  // m
+    Random random(seed, 37);
+    Scene scene;
+    scene.gravity = {0, -10};
+    const Material material{.friction = friction};
+    scene.walls = Walls{.min = {-kHalfWidth, 0}, .max = {kHalfWidth, kHeight}, .material = material};
+    scene.add({.type = BodyType::kinematic_body,
+               .shape = Compound{{{.shape = Box{2 * kArm, kThickness}, .material = material},
+                                  {.shape = Box{kThickness, 2 * kArm}, .material = material}}},
+               .position = {0, kArm + gap},
+               .angular_velocity = kStirring,
+               .material = material});
+    for (int i = 0; i < kBodies; ++i) {
+        const double width = random.uniform(0.4, 0.7), height = random.uniform(0.4, 0.7);
+        Body body{.shape = Box{width, height}, .material = material};
+        if (are_mixed && i % 3 == 0) body.shape = Disc{width / 2};
+        if (are_mixed && i % 3 == 2) body.shape = Capsule{0.6 * width, 0.3 * height};
+        body.position = {-3.4 + kPitch * (i % kInARow), kLowest + kPitch * (i / kInARow)};
+        body.angle = random.uniform(0, 6);
+        scene.add(body);
+    }
+    return scene;
+}
+
+/// Bodies fall as fast as three times the ends of the arms.
+Measures speed_beside_a_cross(HardRun& run) {
+    constexpr double kLargest = 15;
+    Largest most;
+    for (int i = 0; i < 720 && run.step(); ++i)
+        for (std::size_t body = 1; body < run.count(); ++body) most.take(run.speed(body));
+    return {{"speed/arm's", most.value() / (kStirring * kArm), kLargest},
+            {"quarantined", static_cast<double>(run.quarantined()), 0},
+            {"m/s", most.value()}};
+}
+
 }  // namespace
+
+HardCases shapes_that_a_cross_stirs(Extent extent) {
+    HardCases all;
+    for (const bool are_mixed : {false, true})
+        for (const double friction : {0.0, 0.5}) {
+            std::vector<Scene> scenes;
+            for (std::uint64_t seed = 1; seed <= extent.of<std::uint64_t>(3, 1); ++seed)
+                for (const double gap : {0.2, 0.8})
+                    scenes.push_back(cross_in_a_box(gap, friction, are_mixed, seed));
+            all.push_back(
+                {.code = "B37",
+                 .name = format("120 %s that a cross stirs, friction %g",
+                                are_mixed ? "discs, boxes and capsules" : "boxes", friction),
+                 .make = [first = scenes.front()] { return first; },
+                 .run = [more = std::vector(scenes.begin() + 1, scenes.end())](
+                            HardRun& run) { return worst_of_all(run, more, speed_beside_a_cross); }});
+        }
+    return all;
+}
 
 HardCases discs_that_a_paddle_stirs(Extent extent) {
     HardCases all;

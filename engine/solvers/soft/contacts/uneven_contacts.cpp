@@ -260,7 +260,6 @@ void UnevenContacts<Real>::begin_shapes(const WorldState<Real>& world, const Pat
 template <class Real>
 void UnevenContacts<Real>::settle(const StepView<Real>& step, ContactSweeps<Real>& sweeps,
                                   PathSolver<Real>& paths) {
-    if (turns_of_shapes_ == 0) return;
     const auto next = ContactSweeps<Real>::next(step, ContactSweeps<Real>::Blocks::all, 1);
     const bool has_discs = step.graph.pairs.contacts() > 0;
     const auto settled = static_cast<Real>(settled_ * step.terms.fall_speed());

@@ -41,6 +41,8 @@ class UnevenContacts {
                       const BodyMasses<Real>& masses);
     /// Tells that a body was removed or put elsewhere between steps. @param mass  kg
     void note_lost(double mass) { heaviest_lost_ = std::max(heaviest_lost_, mass); }
+    /// Whether contacts of shapes are solved by turns in this step.
+    bool takes_turns() const { return turns_of_shapes_ > 0; }
     /// Solves contacts of shapes and of discs by turns after all of them were solved in a substep, until a
     /// sweep over them changes little: nothing where no two shapes of uneven masses touch and no heavy one
     /// has gone. Cost: O(contacts), at most `kMostTurns` times that of a substep.
