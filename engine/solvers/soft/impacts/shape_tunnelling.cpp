@@ -268,8 +268,9 @@ void ShapeTunnelling<Real>::look_at_body(const Inputs& in, const Way& way, const
     });
 }
 
-/// To where it met what it passed, as seen from there, and without its velocity into it. In a corner that may
-/// be behind something else: then to where it was before the step, beside the same thing.
+/// To where it met what it passed, as seen from there, and on along its surface, without its velocity into
+/// it: what joints draw over something round in each step must not be held there. In a corner that may be
+/// behind something else: then to where it was before the step, beside the same thing.
 template <class Real>
 void ShapeTunnelling<Real>::put_back(const Inputs& in, Way& way, const Passed& passed, bool to_start) {
     Bodies<Real>& bodies = in.world.bodies;
@@ -287,7 +288,9 @@ void ShapeTunnelling<Real>::put_back(const Inputs& in, Way& way, const Passed& p
             if (impact.touches) time = std::min(time, impact.time);
         });
     if (to_start) time = 0;
-    const Vec2 x = pose.end_position + rotate(pose.end_turn, moving.centre + time * moving.velocity);
+    Vec2 left = to_start ? Vec2{} : (1 - time) * moving.velocity;
+    left -= std::fmax(dot(left, passed.normal), 0.0) * passed.normal;
+    const Vec2 x = pose.end_position + rotate(pose.end_turn, moving.centre + time * moving.velocity + left);
     bodies.position_x[way.row] = static_cast<Real>(x.x), bodies.position_y[way.row] = static_cast<Real>(x.y);
     way.end = {bodies.position_x[way.row], bodies.position_y[way.row]};
     if (bodies.has_rotation) {
