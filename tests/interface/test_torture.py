@@ -152,7 +152,7 @@ class MatrixTest(ProgramTest):
             self.assertLessEqual(bracket["fails"], bracket["holds"] * about["narrow"] + 1)
 
     def test_a_cell_that_is_out_of_time_says_so_with_what_it_knows(self):
-        self.carom("torture", "envelopes", "--rows", "tower-height", "--solver", "soft", "--precision", "float", "--limit", "0.2",
+        self.carom("torture", "envelopes", "--rows", "tower-height", "--solver", "soft", "--precision", "float", "--limit", "0.05",
                    "--out", "out", expect=None)
         row, = json.loads((self.folder / "out/torture.json").read_text())["rows"]
         self.assertTrue(row["bracket"]["out_of_time"], row)
