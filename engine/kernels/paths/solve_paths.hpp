@@ -341,8 +341,6 @@ void apply_changes(const PathBatch<Real>& p, const LinkScratch<Lanes>* scratch, 
     }
 }
 
-/// Solves the paths of a batch, or pieces of them, exactly; the lanes in `where` alone take the solution.
-/// @param restless  becomes what SolvePaths::restless says of each lane
 /// By how much an exact solve may change velocities [m/s].
 /// @param fastest, drive  as begin_paths() found them
 template <class Lanes, class Real>
@@ -362,6 +360,8 @@ typename Lanes::Batch most_change(const PathBatch<Real>& p, const LinkScratch<La
     return simd::select(drive > zero, simd::min(most, simd::max(of_drive, load)), most);
 }
 
+/// Solves the paths of a batch, or pieces of them, exactly; the lanes in `where` alone take the solution.
+/// @param restless  becomes what SolvePaths::restless says of each lane
 /// @return lanes whose active set did not settle
 template <class Lanes, class Real>
 typename Lanes::Mask solve_exactly(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch, int most_iterations,

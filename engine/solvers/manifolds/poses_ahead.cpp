@@ -128,8 +128,8 @@ void PosesAhead<Real>::look_at_surfaces(const WorldState<Real>& world, const Sub
         const std::span<const StoredPiece> pieces = world.shapes.pieces(bodies.shape[row]);
         const auto piece = static_cast<std::size_t>(ManifoldName::piece_of_surface(name.place));
         const std::int32_t number = pieces.empty() ? bodies.shape[row] : pieces[piece].number;
-        const Lead lead = lead_of(surfaces.memory[i], is_round(number), surfaces.friction[i],
-                                  bodies.inradius(row), bodies.mass[row], terms);
+        const Lead lead = used_or_none(lead_of(surfaces.memory[i], is_round(number), surfaces.friction[i],
+                                               bodies.inradius(row), bodies.mass[row], terms));
         on_surfaces_[row] =
             std::max(on_surfaces_[row], static_cast<double>(come[4 * place_of(row, lead) + 3]));
     }
@@ -160,8 +160,9 @@ bool PosesAhead<Real>::place(const WorldState<Real>& world, const SubstepTerms& 
                    row_b = static_cast<std::size_t>(contacts.b[i]);
         const bool b_moves = row_b < bodies.count && !bodies.is_immovable(row_b);
         const Real mass = b_moves ? std::min(bodies.mass[row_a], bodies.mass[row_b]) : bodies.mass[row_a];
-        leads[i - first] = lead_of(contacts.memory[i], has_round(item_a[i]) || has_round(item_b[i]),
-                                   contacts.friction[i], contacts.thickness[i], mass, terms);
+        leads[i - first] =
+            used_or_none(lead_of(contacts.memory[i], has_round(item_a[i]) || has_round(item_b[i]),
+                                 contacts.friction[i], contacts.thickness[i], mass, terms));
         any = any || leads[i - first] != Lead::none;
     }
     if (!any) return false;

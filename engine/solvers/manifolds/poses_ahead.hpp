@@ -78,6 +78,8 @@ class PosesAhead {
     void look_at(const Bodies<Real>& bodies, Real dt, const PoseWatch<Real>& now, std::size_t first,
                  std::size_t last);
     void move(const Bodies<Real>& bodies, std::size_t row, Lead lead, Real ahead);
+    /// Friction so small that its mean is none has no poses at the end.
+    Lead used_or_none(Lead lead) const { return is_used(lead) ? lead : Lead::none; }
     std::size_t place_of(std::size_t item, Lead lead) const {
         return item + static_cast<std::size_t>(lead) * items_;
     }

@@ -230,8 +230,7 @@ void UnevenContacts<Real>::begin_shapes(const WorldState<Real>& world, const Pat
     const double lost = std::exchange(heaviest_lost_, 0);
     // A single path is solved exactly: sweeps would only add their round-off, in units of the heaviest body.
     if (paths.is_single_path()) return;
-    const double mean_mass = world.dynamic_mass / static_cast<double>(world.bodies.moving());
-    if (lost > kHeavyLost * mean_mass) {
+    if (lost * static_cast<double>(world.bodies.moving()) > kHeavyLost * world.dynamic_mass) {
         turns_of_shapes_ = kMostTurns, settled_ = kSettledOfLost;
         return;
     }
