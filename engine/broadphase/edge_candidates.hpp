@@ -18,11 +18,13 @@ struct EdgePose {
     double angle = 0, end_angle = 0;  // rad
     bool takes_part = true;           // false: quarantined
     std::uint32_t row = 0;
+
+    bool turns() const { return angle != end_angle; }
 };
 
 /// The turn at a share of the step.
 inline Rotation turn_at(const EdgePose& pose, double share) {
-    if (pose.angle == pose.end_angle) return pose.turn;
+    if (!pose.turns()) return pose.turn;
     return rotation_by(pose.angle + share * (pose.end_angle - pose.angle));
 }
 

@@ -119,7 +119,7 @@ SupportSurface surface_of_edge(const WorldState<Real>& world, const EdgeCandidat
 
     const double met = time_of_meeting(p, way, edge.a, edge.b, radius);
     // Edges that turn take what they press along: nothing swings on them.
-    const bool rolls_on = presses && pose.angle == pose.end_angle && length_squared(way) < radius * radius;
+    const bool rolls_on = presses && !pose.turns() && length_squared(way) < radius * radius;
     const double time = rolls_on ? 0.5 : met;
     const Vec2 there = p + time * way;
     const double share = nearest_share(there, edge.a, edge.b);

@@ -128,6 +128,22 @@ TEST_SUITE("determinism/snapshots") {
         }
     }
 
+    // What has gone is remembered until the next step: docs/decisions/0067-weights-taken-off-heaps.md.
+    TEST_CASE_TEMPLATE("a heap whose weight was just removed goes on alike", Real, float, double) {
+        Scene scene;
+        scene.gravity = {0, -10};
+        scene.add({.type = BodyType::static_body, .shape = Box{40, 2}, .position = {0, -1}});
+        add_pyramid(scene,
+                    {.base = 8, .body = {.shape = Box{1, 1}, .mass = 1, .material = {.friction = 0.6}}});
+        const BodyId weight =
+            scene.add({.shape = Box{4, 1}, .position = {0.3, 9}, .angle = 0.1, .mass = 100});
+        BasicWorld<Real> whole(scene, {.threads = 1}), other(scene, {.threads = 1});
+        run(whole, 60), whole.remove(weight);
+        other.restore_state(saved(whole));
+        run(whole, 10), run(other, 10);
+        CHECK(other.state_hash() == whole.state_hash());
+    }
+
     TEST_CASE_TEMPLATE("a pyramid at rest, whose contacts are carried on from step to step, goes on alike",
                        Real, float, double) {
         Scene scene;

@@ -30,7 +30,7 @@ enum class Lead : std::uint8_t { none, half, whole };
 /// - Other contacts with friction are found where they are: their friction holds what would swing.
 /// docs/decisions/0057-contacts-ahead.md, 0066-what-rolls-keeps-its-energy.md.
 ///
-/// Cost: about 10 ns a body, where some surface has no friction or some shape is round.
+/// Cost: about 15 ns a body and its contacts, where some surface has no friction or some shape is round.
 template <class Real>
 class PosesAhead {
   public:

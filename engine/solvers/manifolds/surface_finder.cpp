@@ -239,7 +239,7 @@ void SurfaceFinder<Real>::find_on_chain(const WorldState<Real>& world, const Edg
     moving.angle = angle_in_chain;
     const double met = time_of_meeting_edges(world, moving, terms.dt, thickness);
     // What an edge that turns does in the step is in turning_edges.hpp.
-    const double time = met > 0 ? met : pose.angle == pose.end_angle ? ahead : 0;
+    const double time = met > 0 ? met : pose.turns() ? 0 : ahead;
     PlacedConvex then = body;
     if (time > 0)
         then.centre = body.centre + time * moving.velocity,

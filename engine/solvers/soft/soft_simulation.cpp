@@ -17,8 +17,10 @@ void SoftSimulation<Real>::take_back_step() {
     forget_derived_state();
 }
 
+/// A body is about to be removed or put elsewhere: what it leaves is told to contacts of discs by its place,
+/// and to those of shapes by its mass.
 template <class Real>
-void SoftSimulation<Real>::keep_former_place(std::size_t row) {
+void SoftSimulation<Real>::note_leaving(std::size_t row) {
     const std::int32_t former = soft.graph.trail.old_row(row);
     const Bodies<Real>& bodies = this->world.bodies;
     if (bodies.has_shapes && !bodies.is_immovable(row)) soft.note_lost(bodies.mass[row]);
@@ -36,7 +38,7 @@ void SoftSimulation<Real>::note_change(bool may_follow) {
 
 template <class Real>
 void SoftSimulation<Real>::remove(std::size_t row) {
-    keep_former_place(row);
+    note_leaving(row);
     soft.graph.trail.follow_removed(row, this->world.bodies.count - 1);
     const Bodies<Real>& bodies = this->world.bodies;
     const Radii* radii = this->candidates.known_radii();
@@ -61,7 +63,7 @@ void SoftSimulation<Real>::note_added(std::size_t row) {
 
 template <class Real>
 void SoftSimulation<Real>::note_place_before(std::size_t row) {
-    keep_former_place(row);
+    note_leaving(row);
 }
 
 template <class Real>

@@ -91,7 +91,7 @@ class SoftSimulation : public Simulation<Real> {
 
   private:
     void note_change(bool may_follow);
-    void keep_former_place(std::size_t row);
+    void note_leaving(std::size_t row);
 
     Books start_books_;  // of the present step
     // Changes since the last step.

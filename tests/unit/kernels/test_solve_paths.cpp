@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 using namespace carom;
@@ -129,9 +130,61 @@ double largest_violation(const RandomPaths<Real>& paths, const std::vector<bool>
     return worst;
 }
 
+/// 16 times the same path: what nothing moves, over a body of 1 kg, over a slope.
+/// @param drive   m/s, of what nothing moves, down to the body
+/// @param slope   rad, of what lies below the body
+/// @param rises   m/s, of that, up to the body
+/// @param weight  kg, of that; infinite: nothing moves it
+template <class Real>
+RandomPaths<Real> pressed_on_a_slope(double drive, double slope, double rises, double weight) {
+    RandomPaths<Real> paths(1, 2, 0);
+    for (std::size_t lane = 0; lane < kPathLanes; ++lane) {
+        paths.lengths[lane] = 2;
+        const auto head = static_cast<std::size_t>(paths.heads[lane]);
+        const auto set = [&](std::size_t row, double vy, double inverse_mass) {
+            Real* record = &paths.velocity[4 * row];
+            record[0] = record[2] = 0;
+            record[1] = static_cast<Real>(vy), record[3] = static_cast<Real>(inverse_mass);
+        };
+        set(head, -drive, 0), set(head + 1, 0, 1), set(head + 2, rises, 1 / weight);
+        for (std::size_t i = 0; i < 2; ++i) {
+            PathLink<Real>& link = paths.links[i];
+            const double angle = i == 0 ? 0 : slope;
+            link.body[lane] = static_cast<std::int32_t>(head + i + 1);
+            link.normal_x[lane] = static_cast<Real>(std::sin(angle));
+            link.normal_y[lane] = static_cast<Real>(-std::cos(angle));
+            for (auto* lever : {&link.near1, &link.near2, &link.near_t, &link.far1, &link.far2, &link.far_t})
+                (*lever)[lane] = 0;
+            link.separation1[lane] = 0, link.separation2[lane] = static_cast<Real>(kNoPoint);
+            link.friction[lane] = 0, link.thickness[lane] = 1;
+            link.normal1[lane] = link.normal2[lane] = link.tangent[lane] = 0;
+        }
+    }
+    return paths;
+}
+
 }  // namespace
 
 TEST_SUITE("kernels/paths/solve_paths") {
+    // A body under what comes down at 1 m/s slides out along a slope of .2 rad at 1 / tan(.2) = 4.9 m/s,
+    // along one of 45 degrees at 1 m/s: docs/decisions/0068-what-stirs-shapes.md.
+    TEST_CASE_TEMPLATE("what drives a path bounds its exact solve", Real, float, double) {
+        constexpr double kInfinite = std::numeric_limits<double>::infinity(), kHalfRight = 0.785, kFlat = 0.2;
+        const auto& kernels = runnable_kernel_tables().front()->of<Real>();
+        const auto is_solved = [&](double drive, double slope, double rises, double weight, Real fall = 0) {
+            RandomPaths<Real> paths = pressed_on_a_slope<Real>(drive, slope, rises, weight);
+            SolvePaths<Real> k = paths.arguments();
+            k.fall = fall;
+            return kernels.convex->paths.solve(k, 0, 1).unsettled == 0;
+        };
+        CHECK(is_solved(1, kHalfRight, 0, 1e6));
+        CHECK_FALSE(is_solved(1, kFlat, 0, 1e6));
+        CHECK_FALSE(is_solved(1, kHalfRight, 0, kInfinite));  // a squeeze
+        CHECK(is_solved(0, kFlat, 1, 1e6));                   // nothing drives it
+        // What gravity adds to the path in a substep it may take up beside however slow a plate.
+        CHECK_FALSE(is_solved(1e-3, kFlat, 1, 1e6));
+        CHECK(is_solved(1e-3, kFlat, 1, 1e6, 2));
+    }
     TEST_CASE_TEMPLATE("contacts along a path obey their laws all at once", Real, float, double) {
         const auto& kernels = runnable_kernel_tables().front()->of<Real>();
         std::size_t solved = 0, unsettled = 0;

@@ -227,7 +227,7 @@ Scene cross_in_a_box(double gap, double friction, bool are_mixed, std::uint64_t 
 
 /// Bodies fall as fast as three times the ends of the arms.
 Measures speed_beside_a_cross(HardRun& run) {
-    constexpr double kLargest = 15;
+    constexpr double kLargest = 12;
     Largest most;
     for (int i = 0; i < 720 && run.step(); ++i)
         for (std::size_t body = 1; body < run.count(); ++body) most.take(run.speed(body));

@@ -228,13 +228,13 @@ template <class Real>
 void UnevenContacts<Real>::begin_shapes(const WorldState<Real>& world, const PathSolver<Real>& paths,
                                         const BodyMasses<Real>& masses) {
     const double lost = std::exchange(heaviest_lost_, 0);
+    turns_of_shapes_ = 0, settled_ = kSettled;
     // A single path is solved exactly: sweeps would only add their round-off, in units of the heaviest body.
     if (paths.is_single_path()) return;
     if (lost * static_cast<double>(world.bodies.moving()) > kHeavyLost * world.dynamic_mass) {
         turns_of_shapes_ = kMostTurns, settled_ = kSettledOfLost;
         return;
     }
-    settled_ = kSettled;
     if (!masses.are_uneven()) return;
     const Manifolds<Real>& manifolds = paths.manifolds;
     const Column<Real>& inverse = masses.inverse_column();
