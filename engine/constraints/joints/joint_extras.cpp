@@ -67,8 +67,9 @@ void JointSystem::couple_extras() {
         const auto j = static_cast<std::size_t>(extra.joint);
         double alone = 0;
         for_each_part(j, extra.row, [&](std::size_t body, const Vector& part) {
-            alone += bodies[body].inverse_mass * (part[0] * part[0] + part[1] * part[1]) +
-                     bodies[body].inverse_inertia * part[2] * part[2];
+            alone += (bodies[body].inverse_mass * (part[0] * part[0] + part[1] * part[1]) +
+                      bodies[body].inverse_inertia * part[2] * part[2]) /
+                     weight_[body];
         });
         matrix_[i * count + i] += softness_[j][static_cast<std::size_t>(extra.row)];
         if (alone > 0)
@@ -277,27 +278,31 @@ void JointSystem::solve_all() {
     solve_tree();
 }
 
-void JointSystem::answer_blow(std::size_t body, const Vector& blow) {
+void JointSystem::answer(std::span<const Blow> blows, Drives drives) {
     for (Vector& rhs : rhs_) rhs = {};
     const auto solve = [&](bool with_extras) {
         std::fill(pushed_.begin(), pushed_.end(), Vector{});
-        pushed_[body] = blow;
+        for (const Blow& blow : blows)
+            for (std::size_t c = 0; c < 3; ++c) pushed_[blow.body][c] += blow.impulse[c];
         for (std::size_t i = 0; with_extras && i < extras_.size(); ++i) push_row(extras_[i], solution_[i]);
         solve_tree();
     };
     solve(false);
     if (extras_.empty()) return;
+    kept_state_ = state_;
     for (std::size_t i = 0; i < extras_.size(); ++i) {
         const RowLaw law = rows_[static_cast<std::size_t>(extras_[i].joint)]
                                .row[static_cast<std::size_t>(extras_[i].row)]
                                .law;
-        const bool holds = law == RowLaw::hold || law == RowLaw::spring;
+        const bool holds = law == RowLaw::hold || law == RowLaw::spring ||
+                           (drives == Drives::as_solved && state_[i] == End::none);
         low_[i] = holds ? -kUnbounded : 0, high_[i] = holds ? kUnbounded : 0;
         state_[i] = holds ? End::none : End::low;
         extra_rhs_[i] = -change_of_row(extras_[i], change_);
     }
     solve_bounded();
     solve(true);
+    state_ = kept_state_;
 }
 
 }  // namespace carom

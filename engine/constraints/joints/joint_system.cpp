@@ -12,13 +12,6 @@ namespace {
 
 /// Springs without damping have no compliance; this takes its place.
 constexpr double kLeastGamma = 1e-12;
-/// Largest correction of a joint or displacement of a body at once, in lengths of the system; of turns in
-/// radians.
-constexpr double kLargestCorrection = 0.1;
-/// Share of what a taut loop is too long by beyond the stretch of its spring that is corrected at once.
-constexpr double kSlowly = 0.02;
-/// Times that bodies which corrections would displace too far are made heavier.
-constexpr int kMostWeightings = 4;
 
 }  // namespace
 
@@ -294,111 +287,6 @@ void JointSystem::note_answer() {
         const auto j = static_cast<std::size_t>(extras_[e].joint);
         add_force(j, rows_[j].row[static_cast<std::size_t>(extras_[e].row)], solution_[e]);
     }
-}
-
-/// The least displacements, as masses count them, that take a share of all errors away.
-void JointSystem::find_displacements(double share) {
-    for (std::size_t j = 0; j < joints.size(); ++j)
-        for (int k = 0; k < rows_[j].firm; ++k) {
-            const JointRow& row = rows_[j].row[static_cast<std::size_t>(k)];
-            rhs_[j][static_cast<std::size_t>(k)] = row.law == RowLaw::hold ? -share * row.value : 0;
-        }
-    for (std::size_t e = 0; e < extras_.size(); ++e) {
-        const JointRow& row =
-            rows_[static_cast<std::size_t>(extras_[e].joint)].row[static_cast<std::size_t>(extras_[e].row)];
-        const bool is_firm = row.law == RowLaw::hold || row.law == RowLaw::spring;
-        const bool acts = is_firm || (row.law == RowLaw::stop && row.value < 0);
-        low_[e] = is_firm ? -kUnbounded : 0, high_[e] = acts ? kUnbounded : 0;
-        extra_rhs_[e] = acts && row.law != RowLaw::spring ? -share * row.value : 0;
-        state_[e] = acts ? End::none : End::low;
-    }
-    for (const TautLoop& loop : taut_) {
-        const double rigid = 1 - loop.share, rate = kSlowly + (1 - kSlowly) * rigid * rigid * rigid * rigid,
-                     error = along(loop, [&](std::size_t e) { return value_of(e); }),
-                     stretch = -h_ * loop.softness *
-                               along(loop, [&](std::size_t e) { return pulled_of(extras_[e]); }),
-                     left_to_spring = error - rate * (error - stretch);
-        for (std::size_t k = 0; k < loop.rows; ++k)
-            extra_rhs_[loop.first + k] += share * left_to_spring * loop.direction[k];
-    }
-    solve_all();
-}
-
-/// How far a body is displaced [m]; a turn counts as the way of a point at a distance of `length`.
-double JointSystem::displacement_of(const Link& link, double length) const {
-    const Vector& change = change_[static_cast<std::size_t>(link.body)];
-    return std::fmax(std::fmax(std::fabs(change[0]), std::fabs(change[1])), length * std::fabs(change[2]));
-}
-
-/// Displacements that the rows at the present positions still hold for. A chain that is nearly straight is
-/// shortened by a little way of the heavy body at its end, or by a long one of its light links across it, of
-/// which the rows are untrue: what would be displaced too far counts as heavier, until all rows are kept by
-/// displacements that are small. What is too far even then, as of rods that cannot all have their length, is
-/// taken in part.
-/// @param most  m  @param length  as displacement_of has it
-/// @return the share of change_ to take
-double JointSystem::find_small_displacements(double share, double most, double length) {
-    const auto farthest = [&] {
-        double way = 0;
-        for (const Link& link : links_) way = std::fmax(way, displacement_of(link, length));
-        return way;
-    };
-    find_displacements(share);
-    double way = farthest();
-    const bool is_far = way > most;
-    for (int round = 0; round < kMostWeightings && way > most; ++round) {
-        for (const Link& link : links_) {
-            const double excess = displacement_of(link, length) / most;
-            if (excess > 1) weight_[static_cast<std::size_t>(link.body)] *= excess * excess;
-        }
-        factor();
-        find_displacements(share);
-        way = farthest();
-    }
-    if (is_far) std::fill(weight_.begin(), weight_.end(), 1.0);
-    is_weighted_ = is_far;
-    return way > most ? most / way : 1;
-}
-
-bool JointSystem::correct_positions(double least, double length) {
-    double worst = largest_error_;
-    for (const Extra& extra : extras_) {
-        const JointRow& row =
-            rows_[static_cast<std::size_t>(extra.joint)].row[static_cast<std::size_t>(extra.row)];
-        if (row.law == RowLaw::stop) worst = std::fmax(worst, -row.value);
-    }
-    if (!(worst > least)) return false;
-    const double most = kLargestCorrection * length;
-    const double kept = find_small_displacements(std::fmin(1, most / worst), most, length);
-    for (const Link& link : links_) {
-        SystemBody& body = bodies[static_cast<std::size_t>(link.body)];
-        const Vector& change = change_[static_cast<std::size_t>(link.body)];
-        body.pose.position += kept * Vec2{change[0], change[1]};
-        turn_pose(body.pose, kept * change[2]);
-    }
-    if (std::exchange(is_weighted_, false)) factor();
-    std::fill(state_.begin(), state_.end(), End::none);
-    // Paths begin where the bodies are now: else velocities would take the correction back.
-    std::array<double, 3> values;
-    for (std::size_t j = 0; j < joints.size(); ++j) {
-        const JointPose &a = bodies[static_cast<std::size_t>(joints[j].a)].pose,
-                        &b = bodies[static_cast<std::size_t>(joints[j].b)].pose;
-        JointRows& rows = rows_[j];
-        if (joints[j].gear < 0)
-            values_of(*joints[j].joint, a, b, rows, values);
-        else
-            values[0] = value_of_gear(gears_[static_cast<std::size_t>(joints[j].gear)],
-                                      [&](std::int32_t body) -> const JointPose& {
-                                          return bodies[static_cast<std::size_t>(body)].pose;
-                                      });
-        for (std::size_t k = 0; k < static_cast<std::size_t>(rows.firm); ++k) rows.row[k].value = values[k];
-        if (rows.count == rows.firm) continue;
-        const JointRows now = rows_of(*joints[j].joint, a, b);
-        for (std::size_t k = static_cast<std::size_t>(rows.firm); k < static_cast<std::size_t>(rows.count);
-             ++k)
-            rows.row[k].value = now.row[k].value;
-    }
-    return true;
 }
 
 void JointSystem::advance() {

@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "constraints/coupled_impulses.hpp"
 #include "constraints/joints/joint_rows.hpp"
 #include "constraints/joints/spring_law.hpp"
 
@@ -60,6 +62,18 @@ class JointSystem {
     };
     std::vector<Member> joints;
 
+    /// What presses on a body of the system, at a point: corrections do not displace the one into the other.
+    struct Load {
+        std::int32_t body = 0;
+        std::array<double, 3> along{};                 // what a unit push gives the body [N s, N s, N m s]
+        std::int32_t other = 0;                        // what presses, by a number that tells it from others
+        std::array<double, 3> other_along{};           // what a unit push gives that
+        double inverse_mass = 0, inverse_inertia = 0;  // of that; 0: nothing moves it
+        double separation = 0;                         // m
+        double push = 0;                               // kg m, of the last correction
+    };
+    std::vector<Load> loads;
+
     /// Makes joint number `joint` a gear of two others by their numbers; below zero: of its own bodies.
     void add_gear(std::size_t joint, std::int32_t first, std::int32_t second);
 
@@ -105,16 +119,26 @@ class JointSystem {
     /// Adds what the joints have given since `prepare` to their forces.
     void note_forces();
 
-    /// A blow on a body: N s, N s, N m s.
     using Vector = std::array<double, 3>;
-    /// What a blow on a body changes the velocities of all by at once, while joints hold at the rows of
-    /// `prepare`; motors and limits do nothing in so short a time. Velocities and impulses stay as they are.
-    /// Cost: O(joints), and O(rows²) of loops.
-    void answer_blow(std::size_t body, const Vector& blow);
-    /// m/s, m/s, rad/s: of a body that can move, by the last blow.
+    /// An impulse on a body.
+    struct Blow {
+        std::size_t body;
+        Vector impulse;  // N s, N s, N m s
+    };
+    /// What motors and limits do where a blow is answered.
+    enum class Drives : std::uint8_t {
+        none,       ///< nothing: a blow takes no time
+        as_solved,  ///< those hold that the last solve found between their ends
+    };
+    /// What blows change the velocities of all bodies by, while joints hold at the rows of `prepare`.
+    /// Velocities and impulses stay as they are. Cost: O(joints), and O(rows²) of loops.
+    void answer(std::span<const Blow> blows, Drives drives);
+    /// m/s, m/s, rad/s: of a body that can move, by the last blows.
     const Vector& answer_of(std::size_t body) const { return change_[body]; }
-    /// Adds what the joints gave in answer to the last blow to their forces.
+    /// Adds what the joints gave in answer to the last blows to their forces.
     void note_answer();
+    /// The last blows take place: velocities change, and impulses by what the joints gave in answer.
+    void take_answer() { take_velocities(); }
     /// Moves bodies through h; for tests and for systems that nothing else moves.
     void advance();
 
@@ -203,6 +227,11 @@ class JointSystem {
     void find_displacements(double share);
     double find_small_displacements(double share, double most, double length);
     double displacement_of(const Link& link, double length) const;
+    double farthest_displacement(double length) const;
+    void press_loads();
+    void displace(double share);
+    void measure_values();
+    double sum_of_errors() const;
 
     /// A loop that is taut in one direction among the rows of its last joint, and how far.
     struct TautLoop {
@@ -298,6 +327,11 @@ class JointSystem {
     std::vector<double> weight_;     // by body: how many times as heavy it counts; 1 but in corrections
     bool is_weighted_ = false;       // whether it is factored so
     std::vector<std::size_t> free_;
+    std::vector<JointPose> kept_poses_;           // by body: before a correction
+    CoupledImpulses pushes_;                      // of loads
+    std::vector<Vector> alone_displacements_;     // by body: without them
+    std::vector<std::vector<Vector>> pushed_by_;  // by load: displacements by a push of 1
+    std::vector<End> kept_state_;                 // by extra row: before a blow is answered
 };
 
 template <class Fn>

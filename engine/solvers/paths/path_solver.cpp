@@ -414,6 +414,15 @@ void PathSolver<Real>::give(const PathLink<Real>& link, std::size_t lane, std::s
 }
 
 template <class Real>
+void PathSolver<Real>::add_impulses(std::size_t number, const std::array<double, 3>& more) {
+    const PathCut::Place place = cut().places()[number];
+    PathLink<Real>& link = links_[place.link];
+    link.normal1[place.lane] += static_cast<Real>(more[0]);
+    link.normal2[place.lane] += static_cast<Real>(more[1]);
+    link.tangent[place.lane] += static_cast<Real>(more[2]);
+}
+
+template <class Real>
 void PathSolver<Real>::take_from(const std::vector<std::uint8_t>& is_of, Column<Real>& velocity) const {
     if (manifolds.live().empty()) return;  // then the cut is that of an earlier step
     for (const PathCut::Place place : cut().places()) {

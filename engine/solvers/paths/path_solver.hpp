@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -108,6 +109,10 @@ class PathSolver {
     /// Takes the impulses that contacts of some bodies have from velocities; contacts keep theirs.
     /// @param is_of  [rows], not 0 for these bodies  @param velocity  [rows][4], as records have them
     void take_from(const std::vector<std::uint8_t>& is_of, Column<Real>& velocity) const;
+    /// Adds to the impulses of a contact [N s]: of its points, along its tangent. Velocities stay as they
+    /// are.
+    /// @param number  among all contacts of the step
+    void add_impulses(std::size_t number, const std::array<double, 3>& more);
     /// Multiplies the impulses of each contact by share_of(row, row); velocities stay as they are.
     template <class ShareOf>
     void scale(const ShareOf& share_of);

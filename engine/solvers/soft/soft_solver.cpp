@@ -123,6 +123,7 @@ template <class Real>
 void SoftSolver<Real>::solve_turn(WorldState<Real>& world) {
     const auto next = Sweeps::next(view(), Sweeps::Blocks::all, 1);
     if (!world.joints.empty()) joints.solve_again(joint_step(world), loops_);
+    if (!heavy_.empty()) heavy_.solve(held_contacts(), joint_step(world), joints);
     if (world.bodies.has_shapes) paths.solve(terms_, records_, loops_, 1, true);
     sweeps_.run(view(), {next.data(), next.size()});
 }

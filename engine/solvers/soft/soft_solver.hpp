@@ -22,6 +22,7 @@
 #include "solvers/soft/contacts/wedged_bodies.hpp"
 #include "solvers/soft/impacts/impacts.hpp"
 #include "solvers/soft/impacts/shape_impacts.hpp"
+#include "solvers/soft/joints/heavy_loads.hpp"
 #include "solvers/soft/joints/soft_joints.hpp"
 #include "solvers/soft/passive_substeps.hpp"
 #include "solvers/soft/project_positions.hpp"
@@ -143,10 +144,13 @@ class SoftSolver {
     void begin_joints(WorldState<Real>& world, double dt) {
         joints.begin_step(joint_step(world), view(), paths, dt);
         impacts.held.begin_joints(joints);
+        heavy_.find(held_contacts(), joint_step(world), joints);
     }
     void solve_joints(WorldState<Real>& world, int number) {
+        heavy_.tell(held_contacts(), joint_step(world), joints);
         joints.solve(joint_step(world), loops_, number);
         joints.forget_blows(joint_step(world), view(), paths);
+        heavy_.begin_substep(joint_step(world), joints);
     }
     /// Contacts and joints in turns, where they bear on each other.
     void solve_joints_and_contacts(WorldState<Real>& world);
@@ -214,6 +218,7 @@ class SoftSolver {
     JointStep<Real> joint_step(WorldState<Real>& world) {
         return {world, records_, terms_, books_.gravity_work, joints.springs()};
     }
+    HeldContacts<Real> held_contacts() { return {view(), paths}; }
     StepView<Real> view() { return {graph, supports_, records_, settings_, terms_, loops_}; }
 
     // What holds for the present step.
@@ -236,6 +241,7 @@ class SoftSolver {
     ContactChains<Real> chains_;
     WedgedBodies<Real> wedged_;
     EndProjection<Real> projection_;
+    HeavyLoads<Real> heavy_;
     PassiveSubsteps<Real> passive_;
     SubstepBooks<Real> books_;
     std::vector<Books> parts_of_books_;  // of some contacts of shapes each

@@ -32,7 +32,10 @@ DirectJoints<Real>::DirectJoints(const WorldState<Real>& world, const std::vecto
         rows_.push_back(static_cast<std::int32_t>(row));
         rim_.push_back(rim_of(world.bodies, row));
         body.inverse_mass = world.bodies.inverse_mass(row);
-        if (body.inverse_mass > 0) moving_row_ = rows_.back();
+        if (body.inverse_mass > 0) {
+            moving_row_ = rows_.back();
+            mass_ += 1 / body.inverse_mass, heaviest_ = std::fmax(heaviest_, 1 / body.inverse_mass);
+        }
         body.inverse_inertia = inverse_inertia_of(world.bodies, row);
         body.seen_inverse_inertia = body.inverse_inertia;
         return number;
@@ -43,8 +46,10 @@ DirectJoints<Real>::DirectJoints(const WorldState<Real>& world, const std::vecto
         JointSystem::Member member;
         member.joint = &joint;
         member.a = number_of(joint.a), member.b = number_of(joint.b);
-        longest = std::max({longest, joint.length, std::sqrt(length_squared(joint.anchor_b))});
-        if (!joint.is_on_world()) longest = std::max(longest, std::sqrt(length_squared(joint.anchor_a)));
+        longest = std::fmax(longest, joint.length);
+        for (const auto& [number, arm] : {std::pair{member.a, joint.anchor_a}, {member.b, joint.anchor_b}})
+            if (system_.bodies[static_cast<std::size_t>(number)].inverse_mass > 0)
+                longest = std::fmax(longest, std::sqrt(length_squared(arm)));
         system_.joints.push_back(member);
         may_drive_ = may_drive_ || joint.is_spring() || joint.has_motor || joint.type == JointType::target;
     }
@@ -55,7 +60,8 @@ DirectJoints<Real>::DirectJoints(const WorldState<Real>& world, const std::vecto
     for (std::size_t j = 0; j < slots_.size(); ++j)
         if (const StoredJoint& joint = world.joints[slots_[j]]; joint.type == JointType::gear)
             system_.add_gear(j, number_in_system(joint.first), number_in_system(joint.second));
-    for (const double rim : rim_) longest = std::max(longest, rim);
+    for (std::size_t i = 1; i < rim_.size(); ++i)
+        if (system_.bodies[i].inverse_mass > 0) longest = std::fmax(longest, rim_[i]);
     length_ = longest;
     system_.plan();
     given_.resize(rows_.size()), last_impulse_.resize(slots_.size());
@@ -213,15 +219,37 @@ void DirectJoints<Real>::solve_first(const JointStep<Real>& step, int substep) {
 }
 
 template <class Real>
-void DirectJoints<Real>::solve_again(const JointStep<Real>& step) {
+void DirectJoints<Real>::read_velocities(const JointStep<Real>& step) {
     for (std::size_t i = 1; i < rows_.size(); ++i) {
         const Real* record = &step.records.velocity[4 * static_cast<std::size_t>(rows_[i])];
         system_.bodies[i].velocity = Vec2{record[0], record[1]};
         system_.bodies[i].spin = static_cast<double>(record[2]) / rim_[i];
     }
     before_ = system_.bodies;
+}
+
+template <class Real>
+void DirectJoints<Real>::solve_again(const JointStep<Real>& step) {
+    read_velocities(step);
     system_.solve_curved(1);
     write_velocities(step);
+}
+
+template <class Real>
+void DirectJoints<Real>::take_blows(const JointStep<Real>& step, std::span<const JointBlow> blows,
+                                    JointSystem::Drives drives) {
+    read_velocities(step);
+    blows_.clear();
+    for (const JointBlow& blow : blows) blows_.push_back(blow_of(blow));
+    system_.answer(blows_, drives);
+    system_.take_answer();
+    write_velocities(step);
+    // What the blows alone gave is not the joints'.
+    for (const JointSystem::Blow& blow : blows_) {
+        const SystemBody& body = system_.bodies[blow.body];
+        given_[blow.body].velocity -= body.inverse_mass * Vec2{blow.impulse[0], blow.impulse[1]};
+        given_[blow.body].spin -= body.inverse_inertia * blow.impulse[2];
+    }
 }
 
 template <class Real>

@@ -2,12 +2,21 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <span>
 #include <vector>
 
 #include "constraints/joints/joint_system.hpp"
 #include "solvers/soft/joints/joint_step.hpp"
 
 namespace carom {
+
+/// An impulse of a contact on a body that joints hold.
+struct JointBlow {
+    std::int32_t row;
+    Vec2 impulse;   // N s
+    double at_rim;  // N s, what its rim is given: constraints/contact_law.hpp
+};
 
 /// A group of bodies and joints that is solved exactly: a system in double precision between the records of
 /// the bodies before and after.
@@ -41,13 +50,25 @@ class DirectJoints {
     /// Adds what its joints gave since the last solve_first or end_step to their forces.
     void note_forces() { system_.note_forces(); }
     /// What a blow on one of its bodies changes the velocity records of all by, at once, while joints hold.
-    /// @param row  of the body that is struck
-    /// @param impulse  N s  @param at_rim  N s, what its rim is given: constraints/contact_law.hpp
     /// @param fn  called for each body that can move: its row, what is added to vx, vy and rim speed [m/s]
     template <class Fn>
-    void answer_blow(std::int32_t row, Vec2 impulse, double at_rim, const Fn& fn);
+    void answer(const JointBlow& blow, JointSystem::Drives drives, const Fn& fn);
     /// Adds what its joints gave in answer to the last blow to their forces.
     void note_answer() { system_.note_answer(); }
+    /// Gives bodies impulses, and all of them what joints give in answer.
+    void take_blows(const JointStep<Real>& step, std::span<const JointBlow> blows,
+                    JointSystem::Drives drives);
+    double mass() const { return mass_; }          ///< kg, of its bodies together
+    double heaviest() const { return heaviest_; }  ///< kg, of one of them
+    /// What presses on its bodies in the next solve_first, which moves none of them into it.
+    std::vector<JointSystem::Load>& loads() { return system_.loads; }
+    /// A load whose pushes are along an impulse on a body of the group.
+    JointSystem::Load load_on(const JointBlow& unit) const {
+        const JointSystem::Blow push = blow_of(unit);
+        JointSystem::Load load;
+        load.body = static_cast<std::int32_t>(push.body), load.along = push.impulse;
+        return load;
+    }
     /// Whether a motor, a spring or a body that moves by itself may give its bodies energy.
     bool may_drive() const { return may_drive_; }
     /// The work of these in this substep [J].
@@ -74,6 +95,12 @@ class DirectJoints {
     void write_velocities(const JointStep<Real>& step);
     void correct(const JointStep<Real>& step);
     void half_kick(const JointStep<Real>& step, double sign);
+    void read_velocities(const JointStep<Real>& step);
+    JointSystem::Blow blow_of(const JointBlow& blow) const {
+        const auto body =
+            static_cast<std::size_t>(std::find(rows_.begin(), rows_.end(), blow.row) - rows_.begin());
+        return {body, {blow.impulse.x, blow.impulse.y, rim_[body] * blow.at_rim}};
+    }
 
     struct Change {
         Vec2 velocity;    // m/s
@@ -88,22 +115,33 @@ class DirectJoints {
     std::vector<Change> given_;                        // by body: what its joints gave it in this substep
     std::vector<SystemBody> before_;                   // that were read
     std::vector<std::array<double, 3>> last_impulse_;  // N s, by joint: of the last substep of a step
-    double least_error_ = 0, length_ = 0;              // m
-    bool touches_ = false, was_free_ = true;           // in this step; in the last one
+    std::vector<JointSystem::Blow> blows_;
+    double mass_ = 0, heaviest_ = 0;          // kg
+    double least_error_ = 0, length_ = 0;     // m
+    bool touches_ = false, was_free_ = true;  // in this step; in the last one
     bool is_beside_ = false, converges_ = false, may_drive_ = false;
 };
 
 template <class Real>
 template <class Fn>
-void DirectJoints<Real>::answer_blow(std::int32_t row, Vec2 impulse, double at_rim, const Fn& fn) {
-    const auto struck = static_cast<std::size_t>(std::find(rows_.begin(), rows_.end(), row) - rows_.begin());
-    system_.answer_blow(struck, {impulse.x, impulse.y, rim_[struck] * at_rim});
+void DirectJoints<Real>::answer(const JointBlow& blow, JointSystem::Drives drives, const Fn& fn) {
+    const JointSystem::Blow on_system = blow_of(blow);
+    system_.answer({&on_system, 1}, drives);
     for (std::size_t i = 1; i < rows_.size(); ++i) {
         const SystemBody& body = system_.bodies[i];
         if (!(body.inverse_mass > 0)) continue;
         const JointSystem::Vector& by = system_.answer_of(i);
         fn(rows_[i], std::array<double, 3>{by[0], by[1], body.inverse_inertia > 0 ? rim_[i] * by[2] : 0});
     }
+}
+
+/// What an impulse changes the velocity of a body by that no joint holds: vx, vy, rim speed [m/s].
+/// @param velocity  records
+template <class Real>
+std::array<double, 3> change_of_free(const Column<Real>& velocity, const JointBlow& blow) {
+    const auto inverse = static_cast<double>(velocity[4 * static_cast<std::size_t>(blow.row) + 3]);
+    const double w = std::fabs(inverse);
+    return {w * blow.impulse.x, w * blow.impulse.y, 2 * std::fmax(inverse, 0) * blow.at_rim};
 }
 
 extern template class DirectJoints<float>;

@@ -227,10 +227,9 @@ void SoftJoints<Real>::solve(const JointStep<Real>& step, const StepLoops<Real>&
 
 template <class Real>
 DirectJoints<Real>* SoftJoints<Real>::small_group_of(std::int32_t row) {
-    if (static_cast<std::size_t>(row) >= group_of_.size()) return nullptr;
-    const std::int32_t number = group_of_[static_cast<std::size_t>(row)];
+    const std::int32_t number = exact_group_of(row);
     if (number < 0) return nullptr;
-    DirectJoints<Real>& group = direct_[static_cast<std::size_t>(number)];
+    DirectJoints<Real>& group = exact_group(number);
     return group.joints() <= kMostJointsOfSmall ? &group : nullptr;
 }
 

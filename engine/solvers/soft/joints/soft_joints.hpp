@@ -39,7 +39,14 @@ class SoftJoints {
     void forget_blows(const JointStep<Real>& step, const StepView<Real>& contacts, PathSolver<Real>& paths);
     /// Once more, after contacts have changed velocities.
     void solve_again(const JointStep<Real>& step, const StepLoops<Real>& loops);
-    /// The group of a body if it is solved exactly and has few joints, else null.
+    /// Groups that are solved exactly, and the number of a body's group among them; -1: it is in none.
+    std::size_t exact_groups() const { return first_beside_; }
+    std::int32_t exact_group_of(std::int32_t row) const {
+        return static_cast<std::size_t>(row) < group_of_.size() ? group_of_[static_cast<std::size_t>(row)]
+                                                                : -1;
+    }
+    DirectJoints<Real>& exact_group(std::int32_t number) { return direct_[static_cast<std::size_t>(number)]; }
+    /// That of a body if it has few joints, else null.
     DirectJoints<Real>* small_group_of(std::int32_t row);
     /// Whether contacts and joints are to be solved in turns in this step.
     bool touches() const { return touches_ || crowd_groups_ > 0; }

@@ -1,0 +1,264 @@
+#include "solvers/soft/joints/heavy_loads.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace carom {
+namespace {
+
+// docs/decisions/0069-loads-on-light-mechanisms.md has the measurements behind these.
+
+/// What presses on a body is heavy if it weighs more than so many times as much: turns hand on what is less.
+constexpr double kHeavy = 4;
+/// Contacts times joints of their groups, at most, in a step: what is beyond is solved in turns alone.
+constexpr std::size_t kMostWork = 1024;
+/// How heavy bodies may be to an impulse, in masses of all that joints connect with them: they are heavier
+/// where joints hold them against the world, and a contact says what these say, or the contrary.
+constexpr double kMostOfAll = 2;
+/// Impulses that change velocities by less are none, in shares of what gravity adds in a substep.
+constexpr double kTolerance = 1e-3;
+
+constexpr std::size_t kTangent = HeldContact::kPoints;
+
+std::size_t index(std::int32_t row) {
+    return static_cast<std::size_t>(row);
+}
+
+JointBlow unit_blow(const HeldContact& contact, std::size_t side, std::size_t direction) {
+    return {contact.row[side], contact.impulse_on(side, direction), contact.at_rim[side][direction]};
+}
+
+}  // namespace
+
+/// The weight that a body may hand on [kg]: its own, or what joints connect with it.
+template <class Real>
+double HeavyLoads<Real>::weight_of(std::int32_t row, const Bodies<Real>& bodies,
+                                   const SoftJoints<Real>& joints) const {
+    const std::int32_t group = joints.exact_group_of(row);
+    return group < 0 ? static_cast<double>(bodies.mass[index(row)]) : weight_[index(group)];
+}
+
+/// A load weighs on the body that it touches and, by way of joints, on all of its group; and that on another
+/// group that it touches.
+template <class Real>
+void HeavyLoads<Real>::weigh_groups(const HeldContacts<Real>& contacts, const Bodies<Real>& bodies,
+                                    SoftJoints<Real>& joints) {
+    weight_.resize(joints.exact_groups());
+    for (std::size_t group = 0; group < weight_.size(); ++group)
+        weight_[group] = joints.exact_group(static_cast<std::int32_t>(group)).heaviest();
+    constexpr int kRounds = 2;
+    for (int round = 0; round < kRounds; ++round)
+        contacts.for_each(bodies, [&](const HeldContact& contact) {
+            for (std::size_t side = 0; side < 2; ++side) {
+                const std::int32_t row = contact.row[side], other = contact.row[1 - side];
+                if (row == HeldContact::kNothing || other == HeldContact::kNothing) continue;
+                const std::int32_t group = joints.exact_group_of(row);
+                if (group < 0) continue;
+                double& weight = weight_[index(group)];
+                weight = std::fmax(weight, weight_of(other, bodies, joints));
+            }
+        });
+}
+
+/// Whether by way of a contact more may press on a body that joints hold than it is taken for.
+template <class Real>
+bool HeavyLoads<Real>::is_heavy(const HeldContact& contact, const Bodies<Real>& bodies,
+                                const SoftJoints<Real>& joints) const {
+    double weight = HUGE_VAL, lightest = HUGE_VAL;
+    std::int32_t group_before = -1;
+    for (const std::int32_t row : contact.row) {
+        if (row == HeldContact::kNothing) continue;
+        weight = std::fmin(weight, weight_of(row, bodies, joints));
+        const std::int32_t group = joints.exact_group_of(row);
+        if (group < 0) continue;
+        if (group == group_before) return false;
+        group_before = group;
+        lightest = std::fmin(lightest, static_cast<double>(bodies.mass[index(row)]));
+    }
+    return weight > kHeavy * lightest;
+}
+
+template <class Real>
+void HeavyLoads<Real>::find(const HeldContacts<Real>& contacts, const JointStep<Real>& step,
+                            SoftJoints<Real>& joints) {
+    contacts_.clear(), groups_.clear();
+    if (!joints.touches_exactly()) return;
+    const Bodies<Real>& bodies = step.world.bodies;
+    weigh_groups(contacts, bodies, joints);
+    std::size_t work = 0;
+    contacts.for_each(bodies, [&](const HeldContact& contact) {
+        if (!is_heavy(contact, bodies, joints)) return;
+        std::size_t more = 0;
+        const auto for_each_group = [&](const auto& fn) {
+            for (const std::int32_t row : contact.row)
+                if (row != HeldContact::kNothing && joints.exact_group_of(row) >= 0)
+                    fn(joints.exact_group_of(row));
+        };
+        for_each_group([&](std::int32_t group) { more += joints.exact_group(group).joints(); });
+        if (work + more > kMostWork) return;
+        work += more;
+        contacts_.push_back(contact);
+        for_each_group([&](std::int32_t group) { groups_.push_back(group); });
+    });
+    std::sort(groups_.begin(), groups_.end());
+    groups_.erase(std::unique(groups_.begin(), groups_.end()), groups_.end());
+}
+
+template <class Real>
+void HeavyLoads<Real>::tell(const HeldContacts<Real>& contacts, const JointStep<Real>& step,
+                            SoftJoints<Real>& joints) {
+    told_.clear();
+    for (const HeldContact& contact : contacts_)
+        for (std::size_t point = 0; point < HeldContact::kPoints; ++point) {
+            if (!contact.acts[point]) continue;
+            const double separation = contacts.separation(contact, point);
+            for (std::size_t side = 0; side < 2; ++side) {
+                const std::int32_t row = contact.row[side], other = contact.row[1 - side];
+                const std::int32_t group = row == HeldContact::kNothing ? -1 : joints.exact_group_of(row);
+                if (group < 0) continue;
+                DirectJoints<Real>& own = joints.exact_group(group);
+                JointSystem::Load load = own.load_on(unit_blow(contact, side, point));
+                load.separation = separation, load.other = other;
+                if (other != HeldContact::kNothing) {
+                    const JointBlow push = unit_blow(contact, 1 - side, point);
+                    const auto inverse = static_cast<double>(step.records.velocity[4 * index(other) + 3]);
+                    load.other_along = {push.impulse.x, push.impulse.y, push.at_rim};
+                    load.inverse_mass = std::fabs(inverse);
+                    load.inverse_inertia = 2 * std::fmax(inverse, 0);  // at the rim
+                }
+                told_.push_back({group, own.loads().size()});
+                own.loads().push_back(load);
+            }
+        }
+}
+
+template <class Real>
+void HeavyLoads<Real>::displace_loads(const JointStep<Real>& step, SoftJoints<Real>& joints) const {
+    Column<Real>& displacement = step.records.displacement;
+    Real* turn = step.records.turn();
+    for (const Told& told : told_) {
+        const JointSystem::Load& load = joints.exact_group(told.group).loads()[told.load];
+        if (load.other == HeldContact::kNothing) continue;
+        const double way = load.push * load.inverse_mass, turned = load.push * load.inverse_inertia;
+        displacement[2 * index(load.other)] += static_cast<Real>(way * load.other_along[0]);
+        displacement[2 * index(load.other) + 1] += static_cast<Real>(way * load.other_along[1]);
+        if (turn) turn[load.other] += static_cast<Real>(turned * load.other_along[2]);
+    }
+    for (const std::int32_t group : groups_) joints.exact_group(group).loads().clear();
+}
+
+/// What impulse `by` changes the velocity of a row by, along the directions of all contacts of that row.
+template <class Real>
+void HeavyLoads<Real>::add_answer(std::size_t by, std::int32_t row, const std::array<double, 3>& change) {
+    for (std::size_t c = 0; c < contacts_.size(); ++c)
+        for (std::size_t side = 0; side < 2; ++side) {
+            if (contacts_[c].row[side] != row) continue;
+            for (std::size_t d = 0; d < kDirections; ++d)
+                impulses_.inverse_mass(kDirections * c + d, by) +=
+                    dot(contacts_[c].impulse_on(side, d), {change[0], change[1]}) +
+                    contacts_[c].at_rim[side][d] * change[2];
+        }
+}
+
+template <class Real>
+void HeavyLoads<Real>::find_masses(const JointStep<Real>& step, SoftJoints<Real>& joints) {
+    impulses_.reset(kDirections * contacts_.size());
+    for (std::size_t i = 0; i < impulses_.count(); ++i) {
+        const HeldContact& contact = contacts_[i / kDirections];
+        for (std::size_t side = 0; side < 2 && contact.acts[i % kDirections]; ++side) {
+            const JointBlow blow = unit_blow(contact, side, i % kDirections);
+            if (blow.row == HeldContact::kNothing) continue;
+            const auto add = [&](std::int32_t row, const std::array<double, 3>& change) {
+                add_answer(i, row, change);
+            };
+            if (const std::int32_t group = joints.exact_group_of(blow.row); group >= 0)
+                joints.exact_group(group).answer(blow, JointSystem::Drives::as_solved, add);
+            else
+                add(blow.row, change_of_free(step.records.velocity, blow));
+        }
+    }
+}
+
+template <class Real>
+void HeavyLoads<Real>::drop_held_directions(const Bodies<Real>& bodies, SoftJoints<Real>& joints) {
+    for (std::size_t i = 0; i < impulses_.count(); ++i) {
+        double mass = 0;  // kg, of all that could move
+        for (const std::int32_t row : contacts_[i / kDirections].row) {
+            if (row == HeldContact::kNothing) continue;
+            const std::int32_t group = joints.exact_group_of(row);
+            mass +=
+                group < 0 ? static_cast<double>(bodies.mass[index(row)]) : joints.exact_group(group).mass();
+        }
+        double& inverse = impulses_.inverse_mass(i, i);
+        if (!(inverse * kMostOfAll * mass > 1)) inverse = 0;
+    }
+}
+
+template <class Real>
+void HeavyLoads<Real>::begin_substep(const JointStep<Real>& step, SoftJoints<Real>& joints) {
+    if (empty()) return;
+    displace_loads(step, joints);
+    find_masses(step, joints);
+    drop_held_directions(step.world.bodies, joints);
+}
+
+template <class Real>
+void HeavyLoads<Real>::solve(const HeldContacts<Real>& contacts, const JointStep<Real>& step,
+                             SoftJoints<Real>& joints) {
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+        const HeldContact::Values lack = contacts.lack(contacts_[c]),
+                                  impulses = contacts.impulses(contacts_[c]);
+        std::copy(lack.begin(), lack.end(), &impulses_.lack[kDirections * c]);
+        std::copy(impulses.begin(), impulses.end(), &impulses_.given[kDirections * c]);
+    }
+    before_ = impulses_.given;
+    const auto bound = [&](std::size_t i, double wanted) {
+        if (i % kDirections < kTangent) return std::fmax(wanted, 0);
+        const double limit =
+            contacts_[i / kDirections].friction * (impulses_.given[i - 2] + impulses_.given[i - 1]);
+        return std::clamp(wanted, -limit, limit);
+    };
+    impulses_.solve(bound, kTolerance * step.terms.fall_speed());
+
+    if (blows_.size() < groups_.size()) blows_.resize(groups_.size());
+    for (std::vector<JointBlow>& blows : blows_) blows.clear();
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+        const HeldContact& contact = contacts_[c];
+        HeldContact::Values more;
+        for (std::size_t d = 0; d < kDirections; ++d)
+            more[d] = impulses_.given[kDirections * c + d] - before_[kDirections * c + d];
+        contacts.add(contact, more);
+        for (std::size_t side = 0; side < 2; ++side) {
+            JointBlow blow{contact.row[side], {}, 0};
+            if (blow.row == HeldContact::kNothing) continue;
+            for (std::size_t d = 0; d < kDirections; ++d)
+                blow.impulse += more[d] * contact.impulse_on(side, d),
+                    blow.at_rim += more[d] * contact.at_rim[side][d];
+            if (const std::int32_t group = joints.exact_group_of(blow.row); group >= 0) {
+                const auto at = std::lower_bound(groups_.begin(), groups_.end(), group);
+                blows_[static_cast<std::size_t>(at - groups_.begin())].push_back(blow);
+                continue;
+            }
+            const std::array<double, 3> change = change_of_free(step.records.velocity, blow);
+            for (std::size_t k = 0; k < change.size(); ++k)
+                step.records.velocity[4 * index(blow.row) + k] += static_cast<Real>(change[k]);
+        }
+    }
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+        joints.exact_group(groups_[g]).take_blows(step, blows_[g], JointSystem::Drives::as_solved);
+}
+
+template <class Real>
+std::size_t HeavyLoads<Real>::bytes() const {
+    const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
+    std::size_t bytes =
+        of(contacts_) + of(groups_) + of(weight_) + of(told_) + impulses_.bytes() + of(before_) + of(blows_);
+    for (const std::vector<JointBlow>& blows : blows_) bytes += of(blows);
+    return bytes;
+}
+
+template class HeavyLoads<float>;
+template class HeavyLoads<double>;
+
+}  // namespace carom

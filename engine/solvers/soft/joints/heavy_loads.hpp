@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "constraints/coupled_impulses.hpp"
+#include "solvers/soft/joints/held_contacts.hpp"
+#include "solvers/soft/joints/soft_joints.hpp"
+
+namespace carom {
+
+/// Contacts of bodies that joints hold with what weighs many times as much: the load on a bridge of light
+/// planks, the ground under the wheels of a loaded cart.
+///
+/// Contacts and joints are solved in turns, and to a contact a plank is as heavy as it is alone. Of a load of
+/// a hundred planks a turn takes what would stop one plank; then joints draw that plank back into the load.
+/// These contacts know what their bodies are with all that joints hold. A unit impulse along a direction i of
+/// one is answered by the factored system of the group (JointSystem::answer) with a change R_i of the
+/// velocities of all its bodies, and J_k R_i, with the direction J_k of another, is their inverse mass. So
+/// impulses are found that the contacts hold with while joints hold: a problem of complementarity with
+/// friction, as small as these contacts are few. Rolling resistance is left to the turns.
+///
+/// Where joints are corrected by displacements, what presses is displaced with them (JointSystem::Load).
+///
+/// Cost: about .3 us a joint and direction in each substep, and as much a joint and turn; O(directions²) for
+/// the problem. docs/decisions/0069-loads-on-light-mechanisms.md.
+template <class Real>
+class HeavyLoads {
+  public:
+    /// Finds the contacts of a step. Cost: O(contacts) where a group that is solved exactly touches
+    /// something.
+    void find(const HeldContacts<Real>& contacts, const JointStep<Real>& step, SoftJoints<Real>& joints);
+    bool empty() const { return contacts_.empty(); }
+    /// Before joints are solved in a substep: tells them what presses on their bodies.
+    void tell(const HeldContacts<Real>& contacts, const JointStep<Real>& step, SoftJoints<Real>& joints);
+    /// After that: displaces what presses, and finds what impulses do.
+    void begin_substep(const JointStep<Real>& step, SoftJoints<Real>& joints);
+    /// Gives bodies, whose joints were just solved, what these contacts lack.
+    void solve(const HeldContacts<Real>& contacts, const JointStep<Real>& step, SoftJoints<Real>& joints);
+
+    std::size_t bytes() const;
+
+  private:
+    static constexpr std::size_t kDirections = HeldContact::kDirections;
+
+    /// Where a load of a group is, in the order in which they were told.
+    struct Told {
+        std::int32_t group;
+        std::size_t load;
+    };
+
+    void weigh_groups(const HeldContacts<Real>& contacts, const Bodies<Real>& bodies,
+                      SoftJoints<Real>& joints);
+    double weight_of(std::int32_t row, const Bodies<Real>& bodies, const SoftJoints<Real>& joints) const;
+    bool is_heavy(const HeldContact& contact, const Bodies<Real>& bodies,
+                  const SoftJoints<Real>& joints) const;
+    void displace_loads(const JointStep<Real>& step, SoftJoints<Real>& joints) const;
+    void find_masses(const JointStep<Real>& step, SoftJoints<Real>& joints);
+    void add_answer(std::size_t by, std::int32_t row, const std::array<double, 3>& change);
+    void drop_held_directions(const Bodies<Real>& bodies, SoftJoints<Real>& joints);
+
+    std::vector<HeldContact> contacts_;
+    std::vector<std::int32_t> groups_;  // of their bodies, ascending
+    std::vector<double> weight_;        // kg, by group: the heaviest of its bodies and of what touches them
+    std::vector<Told> told_;
+    CoupledImpulses impulses_;                   // by contact and direction
+    std::vector<double> before_;                 // N s, likewise
+    std::vector<std::vector<JointBlow>> blows_;  // as groups_
+};
+
+extern template class HeavyLoads<float>;
+extern template class HeavyLoads<double>;
+
+}  // namespace carom
