@@ -27,7 +27,7 @@ namespace {
 constexpr int kSteps = 90;
 
 constexpr Golden kGolden[] = {
-    {"mixed shapes", 0x1e755b604d91bf9f, 0x48cab0b0bd9e0854},
+    {"mixed shapes", 0x03bf37c6bf4d6956, 0xd659312e5a4c1d82},
     {"bouncing crowd", 0x32f5cf7cf7591ae8, 0x5d0e0f7fea4c8122},
     {"rough gas", 0xc009256aceff94e4, 0xb74961daf77a2622},
     {"gas", 0x680b8eec4001de52, 0x87bedad9b790c353},

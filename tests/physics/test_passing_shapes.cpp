@@ -133,6 +133,75 @@ TEST_SUITE("physics/passing shapes") {
                 }
     }
 
+    // The side of the next tile held it: it slid by .3 m in place of 2.25, or not at all where something
+    // pushed or gravity drew it from rest.
+    TEST_CASE_TEMPLATE("a crate that stands on a tile up to its edge slides on", Real, float, double) {
+        constexpr double kFriction = 0.2, kSpeed = 3;
+        for (const char* kind : {"boxes", "segments", "pieces of one body"})
+            for (const double tilt : {0.0, 3.0})  // m/s², along the tiles
+                for (const int rest : {0, 60}) {  // steps, before it is thrown
+                    Scene scene = tiled(kind, 40);
+                    scene.gravity.x = tilt;
+                    for (Body& body : scene.bodies) {
+                        body.material.friction = kFriction;
+                        if (auto* pieces = std::get_if<Compound>(&body.shape))
+                            for (Piece& piece : pieces->pieces) piece.material = body.material;
+                    }
+                    Body crate = smooth(Box{1, 1}, {1, 0.5});
+                    crate.material.friction = kFriction;
+                    const BodyId id = scene.add(crate);
+                    BasicWorld<Real> world(scene);
+                    for (int i = 0; i < (tilt > 0 ? 0 : rest); ++i) world.step(kStep);
+                    if (tilt == 0) world.set_velocity(id, {kSpeed, 0});
+                    for (int i = 0; i < 180; ++i) world.step(kStep);
+                    const double way = tilt > 0 ? 0.5 * (tilt - kFriction * kGravity) * 9
+                                                : 0.5 * kSpeed * kSpeed / (kFriction * kGravity);
+                    INFO(kind, ", tilt ", tilt, ", rest ", rest);
+                    CHECK(world.state(id).position.x - 1 == doctest::Approx(way).epsilon(0.01));
+                    CHECK(std::fabs(world.state(id).angle) < 1e-3);
+                }
+    }
+
+    // Corners of the columns on either side held it for ever.
+    TEST_CASE_TEMPLATE("a column between columns comes down when its lowest box is gone", Real, float,
+                       double) {
+        Scene scene;
+        scene.gravity = {0, -kGravity};
+        scene.add(smooth(Box{100, 2}, {0, -1}, BodyType::static_body));
+        for (const double x : {-0.5, 5.5}) scene.add(smooth(Box{1, 20}, {x, 10}, BodyType::static_body));
+        BodyId lowest{}, highest{};
+        for (int row = 0; row < 5; ++row)
+            for (int column = 0; column < 5; ++column) {
+                const BodyId id = scene.add(smooth(Box{1, 1}, {column + 0.5, row + 0.5}));
+                if (column == 2 && row == 0) lowest = id;
+                if (column == 2 && row == 4) highest = id;
+            }
+        BasicWorld<Real> world(scene);
+        for (int i = 0; i < 60; ++i) world.step(kStep);
+        world.remove(lowest);
+        for (int i = 0; i < 180; ++i) world.step(kStep);
+        CHECK(std::fabs(world.state(highest).position.y - 3.5) < 0.05);
+    }
+
+    TEST_CASE_TEMPLATE("boxes that come corner to corner strike each other", Real, float, double) {
+        for (const double speed : {1.0, 3.0, 10.0}) {
+            Scene scene;
+            scene.accuracy.solver = Solver::soft;
+            for (const double side : {-1.0, 1.0}) {
+                Body box = smooth(Box{1, 1}, {0.75 * side, 0.75 * side});
+                box.velocity = {-0.5 * side * speed, -0.5 * side * speed};
+                scene.add(box);
+            }
+            BasicWorld<Real> world(scene);
+            double deepest = 0;
+            for (double time = 0; time < 2 / speed; time += kStep)
+                world.step(kStep), deepest = std::fmax(deepest, world.overlaps().max);
+            INFO(speed, " m/s");
+            CHECK(deepest < 0.2);
+            CHECK(world.ledger().energy.kinetic < 0.7 * (0.5 * speed * speed));  // of that at the start
+        }
+    }
+
     TEST_CASE("a car rolls over tiles as over one slab") {
         Scene scene = tiled("boxes", 40);
         for (Body& body : scene.bodies) body.material.friction = 0.8;

@@ -127,7 +127,7 @@ class JointSystem {
     };
     /// What motors and limits do where a blow is answered.
     enum class Drives : std::uint8_t {
-        none,       ///< nothing: a blow takes no time
+        in_a_blow,  ///< limits that are reached push, motors do nothing: a blow takes no time
         as_solved,  ///< those hold that the last solve found between their ends
     };
     /// What blows change the velocities of all bodies by, while joints hold at the rows of `prepare`.

@@ -22,11 +22,27 @@ void Gaps<Real>::look_at(std::size_t first, std::size_t last) {
     const auto none = static_cast<Real>(kNoPoint);
     for (std::size_t i = first; i < last; ++i) {
         const Real gap = std::min(contacts_.separation1[i], contacts_.separation2[i]);
-        if (!(gap > 0) || !(gap < none)) continue;
+        if (are_corners_beside(i)) contacts_.separation1[i] = none;
+        if (!(gap > 0) || !(contacts_.separation1[i] < none)) continue;
         const Manifold<double> facing = contacts_.manifold(i);
         const bool may_touch = find_meeting(i, static_cast<double>(gap)) || can_close(i);
         if (!may_touch || do_pass(i, facing)) contacts_.separation1[i] = contacts_.separation2[i] = none;
     }
+}
+
+/// Of shapes with sharp corners that touch at one point alone: few do.
+template <class Real>
+bool Gaps<Real>::are_corners_beside(std::size_t i) const {
+    const auto none = static_cast<Real>(kNoPoint);
+    if (contacts_.separation2[i] < none ||
+        !(std::fabs(contacts_.separation1[i]) <= static_cast<Real>(kBeside) * contacts_.thickness[i]))
+        return false;
+    const WorldState<Real>& world = in_.world;
+    const auto a = static_cast<std::size_t>(contacts_.a[i]), b = static_cast<std::size_t>(contacts_.b[i]);
+    const std::int32_t of_a = shape_of(a, contacts_.item_a, i), of_b = shape_of(b, contacts_.item_b, i);
+    if (world.shapes[of_a].radius > 0 || world.shapes[of_b].radius > 0) return false;
+    return are_beside(moving_row(world, a, of_a), moving_row(world, b, of_b), contacts_.manifold(i), in_.dt,
+                      static_cast<double>(contacts_.thickness[i]));
 }
 
 /// Whether the line that was found across the gap parts the bodies all through the step, as they fly: then

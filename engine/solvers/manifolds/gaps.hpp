@@ -26,6 +26,7 @@ class Gaps {
     void look_at(std::size_t first, std::size_t last);
 
   private:
+    bool are_corners_beside(std::size_t i) const;
     bool stay_parted(std::size_t i) const;
     bool find_meeting(std::size_t i, double gap);
     bool do_pass(std::size_t i, const Manifold<double>& facing) const;

@@ -86,6 +86,20 @@ bool pass_each_other(const MovingConvex& a, const MovingConvex& b, const Manifol
     return !impact_time(a, b, dt, target, grazing + target).touches;
 }
 
+bool are_beside(const MovingConvex& a, const MovingConvex& b, const Manifold<double>& manifold, double dt,
+                double thickness) {
+    const double least = kBeside * thickness;
+    if (!(std::fabs(manifold.separation1) <= least)) return false;
+    const Vec2 normal{manifold.normal_x, manifold.normal_y}, tangent{-normal.y, normal.x};
+    const Interval of_a = outermost(a, normal, tangent, 0), of_b = outermost(b, -normal, tangent, 0);
+    const bool are_faces = std::fmin(of_a.high - of_a.low, of_b.high - of_b.low) > least;
+    const bool b_is_higher = of_a.high - of_b.low < of_b.high - of_a.low;
+    if (!are_faces || (b_is_higher ? of_a.high - of_b.low : of_b.high - of_a.low) > least) return false;
+    const Vec2 closing = a.velocity - b.velocity;
+    const double along = b_is_higher ? dot(closing, tangent) : -dot(closing, tangent);
+    return !(dt * dot(closing, normal) > least && dt * along > least);
+}
+
 bool meeting_manifold(const MovingConvex& a, const MovingConvex& b, double dt, double thickness,
                       Manifold<double>& manifold) {
     const ConvexImpact impact = impact_time(a, b, dt, kMeetingTarget * thickness);

@@ -40,6 +40,18 @@ bool meeting_manifold(const MovingConvex& a, const MovingConvex& b, double dt, d
 bool pass_each_other(const MovingConvex& a, const MovingConvex& b, const Manifold<double>& manifold,
                      double dt, double thickness);
 
+/// Faces that are opposite each other by no more than this share of the thickness of the thinner body, and no
+/// farther apart or deeper in each other, are corners beside each other.
+inline constexpr double kBeside = 0.001;
+
+/// Whether bodies are a corner beside a corner and do not come to each other both ways in the step: either of
+/// two faces could be the one that holds, and neither is to. A crate that stands on a tile up to its edge is
+/// not held by the side of the next one, nor a box by the corners of the columns on either side of it.
+/// @param manifold   at the start of the step, of one point
+/// @param thickness  m, of the thinner of the two
+bool are_beside(const MovingConvex& a, const MovingConvex& b, const Manifold<double>& manifold, double dt,
+                double thickness);
+
 /// A body, or a piece of it, as it flies at the start of a step.
 /// @param shape  its number in the ShapeStore
 template <class Real>

@@ -42,12 +42,6 @@ constexpr double kRestingSpeed = 0.25;
 /// and what such a path moves in a substep is less than this share of the thickness of its bodies.
 constexpr double kRestingShare = 1e-4;
 
-/// Edges that turn farther in a step [rad] are taken to move straight on: of what is next to them then the
-/// start of the step tells nothing.
-constexpr double kMostTurn = 0.5;
-/// A body faces an edge whose direction is along its normal by no more than this, a cosine.
-constexpr double kFacing = 1e-3;
-
 /// Turns of rolling resistance and contacts a substep: a rolling disc loses a third of what is wrong in each.
 constexpr int kTurnsOfRolling = 3;
 
@@ -207,37 +201,20 @@ void PathSolver<Real>::move_still_rows(const WorldState<Real>& world, const Edge
         velocity[0] = bodies.velocity_x[b], velocity[1] = bodies.velocity_y[b];
         if (bodies.has_rotation)
             velocity[2] = bodies.angular_velocity[b] * (partner.is_edge() ? Real(1) : bodies.rim(b));
-        if (partner.is_edge()) turn_edge(world, edges, n, terms, records);
+        const ManifoldList<Real>& list = manifolds.list_of(live[n]);
+        const std::size_t i = Manifolds<Real>::place_of(live[n]);
+        if (partner.is_edge()) {
+            const Edge& edge = world.edges[partner.edge_number()];
+            turning_edges_.add_edge(list, i, row_of_far_[n], edge, edges.pose_of(edge), terms, records);
+        } else {
+            const std::int32_t item = list.item_b.empty() ? list.b[i] : list.item_b[i];
+            turning_edges_.add_side(list, i, row_of_far_[n], bodies,
+                                    world.shapes[manifolds.shape_of_item(world, b, item)], terms, records);
+        }
     };
     turning_edges_.clear();
     for (const std::int32_t n : with_kinematic_) move(static_cast<std::size_t>(n));
     for (std::size_t n = live.size(); n-- > 0 && live[n] < 0;) move(n);  // surfaces come last
-}
-
-/// Where a body faces an edge of a kinematic body; where it lies across a corner its own normal counts.
-template <class Real>
-void PathSolver<Real>::turn_edge(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
-                                 std::size_t number, const SubstepTerms& terms, BodyRecords<Real>& records) {
-    const ManifoldList<Real>& list = manifolds.list_of(manifolds.live()[number]);
-    const std::size_t i = Manifolds<Real>::place_of(manifolds.live()[number]);
-    const Edge& edge = world.edges[Partner(list.b[i]).edge_number()];
-    const EdgePose& pose = edges.pose_of(edge);
-    const double turned = pose.end_angle - pose.angle;
-    if (turned == 0 || std::fabs(turned) > kMostTurn) return;
-    const Vec2 normal{list.normal_x[i], list.normal_y[i]}, along = rotate(pose.turn, edge.b - edge.a);
-    if (std::fabs(dot(along, normal)) > kFacing * std::sqrt(length_squared(along))) return;
-    const bool is_one = !(list.separation2[i] < static_cast<Real>(kNoPoint));
-    const double lever = is_one ? static_cast<double>(list.lever_b1[i])
-                                : 0.5 * static_cast<double>(list.lever_b1[i] + list.lever_b2[i]),
-                 lever_t = list.lever_b_t[i];
-    turning_edges_.add({.edge_row = row_of_far_[number],
-                        .body_row = list.a[i],
-                        .arm = lever_t * normal + lever * Vec2{normal.y, -normal.x},
-                        .normal = normal,
-                        .height = lever_t - static_cast<double>(list.lever_a_t[i]),
-                        .velocity = (1 / terms.dt) * (pose.end_position - pose.position),
-                        .spin = turned / terms.dt},
-                       terms.substep_dt, records);
 }
 
 template <class Real>

@@ -169,8 +169,6 @@ class PathSolver {
     void carry_links(const SubstepTerms& terms, BodyRecords<Real>& records, const StepLoops<Real>& loops);
     void move_still_rows(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
                          const SubstepTerms& terms, BodyRecords<Real>& records);
-    void turn_edge(const WorldState<Real>& world, const EdgeCandidates<Real>& edges, std::size_t number,
-                   const SubstepTerms& terms, BodyRecords<Real>& records);
 
     PathRolling<Real> rolling_;
     TurningEdges<Real> turning_edges_;

@@ -30,7 +30,7 @@ void HeldImpacts<Real>::strike(std::size_t direction, std::int32_t row, double i
     const Vec2 impulse = sign * d.impulse;
     const double at_rim = sign < 0 ? d.rim_a : d.rim_b;
     if (DirectJoints<Real>* group = joints_->small_group_of(row))
-        return group->answer({row, impulse, at_rim}, JointSystem::Drives::none, add);
+        return group->answer({row, impulse, at_rim}, JointSystem::Drives::in_a_blow, add);
     const double w = std::fabs(inverse_mass);
     add(row, {w * impulse.x, w * impulse.y, 2 * std::fmax(inverse_mass, 0) * at_rim});
 }
@@ -140,7 +140,7 @@ void HeldImpacts<Real>::note_forces(std::int32_t row, double sign) {
         const Direction& d = directions_[i];
         impulse += (sign * impulses_[i]) * d.impulse, at_rim += impulses_[i] * (sign < 0 ? d.rim_a : d.rim_b);
     }
-    group->answer({row, impulse, at_rim}, JointSystem::Drives::none, [](std::int32_t, const Change&) {});
+    group->answer({row, impulse, at_rim}, JointSystem::Drives::in_a_blow, [](std::int32_t, const Change&) {});
     group->note_answer();
 }
 
