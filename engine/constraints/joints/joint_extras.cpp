@@ -296,7 +296,7 @@ void JointSystem::answer(std::span<const Blow> blows, Drives drives) {
                                .law;
         const bool holds = law == RowLaw::hold || law == RowLaw::spring ||
                            (drives == Drives::as_solved && state_[i] == End::none);
-        const bool stops = law == RowLaw::stop && (state_[i] == End::none || value_of(i) <= 0);
+        const bool stops = law == RowLaw::stop && state_[i] == End::none;
         low_[i] = holds ? -kUnbounded : 0, high_[i] = holds || stops ? kUnbounded : 0;
         state_[i] = holds || stops ? End::none : End::low;
         extra_rhs_[i] = -change_of_row(extras_[i], change_);
