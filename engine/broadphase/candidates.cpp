@@ -178,12 +178,13 @@ void Candidates<Real>::renew_margins(const Bodies<Real>& bodies, const FlightClo
 template <class Real>
 std::size_t Candidates<Real>::find_around(std::size_t row, double radius, Vec2 at,
                                           Column<std::int32_t>& out) const {
-    const Vec2 way = at - places_.place(row);
-    const double apart = std::sqrt(length_squared(way)) + radius + places_.largest_reach();
-    const Vec2 place = at - places_.drift_of(row);
-    const double rounding = kRoundingOfPlace<Real> * (std::fabs(place.x) + std::fabs(place.y));
     if (is_loose(row)) return find_margins_near(at, radius + places_.largest_reach(), out);
-    return find_rows_near(place, radius + farthest_ + places_.spread() * apart + rounding, out);
+    const Vec2 way = at - places_.place(row), place = at - places_.drift_of(row);
+    // How far apart places can be of what is found, but for its reach: one of a few huge bodies is no reason
+    // to look at all small ones.
+    const double apart = std::sqrt(length_squared(way)) + radius + farthest_, spread = places_.spread();
+    const double rounding = kRoundingOfPlace<Real> * (std::fabs(place.x) + std::fabs(place.y));
+    return find_rows_near(place, radius + farthest_ + spread * apart + rounding, out, spread);
 }
 
 template <class Real>
@@ -191,7 +192,7 @@ void Candidates<Real>::add_pairs_of(const Bodies<Real>& bodies, std::int32_t row
     const auto i = static_cast<std::size_t>(row);
     // The grid knows where bodies were; those that are near have drifted nearly as far.
     const double reach = reach_[i];
-    const double difference = places_.spread() * (reach + places_.largest_reach());
+    const double spread = places_.spread(), difference = spread * (reach + farthest_);
     const Vec2 place = places_.place(i) - places_.drift_of(i);
     const double rounding = kRoundingOfPlace<Real> * (std::fabs(place.x) + std::fabs(place.y));
     const auto compare_with = [&](std::size_t j) {
@@ -209,7 +210,7 @@ void Candidates<Real>::add_pairs_of(const Bodies<Real>& bodies, std::int32_t row
         }
         return;
     }
-    const std::size_t found = find_rows_near(place, reach + farthest_ + difference + rounding, near_);
+    const std::size_t found = find_rows_near(place, reach + farthest_ + difference + rounding, near_, spread);
     for (std::size_t k = 0; k < found; ++k) compare_with(static_cast<std::size_t>(near_[k]));
 }
 

@@ -81,9 +81,11 @@ class Candidates {
     /// Rows of all bodies that can come within `reach` of a place while no flight leaves its margin; one that
     /// does by some overshoot is found if `reach` is larger by that much.
     /// @return how many rows are in `out`.
-    std::size_t find_near(Vec2 place, double reach, Column<std::int32_t>& out) const {
+    /// @param more  share by which bodies are to reach farther, of the largest of their size
+    std::size_t find_near(Vec2 place, double reach, Column<std::int32_t>& out, double more = 0) const {
         return grid_.find_near(static_cast<Real>(place.x), static_cast<Real>(place.y),
-                               static_cast<Real>(reach * kRoundingUp), out);
+                               static_cast<Real>(reach * kRoundingUp), out,
+                               static_cast<Real>(more * kRoundingUp));
     }
 
     /// Rule `own`: how far a body at `place` is out of its margin at the end of the step [m]; 0 if it is not.
@@ -200,8 +202,8 @@ class Candidates {
     static constexpr std::size_t kMostComparisons = 2'000'000, kMostLoose = 2048;
 
     /// As find_near, of today's rows, with all that the grid does not know.
-    std::size_t find_rows_near(Vec2 place, double reach, Column<std::int32_t>& out) const {
-        return names_.to_rows(out, find_near(place, reach, out));
+    std::size_t find_rows_near(Vec2 place, double reach, Column<std::int32_t>& out, double more = 0) const {
+        return names_.to_rows(out, find_near(place, reach, out, more));
     }
 
     /// Rows whose margins are found with the pairs: all, unless those of standing bodies are known.

@@ -157,13 +157,15 @@ void UniformGrid<Real>::pad_pairs() {
 }
 
 template <class Real>
-std::size_t UniformGrid<Real>::find_near(Real x, Real y, Real reach, Column<std::int32_t>& rows) const {
+std::size_t UniformGrid<Real>::find_near(Real x, Real y, Real reach, Column<std::int32_t>& rows,
+                                         Real more) const {
     std::size_t count = 0;
     for (std::size_t i = 0; i < level_count(); ++i) {
         const GridLevel<Real>& view = level(i);
+        const Real farther = reach + more * view.largest_reach;
         for (;;) {
             const std::size_t found =
-                kernels_->find_near(view, {x, y, reach, rows.data() + count, rows.size() - count});
+                kernels_->find_near(view, {x, y, farther, rows.data() + count, rows.size() - count});
             if (found != kNoRoom) {
                 count += found;
                 break;

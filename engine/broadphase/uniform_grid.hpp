@@ -67,7 +67,8 @@ class UniformGrid {
     /// Finds all bodies of the last build with distance to (x, y) < reach + theirs; not the disabled ones. A
     /// body's own row is among them if it is near. Fixed order.
     /// @param rows  holds what is found in [0, result); it grows as needed and is never made smaller.
-    std::size_t find_near(Real x, Real y, Real reach, Column<std::int32_t>& rows) const;
+    /// @param more  share by which all bodies of a level reach farther, of the largest of them
+    std::size_t find_near(Real x, Real y, Real reach, Column<std::int32_t>& rows, Real more = 0) const;
 
     /// Rows in sorted order, [count]: by level, then by cell; disabled bodies last.
     std::span<const std::int32_t> order() const noexcept { return order_.span(); }

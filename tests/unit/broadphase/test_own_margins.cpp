@@ -66,9 +66,34 @@ struct Swarm {
 constexpr std::size_t kCount = 700;
 
 struct Counts {
-    std::size_t meetings = 0, added = 0;
+    std::size_t meetings = 0, added = 0, looks = 0, looked_up = 0;
     std::int64_t rebuilds = 0;
 };
+
+/// Looks up what some bodies would touch that were thrown by up to 2 m out of their places in this step.
+template <class Real>
+void look_up(Swarm<Real>& swarm, const Candidates<Real>& candidates, const std::vector<Vec2>& ends,
+             Counts& counts) {
+    Column<std::int32_t> found;
+    const Bodies<Real>& bodies = swarm.bodies;
+    for (int look = 0; look < 5; ++look) {
+        const auto row = static_cast<std::size_t>(swarm.uniform(0, 0.999) * static_cast<double>(kCount - 1));
+        const Vec2 at = ends[row] + Vec2{swarm.uniform(-2, 2), swarm.uniform(-2, 2)};
+        const double radius = bodies.radius[row];
+        const std::size_t count = candidates.find_around(row, radius, at, found);
+        ++counts.looks, counts.looked_up += count;
+        const std::set<std::int32_t> rows(found.data(), found.data() + count);
+        std::size_t missed = 0;
+        for (std::size_t other = 0; other < kCount; ++other) {
+            const double reach = radius + static_cast<double>(bodies.radius[other]);
+            const bool is_in_margin =
+                !(candidates.outside_of_margin(other, bodies.radius[other], ends[other]) > 0);
+            if (is_in_margin && length_squared(ends[other] - at) < reach * reach)
+                missed += rows.count(static_cast<std::int32_t>(other)) == 0;
+        }
+        CHECK(missed == 0);
+    }
+}
 
 /// A hundred steps; in each all bodies have the flow's velocity besides their own. Checks that every two that
 /// meet are among the pairs, and that none is added that is known.
@@ -118,6 +143,7 @@ Counts fly(Swarm<Real>& swarm, const std::function<Vec2(Vec2, int)>& flow) {
                 missed += known.count({static_cast<std::int32_t>(a), static_cast<std::int32_t>(b)}) == 0;
             }
         CHECK(missed == 0);
+        look_up(swarm, candidates, ends, counts);
         for (std::size_t row = 0; row < kCount; ++row) {
             bodies.position_x[row] = static_cast<Real>(ends[row].x),
             bodies.position_y[row] = static_cast<Real>(ends[row].y);
@@ -163,6 +189,24 @@ TEST_SUITE("broadphase/own margins") {
             CHECK(counts.meetings > 500);
             CHECK(counts.rebuilds < 45);
         }
+    }
+
+    // All were looked at wherever places drifted apart, once for each impact of a body that left its margin.
+    TEST_CASE_TEMPLATE("beside a huge body what small ones may meet is looked up among few", Real, float,
+                       double) {
+        Swarm<Real> swarm(kCount);
+        swarm.fastest = 1.5, swarm.usual = 0.2;
+        for (std::size_t row = 0; row < kCount; ++row) swarm.kick(row);
+        Bodies<Real>& bodies = swarm.bodies;
+        const std::size_t huge = kCount - 1;
+        bodies.position_x[huge] = Real(-95), bodies.position_y[huge] = Real(20);
+        bodies.radius.set(huge, kCount, Real(100));
+        bodies.set_flags(huge, kImmovable | kNotDisc);  // sizes are chosen without it, as without long walls
+        const Counts counts = fly<Real>(swarm, [](Vec2 p, int) {
+            return p.x < -50 ? Vec2{} : Vec2{-0.15 * (p.y - 20), 0.15 * (p.x - 20)};
+        });
+        CHECK(counts.meetings > 500);
+        CHECK(counts.looked_up < 5 * counts.looks);  // 22 of 700 each when all were
     }
 
     TEST_CASE_TEMPLATE("bodies that only follow a flow which brings them nearer are found in time", Real,
