@@ -132,6 +132,7 @@ JointId JointStore::add(const StoredJoint& joint) {
             first_excluded_.resize(end + 1, static_cast<std::uint32_t>(excluded_.size()) - 1);
         for (std::size_t body = end; body < first_excluded_.size(); ++body) ++first_excluded_[body];
     }
+    added_.push_back(static_cast<std::uint32_t>(slot));
     return id_of(slot);
 }
 
@@ -146,13 +147,21 @@ void JointStore::remove(std::size_t slot) {
             (gear.first == slot || gear.second == slot))
             remove(other);
     }
+    if (count_ == 0) added_.clear(), built_in_.clear();
     list_excluded();
 }
 
 void JointStore::remove_of(BodyId body) {
+    std::erase_if(built_in_, [&](const BuiltInPair& pair) { return pair.a == body || pair.b == body; });
     for (std::size_t slot = 0; slot < slots_.size() && count_ > 0; ++slot)
         if (slots_[slot].is_used && (slots_[slot].joint.a == body || slots_[slot].joint.b == body))
             remove(slot);
+    list_excluded();
+}
+
+void JointStore::add_built_in(std::span<const BuiltInPair> pairs) {
+    built_in_.insert(built_in_.end(), pairs.begin(), pairs.end());
+    list_excluded();
 }
 
 std::size_t JointStore::slot_of(JointId id, std::string_view where) const {
@@ -169,6 +178,7 @@ void JointStore::list_excluded() {
     for_each([&](std::size_t, const StoredJoint& joint) {
         if (!joint.collide && !joint.is_on_world()) excluded_.push_back(pair_of(joint.a, joint.b));
     });
+    for (const BuiltInPair& pair : built_in_) excluded_.push_back(pair_of(pair.a, pair.b));
     std::sort(excluded_.begin(), excluded_.end());
     first_excluded_.clear();
     for (std::size_t i = 0; i < excluded_.size(); ++i) {
@@ -187,9 +197,9 @@ bool JointStore::excludes(BodyId a, BodyId b) const {
 }
 
 std::size_t JointStore::bytes() const {
-    return slots_.capacity() * sizeof(Slot) + free_.capacity() * sizeof(std::uint32_t) +
-           excluded_.capacity() * sizeof(std::uint64_t) + first_excluded_.capacity() * sizeof(std::uint32_t) +
-           broken.capacity() * sizeof(JointBreak);
+    return slots_.capacity() * sizeof(Slot) + (free_.capacity() + added_.capacity()) * sizeof(std::uint32_t) +
+           built_in_.capacity() * sizeof(BuiltInPair) + excluded_.capacity() * sizeof(std::uint64_t) +
+           first_excluded_.capacity() * sizeof(std::uint32_t) + broken.capacity() * sizeof(JointBreak);
 }
 
 }  // namespace carom

@@ -6,7 +6,9 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "state/bodies.hpp"
@@ -60,6 +62,11 @@ struct StoredJoint {
     }
 };
 
+/// Two bodies of one mechanism that were in each other when it was joined.
+struct BuiltInPair {
+    BodyId a, b;
+};
+
 /// Every joint of a world. Slots stay; a removed joint leaves a hole that the next one fills.
 class JointStore {
   public:
@@ -96,15 +103,29 @@ class JointStore {
             if (slots_[slot].is_used) fn(slot, slots_[slot].joint);
     }
 
-    /// Whether a joint of these two bodies says that they do not touch. Cost: O(joints that body `a` or
-    /// `b` has).
+    /// Whether these two bodies do not touch: a joint of theirs says so, or they are a built-in pair. Cost:
+    /// O(joints and built-in pairs that body `a` or `b` has).
     bool excludes(BodyId a, BodyId b) const;
+
+    /// Pairs that do not touch before they have come apart (solvers/soft/joints/built_in_pairs.hpp).
+    std::span<const BuiltInPair> built_in_pairs() const { return built_in_; }
+    /// Slots of joints that were added since the last call; some may be removed by now.
+    std::vector<std::uint32_t> take_added_slots() { return std::exchange(added_, {}); }
+    bool may_have_built_in_pairs() const { return !added_.empty() || !built_in_.empty(); }
+    /// The pairs touch from now on for which is_apart(pair). @return whether there are any
+    template <class IsApart>
+    bool let_touch(const IsApart& is_apart) {
+        if (std::erase_if(built_in_, is_apart) == 0) return false;
+        list_excluded();
+        return true;
+    }
+    void add_built_in(std::span<const BuiltInPair> pairs);
 
     std::vector<JointBreak> broken;  ///< in the last step, or since events were cleared
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.version, self.count_, self.slots_, self.free_, self.broken);
+        archive(self.version, self.count_, self.slots_, self.free_, self.broken, self.built_in_, self.added_);
         if constexpr (!std::is_const_v<Self>) self.list_excluded();
     }
     std::size_t bytes() const;
@@ -119,7 +140,8 @@ class JointStore {
 
     std::size_t count_ = 0;
     std::vector<Slot> slots_;
-    std::vector<std::uint32_t> free_;
+    std::vector<std::uint32_t> free_, added_;
+    std::vector<BuiltInPair> built_in_;
     // Pairs of bodies that do not touch, sorted: the upper half of a pair is the lower slot of a body. Those
     // of slot i are first_excluded_[i] ... first_excluded_[i + 1].
     std::vector<std::uint64_t> excluded_;

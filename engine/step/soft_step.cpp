@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solvers/soft/joints/built_in_pairs.hpp"
 #include "solvers/soft/stages.hpp"
 #include "step/make_simulation.hpp"
 #include "step/stage.hpp"
@@ -57,6 +58,9 @@ class SoftStep final : public SoftSimulation<Real> {
         return has_shapes(sim) && sim.world.effects.restitution;
     };
     static constexpr auto has_joints = [](const Sim& sim) { return !sim.world.joints.empty(); };
+    static constexpr auto has_built_in_pairs = [](const Sim& sim) {
+        return sim.world.joints.may_have_built_in_pairs() && sim.can_touch();
+    };
     static constexpr auto has_joints_in_contact = [](const Sim& sim) {
         return !sim.world.joints.empty() && sim.soft.joints.touches() && sim.can_touch();
     };
@@ -70,6 +74,11 @@ class SoftStep final : public SoftSimulation<Real> {
     static constexpr Stage<Sim> kBegin[] = {
         {"follow_changes", [](Sim& sim) { sim.follow_changes(); }, has_changes, KernelChoice::none,
          "position, radius, candidate pairs", "candidate pairs, coloured candidates"},
+        {"watch_built_in_pairs",
+         [](Sim& sim) {
+             if (watch_built_in_pairs(sim.world)) sim.candidates.invalidate_pairs();
+         },
+         has_built_in_pairs, KernelChoice::scalar_f64, "joints, position, angle", "pairs that do not touch"},
         {"sort_rows", [](Sim& sim) { sort_rows(sim); }, can_meet, KernelChoice::none, "position",
          "rows of all columns"},
         {"begin_flight", [](Sim& sim) { begin_flight(sim); }, always, KernelChoice::radius,
