@@ -191,6 +191,28 @@ TEST_SUITE("hard cases: built-in pairs") {
         CHECK(distance(rope, a, b) > 0.97);
     }
 
+    TEST_CASE(
+        "the second link of a chain may begin in the block it hangs from, other bodies are pushed out") {
+        Scene scene;
+        scene.gravity = {0, -10};
+        const BodyId block = scene.add({.type = BodyType::static_body, .shape = Box{8, 1}});
+        const auto hang = [&](BodyId above, Vec2 at, Vec2 anchor) {
+            const BodyId disc = scene.add({.shape = Disc{0.3}, .position = at, .mass = 1});
+            scene.add(Joint{.a = above, .b = disc, .kind = RevoluteJoint{.anchor = anchor}});
+            return disc;
+        };
+        const BodyId first = hang(block, {0, -0.3}, {0, -0.2}), second = hang(first, {0, -0.6}, {0, -0.45});
+        // A mast of three discs on the block, of which the last is held .1 m too low.
+        BodyId mast = hang(block, {3, 1}, {3, 0.5});
+        mast = hang(mast, {3.5, 1.2}, {3.2, 1.2});
+        mast = hang(mast, {3.3, 0.7}, {3.5, 1});
+        World64 world(scene);
+        for (int step = 0; step < 300; ++step) world.step(kStep);
+        const auto y = [&](BodyId body) { return world.bodies().position_y[world.row(body)]; };
+        CHECK(y(second) == doctest::Approx(-0.6));
+        CHECK(y(mast) > 0.77);
+    }
+
     TEST_CASE("a body in place of one that was removed touches what that was built into") {
         TwoArms arms(true);
         World64 world(arms.scene);

@@ -124,15 +124,30 @@ BuiltInPair pair_of(BodyId a, BodyId b) {
     return a.index < b.index ? BuiltInPair{a, b} : BuiltInPair{b, a};
 }
 
-/// Pairs that a joint joins and lets touch, ascending.
-std::vector<BuiltInPair> joined_pairs_that_touch(const JointStore& joints) {
-    std::vector<BuiltInPair> pairs;
-    joints.for_each([&](std::size_t, const StoredJoint& joint) {
-        if (joint.collide && !joint.is_on_world()) pairs.push_back(pair_of(joint.a, joint.b));
-    });
-    std::sort(pairs.begin(), pairs.end(), is_before);
-    return pairs;
-}
+/// Which bodies joints join directly.
+class JoinedPairs {
+  public:
+    explicit JoinedPairs(const JointStore& joints) {
+        joints.for_each([&](std::size_t, const StoredJoint& joint) {
+            if (joint.is_on_world()) return;
+            pairs_.push_back({joint.a, joint.b}), pairs_.push_back({joint.b, joint.a});
+        });
+        std::sort(pairs_.begin(), pairs_.end(), is_before);
+    }
+    bool has(const BuiltInPair& pair) const {
+        return std::binary_search(pairs_.begin(), pairs_.end(), pair, is_before);
+    }
+    /// Whether some body is joined to both.
+    bool have_third(const BuiltInPair& pair) const {
+        auto of_a = std::lower_bound(pairs_.begin(), pairs_.end(), BuiltInPair{pair.a, {0, 0}}, is_before);
+        for (; of_a != pairs_.end() && of_a->a == pair.a; ++of_a)
+            if (has({of_a->b, pair.b})) return true;
+        return false;
+    }
+
+  private:
+    std::vector<BuiltInPair> pairs_;  // each in both orders, ascending
+};
 
 /// Lists pairs of one mechanism that are in each other, in the order of their handles.
 template <class Real>
@@ -150,7 +165,7 @@ std::vector<BuiltInPair> find_built_in(const WorldState<Real>& world, std::vecto
                : x != of_other                  ? x < of_other
                                                 : one.row < other.row;
     });
-    const std::vector<BuiltInPair> joined = joined_pairs_that_touch(world.joints);
+    const JoinedPairs joined(world.joints);
     std::vector<BuiltInPair> pairs;
     for (std::size_t i = 0; i < members.size(); ++i) {
         const auto a = static_cast<std::size_t>(members[i].row);
@@ -160,10 +175,12 @@ std::vector<BuiltInPair> find_built_in(const WorldState<Real>& world, std::vecto
              ++k) {
             const auto b = static_cast<std::size_t>(members[k].row);
             if (bodies.is_immovable(a) && bodies.is_immovable(b)) continue;
-            if (!looks.are_near(a, b) || !world.may_collide(a, b)) continue;
-            if (!(looks.overlap(a, b) > kBuiltIn)) continue;
             const BuiltInPair pair = pair_of(bodies.id[a], bodies.id[b]);
-            if (!std::binary_search(joined.begin(), joined.end(), pair, is_before)) pairs.push_back(pair);
+            if (joined.has(pair)) continue;
+            // A floor that holds a mechanism by a rope is nothing that its feet may fall through.
+            if ((bodies.is_immovable(a) || bodies.is_immovable(b)) && !joined.have_third(pair)) continue;
+            if (!looks.are_near(a, b) || !world.may_collide(a, b)) continue;
+            if (looks.overlap(a, b) > kBuiltIn) pairs.push_back(pair);
         }
     }
     std::sort(pairs.begin(), pairs.end(), is_before);

@@ -10,8 +10,8 @@ namespace carom {
 /// turn that into motion for ever. The joints are what the user placed, so such a pair does not touch
 /// until it has come apart, as a pair does not that a joint joins.
 ///
-/// A mechanism is what joints connect, up to bodies that nothing moves, these included. What is directly
-/// joined by a joint that lets it touch is left as asked for.
+/// A mechanism is what joints connect, up to bodies that nothing moves; these count where a third body is
+/// joined to both of the pair. What is directly joined by a joint that lets it touch is left as asked for.
 ///
 /// Finds the pairs of mechanisms that joints were added to, and lets those touch that are apart now.
 /// @return whether some pair is to touch now, or no more
