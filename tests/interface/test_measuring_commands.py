@@ -13,9 +13,9 @@ class ProfileTest(ProgramTest):
 
     def test_stages_add_up_to_the_step_and_say_what_limits_them(self):
         # So many bodies that all steps are timed: of short ones a sample stands for all, with what interrupts it.
-        profile = self.profile(gas(80, steps=60))
+        profile = self.profile(gas(120, steps=60))
         self.assertEqual(profile["kind"], "profile")
-        self.assertEqual(profile["bodies"], 6400)
+        self.assertEqual(profile["bodies"], 14400)
         shares = [stage["share"] for stage in profile["stages"]]
         self.assertAlmostEqual(sum(shares), 1, places=6)
         seconds = sum(stage["seconds_per_step"] for stage in profile["stages"])
