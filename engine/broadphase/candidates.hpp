@@ -80,8 +80,8 @@ class Candidates {
 
     /// Rows of all bodies that can come within `reach` of a place while no flight leaves its margin; one that
     /// does by some overshoot is found if `reach` is larger by that much.
-    /// @return how many rows are in `out`.
     /// @param more  share by which bodies are to reach farther, of the largest of their size
+    /// @return how many rows are in `out`.
     std::size_t find_near(Vec2 place, double reach, Column<std::int32_t>& out, double more = 0) const {
         return grid_.find_near(static_cast<Real>(place.x), static_cast<Real>(place.y),
                                static_cast<Real>(reach * kRoundingUp), out,

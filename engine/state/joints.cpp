@@ -152,11 +152,10 @@ void JointStore::remove(std::size_t slot) {
 }
 
 void JointStore::remove_of(BodyId body) {
-    std::erase_if(built_in_, [&](const BuiltInPair& pair) { return pair.a == body || pair.b == body; });
+    let_touch([&](const BuiltInPair& pair) { return pair.a == body || pair.b == body; });
     for (std::size_t slot = 0; slot < slots_.size() && count_ > 0; ++slot)
         if (slots_[slot].is_used && (slots_[slot].joint.a == body || slots_[slot].joint.b == body))
             remove(slot);
-    list_excluded();
 }
 
 void JointStore::add_built_in(std::span<const BuiltInPair> pairs) {

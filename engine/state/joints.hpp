@@ -112,10 +112,10 @@ class JointStore {
     /// Slots of joints that were added since the last call; some may be removed by now.
     std::vector<std::uint32_t> take_added_slots() { return std::exchange(added_, {}); }
     bool may_have_built_in_pairs() const { return !added_.empty() || !built_in_.empty(); }
-    /// The pairs touch from now on for which is_apart(pair). @return whether there are any
-    template <class IsApart>
-    bool let_touch(const IsApart& is_apart) {
-        if (std::erase_if(built_in_, is_apart) == 0) return false;
+    /// The pairs are listed no more for which is_free(pair). @return whether there are any
+    template <class IsFree>
+    bool let_touch(const IsFree& is_free) {
+        if (std::erase_if(built_in_, is_free) == 0) return false;
         list_excluded();
         return true;
     }

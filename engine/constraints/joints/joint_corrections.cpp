@@ -35,8 +35,7 @@ void JointSystem::find_displacements(double share) {
             rhs_[j][static_cast<std::size_t>(k)] = row.law == RowLaw::hold ? -share * row.value : 0;
         }
     for (std::size_t e = 0; e < extras_.size(); ++e) {
-        const JointRow& row =
-            rows_[static_cast<std::size_t>(extras_[e].joint)].row[static_cast<std::size_t>(extras_[e].row)];
+        const JointRow& row = row_of(extras_[e]);
         const bool is_firm = row.law == RowLaw::hold || row.law == RowLaw::spring;
         const bool acts = is_firm || (row.law == RowLaw::stop && row.value < 0);
         low_[e] = is_firm ? -kUnbounded : 0, high_[e] = acts ? kUnbounded : 0;
@@ -45,7 +44,7 @@ void JointSystem::find_displacements(double share) {
     }
     for (const TautLoop& loop : taut_) {
         const double rigid = 1 - loop.share, rate = kSlowly + (1 - kSlowly) * rigid * rigid * rigid * rigid,
-                     error = along(loop, [&](std::size_t e) { return value_of(e); }),
+                     error = along(loop, [&](std::size_t e) { return row_of(extras_[e]).value; }),
                      stretch = -h_ * loop.softness *
                                along(loop, [&](std::size_t e) { return pulled_of(extras_[e]); }),
                      left_to_spring = error - rate * (error - stretch);
@@ -167,7 +166,8 @@ void JointSystem::measure_values() {
     }
 }
 
-/// Of what is held, and of limits that are passed: squares of metres, an angle with its arm.
+/// The sum of the squares of all errors of what is held, and of limits that are passed [m²]; an angle counts
+/// with its arm.
 double JointSystem::sum_of_errors() const {
     double sum = 0;
     for (std::size_t j = 0; j < joints.size(); ++j) {
@@ -185,11 +185,8 @@ double JointSystem::sum_of_errors() const {
 
 bool JointSystem::correct_positions(double least, double length) {
     double worst = largest_error_;
-    for (const Extra& extra : extras_) {
-        const JointRow& row =
-            rows_[static_cast<std::size_t>(extra.joint)].row[static_cast<std::size_t>(extra.row)];
-        if (row.law == RowLaw::stop) worst = std::fmax(worst, -row.value);
-    }
+    for (const Extra& extra : extras_)
+        if (row_of(extra).law == RowLaw::stop) worst = std::fmax(worst, -row_of(extra).value);
     if (!(worst > least)) return false;
     const double most = kLargestCorrection * length;
     double share = find_small_displacements(std::fmin(1, most / worst), most, length);

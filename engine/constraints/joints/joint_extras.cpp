@@ -146,11 +146,8 @@ double JointSystem::change_of_row(const Extra& extra, const std::vector<Vector>&
 /// has; else the motor decides alone.
 void JointSystem::part_motors_from_limits() {
     const std::size_t count = extras_.size();
-    const auto law_of = [&](const Extra& extra) {
-        return rows_[static_cast<std::size_t>(extra.joint)].row[static_cast<std::size_t>(extra.row)].law;
-    };
     for (std::size_t motor = 0; motor < count; ++motor) {
-        if (law_of(extras_[motor]) != RowLaw::motor) continue;
+        if (row_of(extras_[motor]).law != RowLaw::motor) continue;
         for (std::size_t limit = motor + 1; limit < count; ++limit) {
             if (extras_[limit].joint != extras_[motor].joint) break;
             if (state_[motor] != End::none || state_[limit] != End::none) continue;
@@ -291,9 +288,7 @@ void JointSystem::answer(std::span<const Blow> blows, Drives drives) {
     if (extras_.empty()) return;
     kept_state_ = state_;
     for (std::size_t i = 0; i < extras_.size(); ++i) {
-        const RowLaw law = rows_[static_cast<std::size_t>(extras_[i].joint)]
-                               .row[static_cast<std::size_t>(extras_[i].row)]
-                               .law;
+        const RowLaw law = row_of(extras_[i]).law;
         const bool holds = law == RowLaw::hold || law == RowLaw::spring ||
                            (drives == Drives::as_solved && state_[i] == End::none);
         const bool stops = law == RowLaw::stop && state_[i] == End::none;

@@ -109,8 +109,7 @@ void JointSystem::take_velocities() {
     for (std::size_t e = 0; e < extras_.size(); ++e) {
         Extra& extra = extras_[e];
         extra.impulse += solution_[e];
-        const JointRow& row =
-            rows_[static_cast<std::size_t>(extra.joint)].row[static_cast<std::size_t>(extra.row)];
+        const JointRow& row = row_of(extra);
         if (row.slot != kNoSlot)
             joints[static_cast<std::size_t>(extra.joint)].impulse[row.slot] += solution_[e];
     }

@@ -271,7 +271,7 @@ void JointSystem::note_forces() {
             add_force(j, rows_[j].row[k], joints[j].impulse[k]);
     for (const Extra& extra : extras_) {
         const auto j = static_cast<std::size_t>(extra.joint);
-        const JointRow& row = rows_[j].row[static_cast<std::size_t>(extra.row)];
+        const JointRow& row = row_of(extra);
         if (row.slot == kNoSlot) add_force(j, row, extra.impulse);
     }
 }
@@ -283,10 +283,8 @@ void JointSystem::note_answer() {
         for (std::size_t k = 0; k < static_cast<std::size_t>(link.rows); ++k)
             add_force(j, rows_[j].row[k], answer_[j][k]);
     }
-    for (std::size_t e = 0; e < extras_.size(); ++e) {
-        const auto j = static_cast<std::size_t>(extras_[e].joint);
-        add_force(j, rows_[j].row[static_cast<std::size_t>(extras_[e].row)], solution_[e]);
-    }
+    for (std::size_t e = 0; e < extras_.size(); ++e)
+        add_force(static_cast<std::size_t>(extras_[e].joint), row_of(extras_[e]), solution_[e]);
 }
 
 void JointSystem::advance() {

@@ -250,13 +250,10 @@ class JointSystem {
     }
     /// What a row of a loop gave in the whole substep before [N s].
     double& pulled_of(const Extra& extra) {
-        const auto j = static_cast<std::size_t>(extra.joint);
-        return pulled_[j][rows_[j].row[static_cast<std::size_t>(extra.row)].slot];
+        return pulled_[static_cast<std::size_t>(extra.joint)][row_of(extra).slot];
     }
-    double value_of(std::size_t extra) const {
-        return rows_[static_cast<std::size_t>(extras_[extra].joint)]
-            .row[static_cast<std::size_t>(extras_[extra].row)]
-            .value;
+    const JointRow& row_of(const Extra& extra) const {
+        return rows_[static_cast<std::size_t>(extra.joint)].row[static_cast<std::size_t>(extra.row)];
     }
 
     void list_extras();

@@ -30,7 +30,8 @@ void Gaps<Real>::look_at(std::size_t first, std::size_t last) {
     }
 }
 
-/// Of shapes with sharp corners that touch at one point alone: few do.
+/// Whether a contact is one of a corner beside a corner. Only contacts of one point between shapes with sharp
+/// corners are looked at, which are few.
 template <class Real>
 bool Gaps<Real>::are_corners_beside(std::size_t i) const {
     const auto none = static_cast<Real>(kNoPoint);

@@ -156,8 +156,7 @@ void HeavyLoads<Real>::add_answer(std::size_t by, std::int32_t row, const std::a
             if (contacts_[c].row[side] != row) continue;
             for (std::size_t d = 0; d < kDirections; ++d)
                 impulses_.inverse_mass(kDirections * c + d, by) +=
-                    dot(contacts_[c].impulse_on(side, d), {change[0], change[1]}) +
-                    contacts_[c].at_rim[side][d] * change[2];
+                    contacts_[c].part_of(side, d, {change[0], change[1]}, change[2]);
         }
 }
 

@@ -73,9 +73,9 @@ double HeldContacts<Real>::separation(const HeldContact& contact, std::size_t po
     for (std::size_t side = 0; side < 2; ++side) {
         if (contact.record[side] == HeldContact::kNothing) continue;
         const auto row = static_cast<std::size_t>(contact.record[side]);
-        separation += dot(contact.impulse_on(side, point),
-                          {records.displacement[2 * row], records.displacement[2 * row + 1]});
-        if (turn) separation += contact.at_rim[side][point] * static_cast<double>(turn[row]);
+        separation +=
+            contact.part_of(side, point, {records.displacement[2 * row], records.displacement[2 * row + 1]},
+                            turn ? static_cast<double>(turn[row]) : 0);
     }
     return separation;
 }
@@ -98,8 +98,7 @@ HeldContact::Values HeldContacts<Real>::lack(const HeldContact& contact) const {
         if (contact.record[side] == HeldContact::kNothing) continue;
         const Real* record = &step_.records.velocity[4 * static_cast<std::size_t>(contact.record[side])];
         for (std::size_t d = 0; d < HeldContact::kDirections; ++d)
-            lack[d] -= dot(contact.impulse_on(side, d), {record[0], record[1]}) +
-                       contact.at_rim[side][d] * static_cast<double>(record[2]);
+            lack[d] -= contact.part_of(side, d, {record[0], record[1]}, record[2]);
     }
     return lack;
 }

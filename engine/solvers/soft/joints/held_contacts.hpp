@@ -30,6 +30,11 @@ struct HeldContact {
     Vec2 impulse_on(std::size_t side, std::size_t direction) const {
         return side == 0 ? -along[direction] : along[direction];
     }
+    /// The part of a motion of one side along a direction: m/s, or m.
+    /// @param rim  of its rim
+    double part_of(std::size_t side, std::size_t direction, Vec2 motion, double rim) const {
+        return dot(impulse_on(side, direction), motion) + at_rim[side][direction] * rim;
+    }
 };
 
 /// The contacts of a step in all stores, as HeldContact.

@@ -46,7 +46,7 @@ class SoftJoints {
                                                                 : -1;
     }
     DirectJoints<Real>& exact_group(std::int32_t number) { return direct_[static_cast<std::size_t>(number)]; }
-    /// That of a body if it has few joints, else null.
+    /// The group of a body if it has few joints, else null.
     DirectJoints<Real>* small_group_of(std::int32_t row);
     /// Whether contacts and joints are to be solved in turns in this step.
     bool touches() const { return touches_ || crowd_groups_ > 0; }
