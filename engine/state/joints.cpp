@@ -26,7 +26,7 @@ void place(StoredJoint& stored, const Kind& kind, const JointBody& a, const Join
 
 void limit(StoredJoint& stored, const std::optional<double>& lower, const std::optional<double>& upper) {
     stored.has_lower = lower.has_value(), stored.has_upper = upper.has_value();
-    stored.lower = lower.value_or(0), stored.upper = upper.value_or(0);
+    stored.lower.put(lower.value_or(0)), stored.upper.put(upper.value_or(0));
 }
 
 void drive(StoredJoint& stored, const std::optional<double>& speed, double most) {
@@ -104,8 +104,11 @@ StoredJoint stored_joint(const Joint& joint, const JointBody& a, const JointBody
         std::swap(stored.anchor_a, stored.anchor_b);
         stored.axis = rotate(rotation_by(a.angle), stored.axis);
         stored.angle = -stored.angle;
-        if (stored.turns_sign()) std::swap(stored.has_lower, stored.has_upper);
-        stored.set_limits(stored.lower, stored.upper);
+        if (stored.turns_sign()) {
+            std::swap(stored.has_lower, stored.has_upper);
+            const double low = -stored.upper.at, high = -stored.lower.at;
+            stored.lower.put(low), stored.upper.put(high);
+        }
         stored.motor_speed = stored.as_kept(stored.motor_speed);
     }
     stored.collide = joint.collide;
@@ -141,6 +144,7 @@ void JointStore::remove(std::size_t slot) {
     slots_[slot].is_used = false, ++slots_[slot].generation;
     slots_[slot].joint = {};
     free_.push_back(static_cast<std::uint32_t>(slot));
+    std::erase(moving_, slot);
     for (std::size_t other = 0; other < slots_.size(); ++other) {
         const StoredJoint& gear = slots_[other].joint;
         if (slots_[other].is_used && gear.type == JointType::gear &&
@@ -149,6 +153,37 @@ void JointStore::remove(std::size_t slot) {
     }
     if (count_ == 0) added_.clear(), built_in_.clear();
     list_excluded();
+}
+
+void JointStore::set_limits(std::size_t slot, double low, double high) {
+    StoredJoint& joint = slots_[slot].joint;
+    if (joint.turns_sign()) low = -std::exchange(high, -low);
+    const auto set = [&](bool& has, JointLimit& limit, double value) {
+        if (has)
+            limit.at = value;
+        else
+            limit.put(value), ++version;
+        has = true;
+    };
+    set(joint.has_lower, joint.lower, low), set(joint.has_upper, joint.upper, high);
+    if (joint.type == JointType::distance && joint.is_held && !joint.is_spring())
+        joint.is_held = false, ++version;
+    if (!std::exchange(joint.is_listed, true)) moving_.push_back(static_cast<std::uint32_t>(slot));
+}
+
+void JointStore::begin_limits(double dt) {
+    for (const std::uint32_t slot : moving_)
+        for (JointLimit* limit : {&slots_[slot].joint.lower, &slots_[slot].joint.upper})
+            limit->begin_step(dt);
+}
+
+void JointStore::end_limits(double dt) {
+    std::erase_if(moving_, [&](std::uint32_t slot) {
+        StoredJoint& joint = slots_[slot].joint;
+        const bool lower = joint.lower.end_step(dt), upper = joint.upper.end_step(dt);
+        joint.is_listed = lower || upper;
+        return !joint.is_listed;
+    });
 }
 
 void JointStore::remove_of(BodyId body) {

@@ -13,6 +13,7 @@
 
 #include "state/bodies.hpp"
 #include "state/handles.hpp"
+#include "state/joint_limit.hpp"
 
 namespace carom {
 
@@ -27,18 +28,19 @@ struct StoredJoint {
     BodyId a, b;  // b is always a body; kNoBody in a: the world
     JointType type = JointType::revolute;
     bool collide = false, has_lower = false, has_upper = false, has_motor = false;
-    bool is_held = true;                      // whether the length of a distance joint is: a rope's is not
-    bool is_exchanged = false;                // whether a is what was given as b
-    bool is_free = true;                      // whether its group touched nothing in the last step
-    Vec2 anchor_a, anchor_b;                  // m, in the frame of the body, or of the world
-    Vec2 axis{1, 0};                          // of length 1, in the frame of a
-    double angle = 0;                         // rad, of b against a, at which its angle counts as 0; of
-                                              // a gear, what constraints/joints/gear_joint.hpp says
-    double length = 0;                        // m
-    double lower = 0, upper = 0;              // m or rad
-    double motor_speed = 0, max_motor = 0;    // m/s or rad/s; N or N m
-    double frequency = 0, damping_ratio = 0;  // Hz; 0: rigid
-    double ratio = 1;                         // of a gear
+    bool is_held = true;        // whether the length of a distance joint is: a rope's is not
+    bool is_exchanged = false;  // whether a is what was given as b
+    bool is_free = true;        // whether its group touched nothing in the last step
+    bool is_listed = false;     // whether the store knows that its limits may move
+    Vec2 anchor_a, anchor_b;    // m, in the frame of the body, or of the world
+    Vec2 axis{1, 0};            // of length 1, in the frame of a
+    double angle = 0;           // rad, of b against a, at which its angle counts as 0; of
+                                // a gear, what constraints/joints/gear_joint.hpp says
+    double length = 0;          // m
+    JointLimit lower, upper;
+    double motor_speed = 0, max_motor = 0;              // m/s or rad/s; N or N m
+    double frequency = 0, damping_ratio = 0;            // Hz; 0: rigid
+    double ratio = 1;                                   // of a gear
     std::uint32_t first = kNoJoint, second = kNoJoint;  // slots of the joints that a gear couples, or none
     Vec2 target;                                        // m
     double max_force = 0;                               // N
@@ -56,10 +58,7 @@ struct StoredJoint {
     bool turns_sign() const { return is_exchanged && type != JointType::distance; }
     /// A way, an angle or a speed of b against a, as it was given, in the order in which the bodies are kept.
     double as_kept(double value) const { return turns_sign() ? -value : value; }
-    /// @param low, high  as they were given [m or rad]
-    void set_limits(double low, double high) {
-        lower = turns_sign() ? -high : low, upper = turns_sign() ? -low : high;
-    }
+    bool has_moving_limit() const { return lower.rate != 0 || upper.rate != 0; }
 };
 
 /// Two bodies of one mechanism that were in each other when it was joined.
@@ -88,6 +87,14 @@ class JointStore {
     void remove(std::size_t slot);
     /// Removes the joints of a body that is removed.
     void remove_of(BodyId body);
+
+    /// Limits that a joint has from the next step on; they may move in it.
+    /// @param low, high  as they were given [m or rad]
+    void set_limits(std::size_t slot, double low, double high);
+    /// How limits move in a step. To be called at its start, once more if it ended early.
+    void begin_limits(double dt);
+    void end_limits(double dt);
+    bool may_move_limits() const { return !moving_.empty(); }
 
     bool is_alive(JointId id) const {
         return id.index < slots_.size() && slots_[id.index].is_used &&
@@ -125,7 +132,8 @@ class JointStore {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.version, self.count_, self.slots_, self.free_, self.broken, self.built_in_, self.added_);
+        archive(self.version, self.count_, self.slots_, self.free_, self.broken, self.built_in_, self.added_,
+                self.moving_);
         if constexpr (!std::is_const_v<Self>) self.list_excluded();
     }
     std::size_t bytes() const;
@@ -141,6 +149,7 @@ class JointStore {
     std::size_t count_ = 0;
     std::vector<Slot> slots_;
     std::vector<std::uint32_t> free_, added_;
+    std::vector<std::uint32_t> moving_;  // slots of joints whose limits may move
     std::vector<BuiltInPair> built_in_;
     // Pairs of bodies that do not touch, sorted: the upper half of a pair is the lower slot of a body. Those
     // of slot i are first_excluded_[i] ... first_excluded_[i + 1].

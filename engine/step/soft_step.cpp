@@ -91,13 +91,13 @@ class SoftStep final : public SoftSimulation<Real> {
          "candidate pairs", "coloured candidates, impulses"},
         {"begin_substeps",
          [](Sim& sim) {
-             sim.soft.begin_substeps(sim.world, sim.motion, sim.substep_dt, sim.world.gravity, *sim.kernels,
-                                     sim.executor);
+             sim.soft.begin_substeps(sim.world, sim.motion, sim.flight_dt, sim.substep_dt, sim.world.gravity,
+                                     *sim.kernels, sim.executor);
          },
          always, KernelChoice::isa, "motion, angular velocity, mass, radius", "velocity records"},
         {"find_contacts",
          [](Sim& sim) {
-             sim.soft.find_contacts(sim.world, sim.edge_candidates, sim.motion, sim.flight_dt,
+             sim.soft.find_contacts(sim.world, sim.edge_candidates, sim.motion,
                                     sim.candidates.flies_together());
          },
          can_meet, KernelChoice::contacts, "motion, coloured candidates, impulses", "contacts"},
@@ -160,7 +160,8 @@ class SoftStep final : public SoftSimulation<Real> {
          "velocity records, displacements, contacts, books"},
         {"advance_bodies",
          [](Sim& sim) {
-             sim.soft.advance_bodies(sim.substep + 1 == sim.substep_count, !sim.world.joints.empty());
+             sim.soft.advance_bodies(sim.substep, sim.substep + 1 == sim.substep_count,
+                                     !sim.world.joints.empty());
          },
          always, KernelChoice::isa, "velocity records", "velocity records, displacements"},
     };

@@ -117,15 +117,15 @@ void WorldJoints<Real>::set_motor(JointId joint, double speed, double most) {
         stored.type == JointType::target || stored.type == JointType::gear)
         refuse(kWhere, "motor", "revolute, prismatic or wheel");
     own_.wake_joint(slot);
+    if (stored.has_motor != (most > 0)) ++own_.world().joints.version;
     stored.has_motor = most > 0, stored.motor_speed = stored.as_kept(speed), stored.max_motor = most;
-    ++own_.world().joints.version;
 }
 
 template <class Real>
 void WorldJoints<Real>::set_limits(JointId joint, double lower, double upper) {
     constexpr std::string_view kWhere = "World::set_limits";
     const std::size_t slot = own_.world().joints.slot_of(joint, kWhere);
-    StoredJoint& stored = own_.world().joints[slot];
+    const StoredJoint& stored = own_.world().joints[slot];
     if (stored.type != JointType::distance && stored.type != JointType::revolute &&
         stored.type != JointType::prismatic)
         refuse(kWhere, "limits", "distance, revolute or prismatic");
@@ -133,10 +133,7 @@ void WorldJoints<Real>::set_limits(JointId joint, double lower, double upper) {
     check_number(kWhere, "lower", lower, stored.type == JointType::distance ? 0 : -most, most);
     check_number(kWhere, "upper", upper, lower, most);
     own_.wake_joint(slot);
-    stored.has_lower = stored.has_upper = true;
-    stored.set_limits(lower, upper);
-    if (stored.type == JointType::distance) stored.is_held = stored.is_spring();
-    ++own_.world().joints.version;
+    own_.world().joints.set_limits(slot, lower, upper);
 }
 
 template <class Real>

@@ -21,15 +21,15 @@ inline double distance_along(const JointArms& arms, Vec2 n) {
 ///
 /// so ja = r_a × n and jb = r_b × n. A rod holds it; a spring springs; a rope has stops alone, at d = min
 /// and d = max.
-inline void add_distance_rows(const StoredJoint& joint, const JointArms& arms, JointRows& rows) {
+inline void add_distance_rows(const StoredJoint& joint, const JointArms& arms, double until_end,
+                              JointRows& rows) {
     const double length = std::sqrt(length_squared(arms.between));
     // Ends that meet have no direction: any is as good.
     const Vec2 n = length > 0 ? (1 / length) * arms.between : Vec2{1, 0};
     const double ja = cross(arms.a, n), jb = cross(arms.b, n);
     if (joint.is_held)
         rows.add(n, ja, jb, length - joint.length, joint.is_spring() ? RowLaw::spring : RowLaw::hold, 0);
-    if (joint.has_lower) rows.add(n, ja, jb, length - joint.lower, RowLaw::stop, kNoSlot);
-    if (joint.has_upper) rows.add(-n, -ja, -jb, joint.upper - length, RowLaw::stop, kNoSlot);
+    rows.add_stops(joint, n, ja, jb, length, until_end);
 }
 
 }  // namespace carom

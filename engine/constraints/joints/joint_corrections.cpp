@@ -159,7 +159,7 @@ void JointSystem::measure_values() {
                                       });
         for (std::size_t k = 0; k < static_cast<std::size_t>(rows.firm); ++k) rows.row[k].value = values[k];
         if (rows.count == rows.firm) continue;
-        const JointRows now = rows_of(*joints[j].joint, a, b);
+        const JointRows now = rows_of(*joints[j].joint, a, b, until_end_);
         for (std::size_t k = static_cast<std::size_t>(rows.firm); k < static_cast<std::size_t>(rows.count);
              ++k)
             rows.row[k].value = now.row[k].value;

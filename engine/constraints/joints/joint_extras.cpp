@@ -41,9 +41,9 @@ void JointSystem::list_extras() {
             // A stop that is far from being reached in this substep is left out.
             const double speed = std::fabs(row_velocity(j, k));
             const double range = joints[j].joint->has_lower && joints[j].joint->has_upper
-                                     ? joints[j].joint->upper - joints[j].joint->lower
+                                     ? joints[j].joint->upper.at - joints[j].joint->lower.at
                                      : 0;
-            if (row.value > 2 * h_ * speed + 0.02 * range) continue;
+            if (row.rate == 0 && row.value > 2 * h_ * speed + 0.02 * range) continue;
             extras_.push_back({static_cast<std::int32_t>(j), k, 0, kUnbounded});
         }
 }

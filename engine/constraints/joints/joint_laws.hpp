@@ -11,18 +11,20 @@
 namespace carom {
 
 /// The rows of a joint of any kind; a target has none, and that of a gear takes more than two bodies.
-inline JointRows rows_of(const StoredJoint& joint, const JointPose& a, const JointPose& b) {
+/// @param until_end  s, to the end of the step: limits may move until then
+inline JointRows rows_of(const StoredJoint& joint, const JointPose& a, const JointPose& b,
+                         double until_end = 0) {
     const JointArms arms = arms_of(joint, a, b);
     JointRows rows;
     switch (joint.type) {
         case JointType::distance:
-            add_distance_rows(joint, arms, rows);
+            add_distance_rows(joint, arms, until_end, rows);
             break;
         case JointType::revolute:
-            add_revolute_rows(joint, arms, rows);
+            add_revolute_rows(joint, arms, until_end, rows);
             break;
         case JointType::prismatic:
-            add_prismatic_rows(joint, a, arms, rows);
+            add_prismatic_rows(joint, a, arms, until_end, rows);
             break;
         case JointType::weld:
             add_weld_rows(joint, arms, rows);
@@ -57,13 +59,13 @@ inline void values_of(const StoredJoint& joint, const JointPose& a, const JointP
 
 /// The value of a limit's row elsewhere. @param number  of the row among those where the path began
 inline double value_of_stop(const StoredJoint& joint, const JointPose& a, const JointPose& b,
-                            const JointRows& from, int number) {
+                            double until_end, const JointRows& from, int number) {
     const auto i = static_cast<std::size_t>(number);
-    if (joint.type != JointType::distance) return rows_of(joint, a, b).row[i].value;
+    if (joint.type != JointType::distance) return rows_of(joint, a, b, until_end).row[i].value;
     const JointArms arms = arms_of(joint, a, b);
     const bool is_upper = joint.has_upper && number == from.count - 1;  // the last row, of the other sign
-    return is_upper ? joint.upper - distance_along(arms, -from.row[i].n)
-                    : distance_along(arms, from.row[i].n) - joint.lower;
+    return is_upper ? joint.upper.before_end(until_end) - distance_along(arms, -from.row[i].n)
+                    : distance_along(arms, from.row[i].n) - joint.lower.before_end(until_end);
 }
 
 }  // namespace carom

@@ -77,10 +77,11 @@ void JointSystem::find_right_sides(bool is_curved) {
             extra_rhs_[e] = rhs_[j][i];
         } else {
             const auto value = [&] {
-                return value_of_stop(*member.joint, pose_of(member.a), pose_of(member.b), rows_[j],
-                                     extra.row);
+                return value_of_stop(*member.joint, pose_of(member.a), pose_of(member.b), until_end_ - h_,
+                                     rows_[j], extra.row);
             };
-            const double speed = is_curved ? per_h * (value() - row.value) : row_velocity(j, extra.row);
+            const double speed =
+                is_curved ? per_h * (value() - row.value) : row_velocity(j, extra.row) + row.rate;
             extra_rhs_[e] = -speed - per_h * std::fmax(row.value, 0);
         }
     }
@@ -206,7 +207,7 @@ bool JointSystem::follow_curves(int rounds, double least) {
     return true;
 }
 
-/// Impulse and velocity of each row that may give energy: of springs and motors.
+/// Impulse and velocity of each row that may give energy: of springs, motors and limits that move.
 void JointSystem::list_driven(std::vector<std::array<double, 2>>& driven) const {
     driven.clear();
     for (std::size_t j = 0; has_springs_ && j < joints.size(); ++j)
@@ -214,12 +215,12 @@ void JointSystem::list_driven(std::vector<std::array<double, 2>>& driven) const 
             if (rows_[j].row[static_cast<std::size_t>(k)].law == RowLaw::spring)
                 driven.push_back({joints[j].impulse[static_cast<std::size_t>(k)], row_velocity(j, k)});
     for (const Extra& extra : extras_)
-        if (extra.low < 0 && extra.low > -kUnbounded)
+        if ((extra.low < 0 && extra.low > -kUnbounded) || row_of(extra).rate != 0)
             driven.push_back({extra.impulse, row_velocity(static_cast<std::size_t>(extra.joint), extra.row)});
 }
 
-/// What springs and motors have given since driven_before_ [J]: an impulse does its work at the mean of the
-/// velocities before and after it.
+/// What springs, motors and limits that move have given since driven_before_ [J]: an impulse does its work at
+/// the mean of the velocities before and after it.
 double JointSystem::driven_work() {
     list_driven(driven_);
     double work = 0;

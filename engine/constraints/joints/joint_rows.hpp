@@ -56,6 +56,7 @@ struct JointRow {
     double value;   // m or rad
     RowLaw law;
     std::uint8_t slot;  // of StoredJoint::impulse; of a stop: none, kNoSlot
+    double rate = 0;    // m/s or rad/s, of `value` while the bodies rest: of a stop whose limit moves
 };
 inline constexpr std::uint8_t kNoSlot = 3;
 
@@ -69,6 +70,18 @@ struct JointRows {
     void add(Vec2 n, double ja, double jb, double value, RowLaw law, std::uint8_t slot) {
         if (law == RowLaw::hold || law == RowLaw::spring) ++firm;
         row[static_cast<std::size_t>(count++)] = {n, ja, jb, value, law, slot};
+    }
+    /// The stops of a coordinate whose row is given.
+    /// @param until_end  s, to the end of the step: limits may move until then
+    void add_stops(const StoredJoint& joint, Vec2 n, double ja, double jb, double value, double until_end) {
+        if (joint.has_lower) {
+            add(n, ja, jb, value - joint.lower.before_end(until_end), RowLaw::stop, kNoSlot);
+            row[static_cast<std::size_t>(count - 1)].rate = -joint.lower.rate;
+        }
+        if (joint.has_upper) {
+            add(-n, -ja, -jb, joint.upper.before_end(until_end) - value, RowLaw::stop, kNoSlot);
+            row[static_cast<std::size_t>(count - 1)].rate = joint.upper.rate;
+        }
     }
 };
 
@@ -88,10 +101,10 @@ inline JointArms arms_of(const StoredJoint& joint, const JointPose& a, const Joi
 }
 
 /// Motor, then limits, of a coordinate whose row is given.
-inline void add_drive(const StoredJoint& joint, Vec2 n, double ja, double jb, double value, JointRows& rows) {
+inline void add_drive(const StoredJoint& joint, Vec2 n, double ja, double jb, double value, double until_end,
+                      JointRows& rows) {
     if (joint.has_motor) rows.add(n, ja, jb, value, RowLaw::motor, kNoSlot);
-    if (joint.has_lower) rows.add(n, ja, jb, value - joint.lower, RowLaw::stop, kNoSlot);
-    if (joint.has_upper) rows.add(-n, -ja, -jb, joint.upper - value, RowLaw::stop, kNoSlot);
+    rows.add_stops(joint, n, ja, jb, value, until_end);
 }
 
 }  // namespace carom

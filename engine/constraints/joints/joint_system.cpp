@@ -129,7 +129,7 @@ void JointSystem::measure_rows() {
         const SystemBody &a = bodies[static_cast<std::size_t>(member.a)],
                          &b = bodies[static_cast<std::size_t>(member.b)];
         if (member.gear < 0)
-            rows_[j] = rows_of(*member.joint, a.pose, b.pose);
+            rows_[j] = rows_of(*member.joint, a.pose, b.pose, until_end_);
         else
             measure_gear(gears_[static_cast<std::size_t>(member.gear)]);
         const SpringTerms& terms = part_ == Part::half ? member.half : member.whole;

@@ -92,6 +92,9 @@ class JointSystem {
 
     /// Terms of springs for substeps of h.
     void set_substep(double h);
+    /// Limits may move until the end of the step.
+    /// @param until_end  s, from the start of the substep that is prepared next
+    void set_until_end(double until_end) { until_end_ = until_end; }
     /// Rows at the present positions, and their factors. Begins impulses anew, once the inertias that bodies
     /// seem to have are known from those of the substep before (stiffen).
     /// @param keeps  whether impulses go on from the substep before, of which velocities tell already
@@ -111,8 +114,8 @@ class JointSystem {
     void solve_curved(int rounds, double least = 0);
     /// Velocities along what is held now: J v = 0.
     void solve_flat();
-    /// The work [J] that springs, motors, targets and bodies that move by themselves do with the impulses
-    /// given since `prepare`, at the velocities that bodies have now.
+    /// The work [J] that springs, motors, limits that move, targets and bodies that move by themselves do
+    /// with the impulses given since `prepare`, at the velocities that bodies have now.
     double work_of_drives();
     /// Multiplies the impulses that the joints have given since `prepare`; velocities stay as they are.
     void scale(double share);
@@ -296,7 +299,8 @@ class JointSystem {
     std::vector<Gear> gears_;
     std::size_t loop_rows_ = 0, drive_rows_ = 0;
     bool has_springs_ = false;
-    double h_ = 0;  // s
+    double h_ = 0;          // s
+    double until_end_ = 0;  // s
     Part part_ = Part::whole;
     bool is_rigid_ = false;
     double largest_error_ = 0;

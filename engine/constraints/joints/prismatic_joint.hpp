@@ -23,13 +23,13 @@ struct AxisRow {
 /// A slider: b moves along an axis of a and does not turn against it. The way across the axis and the angle
 /// are held; spring, motor and limits act on the way along it.
 inline void add_prismatic_rows(const StoredJoint& joint, const JointPose& a, const JointArms& arms,
-                               JointRows& rows) {
+                               double until_end, JointRows& rows) {
     const Vec2 axis = rotate(a.turn, joint.axis);
     const AxisRow across(arms, {-axis.y, axis.x}), along(arms, axis);
     rows.add(across.e, across.ja, across.jb, across.way, RowLaw::hold, 0);
     rows.add({}, 1, 1, arms.angle, RowLaw::hold, 1);
     if (joint.is_spring()) rows.add(along.e, along.ja, along.jb, along.way, RowLaw::spring, 2);
-    add_drive(joint, along.e, along.ja, along.jb, along.way, rows);
+    add_drive(joint, along.e, along.ja, along.jb, along.way, until_end, rows);
 }
 
 }  // namespace carom

@@ -12,7 +12,7 @@ inline void add_wheel_rows(const StoredJoint& joint, const JointPose& a, const J
     const AxisRow across(arms, {-axis.y, axis.x}), along(arms, axis);
     rows.add(across.e, across.ja, across.jb, across.way, RowLaw::hold, 0);
     rows.add(along.e, along.ja, along.jb, along.way, joint.is_spring() ? RowLaw::spring : RowLaw::hold, 1);
-    add_drive(joint, {}, 1, 1, arms.angle, rows);
+    add_drive(joint, {}, 1, 1, arms.angle, 0, rows);
 }
 
 }  // namespace carom

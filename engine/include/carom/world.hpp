@@ -162,7 +162,10 @@ class BasicWorld {
     /// @param speed  rad/s or m/s, within ±kLargestSpeed  @param most  N m or N, >= 0; 0 turns it off
     /// @throws Error (stale_handle, not_finite, out_of_range, inconsistent)
     void set_motor(JointId joint, double speed, double most);
-    /// Changes the limits of a distance, revolute or prismatic joint.
+    /// Changes the limits of a distance, revolute or prismatic joint. One that is changed before a step and
+    /// was before the last one, the same way, moves through the step, and what it holds gets its velocity (of
+    /// the slower of the two changes): a rope that is reeled in, a lift. Else bodies are displaced to it, and
+    /// get none.
     /// @param lower  m, of a distance joint >= 0, or rad  @param upper  >= lower, both as in a scene
     /// @throws Error as set_motor
     void set_limits(JointId joint, double lower, double upper);

@@ -45,11 +45,12 @@ struct JointColumns {
     // Only where something springs, drives or has ends: lengths [m] or angles [rad], impulses in N s or N m
     // s. Of these joints impulse_x is that of the spring, impulse_y of the motor; start_x of angles is the
     // angle.
-    Real *impulse_z, *impulse_w;  // of the lower and of the upper end
-    Real* value;                  // the length or angle in this substep
-    Real *alpha, *gamma;          // 1/s, no unit: constraints/joints/spring_law.hpp; 0, 0: no spring
-    Real *lower, *upper;          // beyond all numbers where there is no end
-    Real *speed, *most;           // m/s or rad/s; N s or N m s in a substep, 0 where there is no motor
+    Real *impulse_z, *impulse_w;    // of the lower and of the upper end
+    Real* value;                    // the length or angle in this substep
+    Real *alpha, *gamma;            // 1/s, no unit: constraints/joints/spring_law.hpp; 0, 0: no spring
+    Real *lower, *upper;            // at the end of the step; beyond all numbers where there is no end
+    Real *lower_rate, *upper_rate;  // m/s or rad/s, where ends move
+    Real *speed, *most;             // m/s or rad/s; N s or N m s in a substep, 0 where there is no motor
 };
 
 /// One Gauss-Seidel sweep over joints of a kind.
@@ -62,6 +63,8 @@ struct SweepJoints {
     Real h;              // s
     Real half_h;         // s
     Real per_h;          // 1/s
+    Real until_end;      // s, from the start of the substep to the end of the step
+    bool ends_move;      // whether some do
     Real recovery;       // share of an error that the first sweep takes away, by displacement
     Real most;           // largest correction, in lengths of the rod; of hinges, m; of angles, rad
     Real over_relaxation;

@@ -39,17 +39,29 @@ struct DriveRows {
         take(spring, spring - mass * (gamma * v + alpha * off + inverse * spring) / (one + gamma));
         const F most = Lanes::load(k.joints.most + c);
         take(motor, clamp_to(motor + mass * (Lanes::load(k.joints.speed + c) - v), most));
-        const F to_lower = simd::max(at - Lanes::load(k.joints.lower + c), zero),
-                to_upper = simd::max(Lanes::load(k.joints.upper + c) - at, zero);
-        take(low, simd::max(low - mass * (per_h * to_lower + v), zero));
-        take(high, simd::min(high + mass * (per_h * to_upper - v), zero));
+        const Ends ends(k, c);
+        const F to_lower = simd::max(at - ends.lower, zero), to_upper = simd::max(ends.upper - at, zero);
+        take(low, simd::max(low - mass * (per_h * to_lower + (v - ends.lower_rate)), zero));
+        take(high, simd::min(high + mass * (per_h * to_upper - (v - ends.upper_rate)), zero));
         return sum() - before;
     }
+    /// Where a coordinate ends at the start of the substep.
+    struct Ends {
+        F lower, upper, lower_rate{0}, upper_rate{0};
+
+        Ends(const SweepJoints<Real>& k, std::size_t c)
+            : lower(Lanes::load(k.joints.lower + c)), upper(Lanes::load(k.joints.upper + c)) {
+            if (!k.ends_move) return;
+            lower_rate = Lanes::load(k.joints.lower_rate + c);
+            upper_rate = Lanes::load(k.joints.upper_rate + c);
+            lower = lower - F(k.until_end) * lower_rate, upper = upper - F(k.until_end) * upper_rate;
+        }
+    };
     /// How far a coordinate is beyond its ends; above zero: above the upper one.
     static F beyond(const SweepJoints<Real>& k, std::size_t c, F at) {
         const F zero(0);
-        return simd::max(at - Lanes::load(k.joints.upper + c), zero) +
-               simd::min(at - Lanes::load(k.joints.lower + c), zero);
+        const Ends ends(k, c);
+        return simd::max(at - ends.upper, zero) + simd::min(at - ends.lower, zero);
     }
 };
 

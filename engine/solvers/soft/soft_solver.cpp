@@ -33,8 +33,8 @@ std::size_t SoftSolver<Real>::rows_per_task() const {
 }
 
 template <class Real>
-void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Column<Real>& motion, double h,
-                                      const Vec2 gravity, const KernelTable<Real>& kernels,
+void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Column<Real>& motion, double dt,
+                                      double h, const Vec2 gravity, const KernelTable<Real>& kernels,
                                       const Executor& executor) {
     read_effects(world, settings_);
     settings_.iterations = iterations(world);
@@ -43,7 +43,7 @@ void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Colum
     if (are_new && !std::exchange(follows_rows_, false)) pair_finder_.forget(), uneven_.clear();
     loops_ = {&kernels, &settings_.kernels_of(kernels, masses_.some_are_fixed()), &executor, rows_per_task()};
     const FlightClock clock = flight_clock_at(h, world.drag.linear);
-    terms_.substep_dt = h, terms_.elapsed = 0;
+    terms_.dt = dt, terms_.substep_dt = h, terms_.elapsed = 0;
     terms_.gravity_change = clock.s * gravity, terms_.decay = clock.u;
     terms_.spin_decay = flight_clock_at(h, world.drag.angular).u;
     if (world.effects.joints) joints.find_groups(world);
@@ -55,11 +55,10 @@ void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Colum
 
 template <class Real>
 void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
-                                     Column<Real>& motion, double dt, bool flies_together) {
+                                     Column<Real>& motion, bool flies_together) {
     motion.resize(4 * padded(records_.count() + ContactGraph<Real>::padding_rows(graph.groups)));
-    terms_.dt = dt;
     settings_.set_lengths(terms_);
-    warm_start_.begin_step(graph, terms_.substep_dt, dt);
+    warm_start_.begin_step(graph, terms_.substep_dt, terms_.dt);
     const bool is_new = pair_finder_.find(view(), world.bodies, masses_, motion,
                                           flies_together && !world.bodies.has_shapes && world.joints.empty());
     if (is_new) uneven_.find(graph.pairs, masses_, records_.count());
@@ -101,7 +100,6 @@ void SoftSolver<Real>::warm_start() {
 template <class Real>
 void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
     using Blocks = typename Sweeps::Blocks;
-    terms_.elapsed = number * terms_.substep_dt;
     const ContactKernels<Real>& kernels = *loops_.contacts;
     const SolveContacts<Real> on_supports = Sweeps::arguments(view(), supports_),
                               on_pairs = Sweeps::arguments(view(), graph.pairs);

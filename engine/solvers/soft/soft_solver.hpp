@@ -76,13 +76,13 @@ class SoftSolver {
     }
 
     /// Reads what holds for the step; velocity records of all bodies at its start.
-    void begin_substeps(const WorldState<Real>& world, const Column<Real>& motion, double h,
+    void begin_substeps(const WorldState<Real>& world, const Column<Real>& motion, double dt, double h,
                         const Vec2 gravity, const KernelTable<Real>& kernels, const Executor& executor);
     /// Contacts that can touch in this step, by colour.
     /// @param motion  [rows][4] at the start of the step; gets rows for the padding of groups
     /// @param flies_together  whether a good part of the bodies are fast together
     void find_contacts(const WorldState<Real>& world, const EdgeCandidates<Real>& edges, Column<Real>& motion,
-                       double dt, bool flies_together);
+                       bool flies_together);
     /// Finds the contacts of shapes and lays them out along paths.
     void find_manifolds(const WorldState<Real>& world, const EdgeCandidates<Real>& edges);
     /// Tells what bounces from what rests (impacts.hpp).
@@ -133,10 +133,11 @@ class SoftSolver {
     }
     /// Carries out the impacts of a substep.
     void carry_out_impacts(const Column<Real>& motion, Books& books, Interruption& interruption);
-    /// Moves the bodies through the substep that was solved.
-    void advance_bodies(bool is_last, bool has_joints) {
+    /// Moves the bodies through substep `number`, which was solved.
+    void advance_bodies(int number, bool is_last, bool has_joints) {
         paths.advance(terms_, records_);
         records_.advance(is_last, terms_, loops_, has_joints ? joints.joined() : nullptr);
+        terms_.elapsed = (number + 1) * terms_.substep_dt;
     }
 
     // Joints: solvers/soft/joints/.

@@ -90,9 +90,11 @@ void DirectJoints<Real>::begin_step(const JointStep<Real>& step, bool touches, b
     // taken away at once.
     least_error_ = 16 * std::numeric_limits<double>::epsilon() * farthest;
     double held = 0;
+    limits_move_ = false;
     for (std::size_t j = 0; j < slots_.size(); ++j) {
         system_.joints[j].joint = &step.world.joints[slots_[j]];  // the store may have moved
         held += system_.joints[j].joint->held;
+        limits_move_ = limits_move_ || system_.joints[j].joint->has_moving_limit();
         system_.joints[j].impulse = system_.joints[j].joint->impulse;
         system_.joints[j].force = {}, system_.joints[j].torque = 0;
     }
@@ -187,6 +189,7 @@ void DirectJoints<Real>::write_velocities(const JointStep<Real>& step) {
 template <class Real>
 void DirectJoints<Real>::solve_first(const JointStep<Real>& step, int substep) {
     read_poses(step);
+    system_.set_until_end(step.terms.dt - step.terms.elapsed);
     for (std::size_t i = 1; i < rows_.size(); ++i) {
         const Real* record = &step.records.velocity[4 * static_cast<std::size_t>(rows_[i])];
         SystemBody& body = system_.bodies[i];
@@ -257,6 +260,7 @@ void DirectJoints<Real>::end_step(const JointStep<Real>& step) {
     if (touches_) return;
     half_kick(step, 1);
     read_poses(step);
+    system_.set_until_end(0);
     for (std::size_t i = 1; i < rows_.size(); ++i) {
         const Real* record = &step.records.velocity[4 * static_cast<std::size_t>(rows_[i])];
         system_.bodies[i].velocity = Vec2{record[0], record[1]};

@@ -69,8 +69,8 @@ class DirectJoints {
         load.body = static_cast<std::int32_t>(push.body), load.along = push.impulse;
         return load;
     }
-    /// Whether a motor, a spring or a body that moves by itself may give its bodies energy.
-    bool may_drive() const { return may_drive_; }
+    /// Whether a motor, a spring, a limit or a body that moves by itself may give its bodies energy.
+    bool may_drive() const { return may_drive_ || limits_move_; }
     /// The work of these in this substep [J].
     double work_of_drives(const JointStep<Real>& step);
     /// A row of it that can move.
@@ -119,7 +119,7 @@ class DirectJoints {
     double mass_ = 0, heaviest_ = 0;          // kg
     double least_error_ = 0, length_ = 0;     // m
     bool touches_ = false, was_free_ = true;  // in this step; in the last one
-    bool is_beside_ = false, converges_ = false, may_drive_ = false;
+    bool is_beside_ = false, converges_ = false, may_drive_ = false, limits_move_ = false;
 };
 
 template <class Real>

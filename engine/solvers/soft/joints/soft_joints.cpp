@@ -200,6 +200,7 @@ void SoftJoints<Real>::find_pressed(const JointStep<Real>& step, const StepView<
 template <class Real>
 void SoftJoints<Real>::begin_step(const JointStep<Real>& step, const StepView<Real>& contacts,
                                   const PathSolver<Real>& paths, double dt) {
+    step.world.joints.begin_limits(dt);
     find_touching(step, contacts, paths, dt);
     touches_ = false;
     springs_.begin_step(step.terms.substep_dt);
@@ -282,6 +283,7 @@ bool SoftJoints<Real>::end_step(const JointStep<Real>& step, const StepView<Real
         group.store(joints, dt);
     }
     if (!swept_.empty()) swept_.store(joints, step.terms.substep_dt, *contacts.loops.executor);
+    joints.end_limits(dt);
     const std::size_t before = joints.broken.size();
     for (const std::size_t slot : breakable_) {
         const StoredJoint& joint = joints[slot];

@@ -115,8 +115,8 @@ void SweptJoints<Real>::Kind::for_each_column(const Fn& fn) {
                                  &arm_a_y, &arm_b_x, &arm_b_y})
         fn(*column, unsigned{kArms});
     for (Column<Real>* column : {&per_rim_a, &per_rim_b, &seen_a, &seen_b}) fn(*column, unsigned{kRims});
-    for (Column<Real>* column :
-         {&impulse_z, &impulse_w, &value, &alpha, &gamma, &lower, &upper, &speed, &most})
+    for (Column<Real>* column : {&impulse_z, &impulse_w, &value, &alpha, &gamma, &lower, &upper, &lower_rate,
+                                 &upper_rate, &speed, &most})
         fn(*column, unsigned{kDrives});
 }
 
@@ -175,6 +175,8 @@ JointColumns<Real> SweptJoints<Real>::Kind::columns() {
             gamma.data(),
             lower.data(),
             upper.data(),
+            lower_rate.data(),
+            upper_rate.data(),
             speed.data(),
             most.data()};
 }
@@ -312,6 +314,7 @@ void SweptJoints<Real>::sweep(const JointStep<Real>& step, const StepLoops<Real>
     for (SweepJoints<Real>& k : arguments_) {
         k.velocity = step.records.velocity.data(), k.displacement = step.records.displacement.data();
         k.turn = turn_of(step.records);
+        k.until_end = static_cast<Real>(step.terms.dt - step.terms.elapsed), k.ends_move = ends_move_;
     }
     bool any_far = false;
     for (const Kind& kind : kinds_)
@@ -345,13 +348,14 @@ void SweptJoints<Real>::sweep(const JointStep<Real>& step, const StepLoops<Real>
     });
 }
 
-/// What the spring and the motor of a joint may have given: the motor its impulse times the mean rate of the
-/// length or angle, the spring only that part of its impulse that pulls it to its rest, for the rest of it
-/// damps (constraints/joints/spring_law.hpp).
+/// What the spring, the motor and the ends of a joint may have given: the motor its impulse times the mean
+/// rate of the length or angle, an end that moves its own times its rate, the spring only that part of its
+/// impulse that pulls it to its rest, for the rest of it damps (constraints/joints/spring_law.hpp).
 template <class Real>
 double SweptJoints<Real>::work_of_drive(const JointStep<Real>& step, std::size_t kind, std::size_t i) const {
     const Kind& own = kinds_[kind];
-    if ((needs_of(kind) & kDrives) == 0 || (own.impulse_x[i] == 0 && own.impulse_y[i] == 0)) return 0;
+    if ((needs_of(kind) & kDrives) == 0) return 0;
+    if (own.impulse_x[i] == 0 && own.impulse_y[i] == 0 && !ends_move_) return 0;
     const bool has_arms = kind != kAngles;
     struct End {
         double rate;          // m/s or rad/s, mean of the substep
@@ -376,7 +380,9 @@ double SweptJoints<Real>::work_of_drive(const JointStep<Real>& step, std::size_t
     const double inverse = a.inverse_mass + b.inverse_mass, rest = has_arms ? own.length[i] : Real(0),
                  off = static_cast<double>(own.value[i]) - rest,
                  pull = inverse > 0 ? -static_cast<double>(own.alpha[i]) * off / inverse : 0;
-    return (pull + static_cast<double>(own.impulse_y[i])) * (b.rate - a.rate);
+    const double of_ends = static_cast<double>(own.impulse_z[i]) * static_cast<double>(own.lower_rate[i]) +
+                           static_cast<double>(own.impulse_w[i]) * static_cast<double>(own.upper_rate[i]);
+    return (pull + static_cast<double>(own.impulse_y[i])) * (b.rate - a.rate) + of_ends;
 }
 
 /// A body goes straight on while it turns, and a joint brings it back to its curved path: it is asked for the

@@ -87,7 +87,8 @@ class SweptJoints {
         Column<Real> start_x, start_y, length, impulse_x, impulse_y, normal_x, normal_y, per_length;
         Column<Real> start_arm_a_x, start_arm_a_y, start_arm_b_x, start_arm_b_y;
         Column<Real> arm_a_x, arm_a_y, arm_b_x, arm_b_y, per_rim_a, per_rim_b, seen_a, seen_b;
-        Column<Real> impulse_z, impulse_w, value, alpha, gamma, lower, upper, speed, most;
+        Column<Real> impulse_z, impulse_w, value, alpha, gamma, lower, upper, lower_rate, upper_rate, speed,
+            most;
         std::vector<std::size_t> begin;  // of each group, and the end
         /// What a joint is made of, in the order of the columns: joints themselves lie apart in memory.
         struct Source {
@@ -139,6 +140,7 @@ class SweptJoints {
     std::size_t joints_ = 0, parts_of_joints_ = 0, colours_ = 0;
     std::int32_t first_beyond_ = 0;  // row
     bool is_loaded_ = false;         // whether columns have what the store keeps
+    bool ends_move_ = false;         // in this step, of some joint
     double longest_ = 0;             // m, arm of hinges
     JointStiffness stiffness_;
     /// How far joints turn their bodies back: arm times impulse of a substep [N s m].

@@ -33,6 +33,7 @@ void SweptJoints<Real>::begin_step(const JointStep<Real>& step, const StepLoops<
             [&](std::size_t, std::size_t first, std::size_t last) { fn(first, last); });
     };
     kernels_ = loops.kernels;
+    ends_move_ = step.world.joints.may_move_limits();
     if (!is_loaded_) load(step.world);
     arguments_.assign(kKinds, {});
     stiffness_.begin(static_cast<std::size_t>(first_beyond_));
@@ -173,8 +174,9 @@ void SweptJoints<Real>::begin_drive(const JointStep<Real>& step, Kind& own, std:
     const bool is_stiff = joint.is_spring() && kTwoPi * joint.frequency * h > kStiffestAlone;
     const bool is_held = is_stiff || (joint.type == JointType::weld && !joint.is_spring());
     const double rest_at = kind == kAngles ? 0 : joint.length;
-    own.lower[i] = real(is_held ? rest_at : joint.has_lower ? joint.lower : -kNoEnd);
-    own.upper[i] = real(is_held ? rest_at : joint.has_upper ? joint.upper : kNoEnd);
+    own.lower[i] = real(is_held ? rest_at : joint.has_lower ? joint.lower.at : -kNoEnd);
+    own.upper[i] = real(is_held ? rest_at : joint.has_upper ? joint.upper.at : kNoEnd);
+    own.lower_rate[i] = real(joint.lower.rate), own.upper_rate[i] = real(joint.upper.rate);
     const bool springs = joint.is_spring() && !is_stiff;
     SpringTerms terms;
     if (springs)
