@@ -22,6 +22,8 @@ constexpr int kMostWeightings = 4;
 /// while they make errors larger.
 constexpr double kBent = 1e-3;
 constexpr int kMostHalvings = 5;
+/// Joints of loops that were open by less, in lengths of the system, agree on what is rigid.
+constexpr double kAgree = 1e-5;
 /// Share of them that is taken where something heavy presses.
 constexpr double kShareOfLoaded = 0.1;
 
@@ -183,7 +185,36 @@ double JointSystem::sum_of_errors() const {
     return sum;
 }
 
+/// Where joints that close loops were open, the rows of before the correction say of the loop what is not so
+/// (docs/decisions/0072-welded-loops.md).
 bool JointSystem::correct_positions(double least, double length) {
+    if (!correct_once(least, length)) return false;
+    if (closes_loops_ && largest_error_ > kAgree * length) measure_anew();
+    return true;
+}
+
+/// Rows where the bodies are now, and their factors; impulses go on. The impulse of a joint that is still
+/// open acts on both bodies half way between its anchors. At its own anchor on each it would be a couple,
+/// which turns even what joints hold rigid, and the last joint of a loop seemed to have a lever to hold.
+void JointSystem::measure_anew() {
+    measure_rows();
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        const JointType type = joints[j].joint->type;
+        if (type != JointType::revolute && type != JointType::weld) continue;
+        JointRows& rows = rows_[j];
+        const Vec2 half = 0.5 * Vec2{rows.row[0].value, rows.row[1].value};
+        for (JointRow& row : std::span(rows.row).first(2))
+            row.ja += cross(half, row.n), row.jb -= cross(half, row.n);
+    }
+    factor_tree();
+    kept_extras_ = extras_;
+    list_extras();
+    couple_extras();
+    recall_extras();
+    limit_pulls();
+}
+
+bool JointSystem::correct_once(double least, double length) {
     double worst = largest_error_;
     for (const Extra& extra : extras_)
         if (row_of(extra).law == RowLaw::stop) worst = std::fmax(worst, -row_of(extra).value);

@@ -106,6 +106,8 @@ void JointSystem::soften_taut_loops() {
                 std::sqrt(loop.direction[0] * loop.direction[0] + loop.direction[1] * loop.direction[1]);
             for (double& part : loop.direction) part = length > 0 ? part / length : std::sqrt(0.5);
             alone = std::fmax(alone, alone_[loop.first + 1]);
+            // What nothing at all moves is no chain: the tree holds it by itself.
+            if (xx + yy - least < kTaut * alone) continue;
         }
         loop.share = 1 - std::fmax(least, 0) / (kTaut * alone);
         if (!(loop.share > 0)) continue;

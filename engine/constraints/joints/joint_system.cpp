@@ -60,10 +60,12 @@ void JointSystem::plan() {
         drain();
     }
     loop_rows_ = drive_rows_ = 0;
+    closes_loops_ = false;
     for (std::size_t j = 0; j < joints.size(); ++j) {
         const StoredJoint& joint = *joints[j].joint;
         if (has_rows(j) && !is_used[j]) {
             loops_.push_back(static_cast<std::int32_t>(j));
+            closes_loops_ = closes_loops_ || joints[j].gear < 0;
             const JointRows rows = rows_of(joint, bodies[static_cast<std::size_t>(joints[j].a)].pose,
                                            bodies[static_cast<std::size_t>(joints[j].b)].pose);
             loop_rows_ += joints[j].gear < 0 ? static_cast<std::size_t>(rows.firm) : 1;

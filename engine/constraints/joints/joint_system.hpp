@@ -234,6 +234,8 @@ class JointSystem {
     void press_loads();
     void displace(double share);
     void measure_values();
+    void measure_anew();
+    bool correct_once(double least, double length);
     double sum_of_errors() const;
 
     /// A loop that is taut in one direction among the rows of its last joint, and how far.
@@ -298,6 +300,7 @@ class JointSystem {
     std::vector<std::int32_t> loops_;  // joints that are no part of the tree
     std::vector<Gear> gears_;
     std::size_t loop_rows_ = 0, drive_rows_ = 0;
+    bool closes_loops_ = false;  // whether any of them is no gear
     bool has_springs_ = false;
     double h_ = 0;          // s
     double until_end_ = 0;  // s
