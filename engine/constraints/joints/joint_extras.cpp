@@ -277,6 +277,25 @@ void JointSystem::solve_all() {
     solve_tree();
 }
 
+void JointSystem::list_motors(std::vector<Motor>& motors) const {
+    motors.clear();
+    for (std::size_t e = 0; e < extras_.size(); ++e) {
+        const Extra& extra = extras_[e];
+        if (row_of(extra).law != RowLaw::motor) continue;
+        const auto joint = static_cast<std::size_t>(extra.joint);
+        motors.push_back({e, extra.impulse, extra.low, extra.high,
+                          joints[joint].joint->motor_speed - row_velocity(joint, extra.row), alone_[e]});
+    }
+}
+
+void JointSystem::push_motor(const Motor& motor, double impulse, std::vector<Blow>& blows) const {
+    const Extra& extra = extras_[motor.extra];
+    for_each_part(static_cast<std::size_t>(extra.joint), extra.row,
+                  [&](std::size_t body, const Vector& part) {
+                      blows.push_back({body, {impulse * part[0], impulse * part[1], impulse * part[2]}});
+                  });
+}
+
 void JointSystem::answer(std::span<const Blow> blows, Drives drives) {
     for (Vector& rhs : rhs_) rhs = {};
     const auto solve = [&](bool with_extras) {
@@ -292,7 +311,8 @@ void JointSystem::answer(std::span<const Blow> blows, Drives drives) {
     for (std::size_t i = 0; i < extras_.size(); ++i) {
         const RowLaw law = row_of(extras_[i]).law;
         const bool holds = law == RowLaw::hold || law == RowLaw::spring ||
-                           (drives == Drives::as_solved && state_[i] == End::none);
+                           (state_[i] == End::none && (drives == Drives::as_solved ||
+                                                       (drives == Drives::no_motors && law == RowLaw::stop)));
         const bool stops = law == RowLaw::stop && state_[i] == End::none;
         low_[i] = holds ? -kUnbounded : 0, high_[i] = holds || stops ? kUnbounded : 0;
         state_[i] = holds || stops ? End::none : End::low;

@@ -132,6 +132,7 @@ class JointSystem {
     enum class Drives : std::uint8_t {
         in_a_blow,  ///< limits that are reached push, motors do nothing: a blow takes no time
         as_solved,  ///< those hold that the last solve found between their ends
+        no_motors,  ///< limits as solved; motors give what they are told to, as blows (push_motor)
     };
     /// What blows change the velocities of all bodies by, while joints hold at the rows of `prepare`.
     /// Velocities and impulses stay as they are. Cost: O(joints), and O(rows²) of loops.
@@ -142,6 +143,20 @@ class JointSystem {
     void note_answer();
     /// The last blows take place: velocities change, and impulses by what the joints gave in answer.
     void take_answer() { take_velocities(); }
+    /// A motor, for who solves motors together with what acts on bodies.
+    struct Motor {
+        std::size_t extra;          // its row
+        double impulse, low, high;  // N s, of this substep so far, and within what it is
+        double lack;                // m/s, what its velocity is below the one it asks for
+        double alone;               // 1/kg, its inverse mass, were it the only row of the system
+    };
+    /// All motors, in an order that stays the same until `plan`.
+    void list_motors(std::vector<Motor>& motors) const;
+    /// Adds what an impulse of a motor gives bodies.
+    void push_motor(const Motor& motor, double impulse, std::vector<Blow>& blows) const;
+    /// What the last blows change the velocity of a motor by [m/s].
+    double answer_of(const Motor& motor) const { return change_of_row(extras_[motor.extra], change_); }
+    void add_to_motor(const Motor& motor, double impulse) { extras_[motor.extra].impulse += impulse; }
     /// Moves bodies through h; for tests and for systems that nothing else moves.
     void advance();
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -128,11 +129,31 @@ TEST_SUITE("joint corrections") {
                 }
     }
 
+    // Sweeps alone would take M / m of them.
+    TEST_CASE("a motor of a light plate carries a heavy load, up to the most that it has") {
+        constexpr double kPlate = 1, kLoad = 1e4, kFall = 0.1;  // kg, kg, m/s
+        for (const double most : {HUGE_VAL, 700.0}) {
+            CoupledImpulses impulses;  // of the load on the plate, and of the motor on the plate
+            impulses.reset(2);
+            impulses.inverse_mass(0, 0) = 1 / kPlate + 1 / kLoad, impulses.inverse_mass(1, 1) = 1 / kPlate;
+            impulses.inverse_mass(0, 1) = impulses.inverse_mass(1, 0) = -1 / kPlate;
+            impulses.lack = {0, kFall};  // both fall
+            const std::vector<CoupledImpulses::Ends> ends{{-most, most}};
+            impulses.solve(
+                ends, [](std::size_t, double wanted) { return std::fmax(wanted, 0); }, 1e-9);
+            const double exact = std::fmin(most, kFall * (kPlate + kLoad));
+            CHECK(impulses.given[1] == doctest::Approx(exact).epsilon(1e-6));
+            CHECK(impulses.given[0] == doctest::Approx(exact * kLoad / (kPlate + kLoad)).epsilon(1e-6));
+        }
+    }
+
     TEST_CASE("coupled impulses are within their bounds and lack nothing between them") {
         std::mt19937 random(5);
         const auto number = [&] { return static_cast<double>(random()) / 4294967296.0 - 0.5; };
-        for (int draw = 0; draw < 100; ++draw) {
+        for (int draw = 0; draw < 300; ++draw) {
             constexpr std::size_t kCount = 5;
+            const std::size_t motors = static_cast<std::size_t>(draw) % 3, first = kCount - motors;
+            const std::vector<CoupledImpulses::Ends> ends(motors, {-0.3, 0.3});
             CoupledImpulses impulses;
             impulses.reset(kCount);
             double rows[kCount][kCount], lack[kCount];
@@ -146,14 +167,17 @@ TEST_SUITE("joint corrections") {
                     impulses.inverse_mass(i, k) += i == k ? 0.2 : 0;
                 }
             }
-            impulses.solve([](std::size_t, double wanted) { return std::fmax(wanted, 0); }, 0);
+            impulses.solve(
+                ends, [](std::size_t, double wanted) { return std::fmax(wanted, 0); }, 0);
             for (std::size_t i = 0; i < kCount; ++i) {
                 double left = lack[i];
                 for (std::size_t k = 0; k < kCount; ++k)
                     left -= impulses.inverse_mass(i, k) * impulses.given[k];
-                CHECK(impulses.given[i] >= 0);
-                CHECK(left < 1e-9);
-                if (impulses.given[i] > 0) CHECK(left > -1e-9);
+                const double low = i < first ? 0 : -0.3, high = i < first ? HUGE_VAL : 0.3;
+                CHECK(impulses.given[i] >= low);
+                CHECK(impulses.given[i] <= high);
+                if (impulses.given[i] < high) CHECK(left < 1e-9);
+                if (impulses.given[i] > low) CHECK(left > -1e-9);
             }
         }
     }

@@ -240,15 +240,19 @@ void DirectJoints<Real>::solve_again(const JointStep<Real>& step) {
 
 template <class Real>
 void DirectJoints<Real>::take_blows(const JointStep<Real>& step, std::span<const JointBlow> blows,
-                                    JointSystem::Drives drives) {
+                                    std::span<const double> of_motors) {
     read_velocities(step);
     blows_.clear();
     for (const JointBlow& blow : blows) blows_.push_back(blow_of(blow));
-    system_.answer(blows_, drives);
+    for (std::size_t m = 0; m < of_motors.size(); ++m) {
+        system_.push_motor(motors_[m], of_motors[m], blows_);
+        system_.add_to_motor(motors_[m], of_motors[m]);
+    }
+    system_.answer(blows_, JointSystem::Drives::no_motors);
     system_.take_answer();
     write_velocities(step);
-    // What the blows alone gave is not the joints'.
-    for (const JointSystem::Blow& blow : blows_) {
+    // What the blows of contacts alone gave is not the joints'.
+    for (const JointSystem::Blow& blow : std::span(blows_).first(blows.size())) {
         const SystemBody& body = system_.bodies[blow.body];
         given_[blow.body].velocity -= body.inverse_mass * Vec2{blow.impulse[0], blow.impulse[1]};
         given_[blow.body].spin -= body.inverse_inertia * blow.impulse[2];

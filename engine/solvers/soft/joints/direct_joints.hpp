@@ -52,12 +52,33 @@ class DirectJoints {
     /// What a blow on one of its bodies changes the velocity records of all by, at once, while joints hold.
     /// @param fn  called for each body that can move: its row, what is added to vx, vy and rim speed [m/s]
     template <class Fn>
-    void answer(const JointBlow& blow, JointSystem::Drives drives, const Fn& fn);
+    void answer(const JointBlow& blow, JointSystem::Drives drives, const Fn& fn) {
+        blows_.assign(1, blow_of(blow));
+        answer_blows(drives, fn);
+    }
+    /// The same of a unit impulse of a motor.
+    template <class Fn>
+    void answer(const JointSystem::Motor& motor, const Fn& fn) {
+        blows_.clear();
+        system_.push_motor(motor, 1, blows_);
+        answer_blows(JointSystem::Drives::no_motors, fn);
+    }
+    /// What the last impulse that was answered changes the velocity of a motor by [m/s].
+    double answer_of(const JointSystem::Motor& motor) const { return system_.answer_of(motor); }
+    /// Its motors, with what they lack as velocities are now.
+    const std::vector<JointSystem::Motor>& motors(const JointStep<Real>& step) {
+        read_velocities(step);
+        system_.list_motors(motors_);
+        return motors_;
+    }
+    /// As they were when that was last asked for.
+    const std::vector<JointSystem::Motor>& motors() const { return motors_; }
     /// Adds what its joints gave in answer to the last blow to their forces.
     void note_answer() { system_.note_answer(); }
-    /// Gives bodies impulses, and all of them what joints give in answer.
+    /// Gives bodies impulses of contacts, and of its motors, and all of them what joints give in answer.
+    /// @param of_motors  N s, as motors()
     void take_blows(const JointStep<Real>& step, std::span<const JointBlow> blows,
-                    JointSystem::Drives drives);
+                    std::span<const double> of_motors);
     double mass() const { return mass_; }          ///< kg, of its bodies together
     double heaviest() const { return heaviest_; }  ///< kg, of one of them
     /// What presses on its bodies in the next solve_first, which moves none of them into it.
@@ -96,6 +117,8 @@ class DirectJoints {
     void correct(const JointStep<Real>& step);
     void half_kick(const JointStep<Real>& step, double sign);
     void read_velocities(const JointStep<Real>& step);
+    template <class Fn>
+    void answer_blows(JointSystem::Drives drives, const Fn& fn);
     JointSystem::Blow blow_of(const JointBlow& blow) const {
         const auto body =
             static_cast<std::size_t>(std::find(rows_.begin(), rows_.end(), blow.row) - rows_.begin());
@@ -116,6 +139,7 @@ class DirectJoints {
     std::vector<SystemBody> before_;                   // that were read
     std::vector<std::array<double, 3>> last_impulse_;  // N s, by joint: of the last substep of a step
     std::vector<JointSystem::Blow> blows_;
+    std::vector<JointSystem::Motor> motors_;
     double mass_ = 0, heaviest_ = 0;          // kg
     double least_error_ = 0, length_ = 0;     // m
     bool touches_ = false, was_free_ = true;  // in this step; in the last one
@@ -124,9 +148,8 @@ class DirectJoints {
 
 template <class Real>
 template <class Fn>
-void DirectJoints<Real>::answer(const JointBlow& blow, JointSystem::Drives drives, const Fn& fn) {
-    const JointSystem::Blow on_system = blow_of(blow);
-    system_.answer({&on_system, 1}, drives);
+void DirectJoints<Real>::answer_blows(JointSystem::Drives drives, const Fn& fn) {
+    system_.answer(blows_, drives);
     for (std::size_t i = 1; i < rows_.size(); ++i) {
         const SystemBody& body = system_.bodies[i];
         if (!(body.inverse_mass > 0)) continue;

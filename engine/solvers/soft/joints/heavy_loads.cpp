@@ -18,6 +18,9 @@ constexpr std::size_t kMostWork = 1024;
 constexpr double kMostOfAll = 2;
 /// Impulses that change velocities by less are none, in shares of what gravity adds in a substep.
 constexpr double kTolerance = 1e-3;
+/// Motors that have less than this share of the inverse mass that they would have alone drive what others
+/// hold.
+constexpr double kLeastOfAlone = 1e-6;
 
 constexpr std::size_t kTangent = HeldContact::kPoints;
 
@@ -162,8 +165,16 @@ void HeavyLoads<Real>::add_answer(std::size_t by, std::int32_t row, const std::a
 
 template <class Real>
 void HeavyLoads<Real>::find_masses(const JointStep<Real>& step, SoftJoints<Real>& joints) {
-    impulses_.reset(kDirections * contacts_.size());
-    for (std::size_t i = 0; i < impulses_.count(); ++i) {
+    first_motor_.assign(1, 0);
+    for (const std::int32_t group : groups_)
+        first_motor_.push_back(first_motor_.back() + joints.exact_group(group).motors(step).size());
+    impulses_.reset(kDirections * contacts_.size() + first_motor_.back());
+    const auto add_to_motors = [&](std::size_t by, std::int32_t group) {
+        for_each_motor(number_of(group), joints, [&](std::size_t row, const JointSystem::Motor& motor) {
+            impulses_.inverse_mass(row, by) += joints.exact_group(group).answer_of(motor);
+        });
+    };
+    for (std::size_t i = 0; i < kDirections * contacts_.size(); ++i) {
         const HeldContact& contact = contacts_[i / kDirections];
         for (std::size_t side = 0; side < 2 && contact.acts[i % kDirections]; ++side) {
             const JointBlow blow = unit_blow(contact, side, i % kDirections);
@@ -171,17 +182,28 @@ void HeavyLoads<Real>::find_masses(const JointStep<Real>& step, SoftJoints<Real>
             const auto add = [&](std::int32_t row, const std::array<double, 3>& change) {
                 add_answer(i, row, change);
             };
-            if (const std::int32_t group = joints.exact_group_of(blow.row); group >= 0)
-                joints.exact_group(group).answer(blow, JointSystem::Drives::as_solved, add);
-            else
+            if (const std::int32_t group = joints.exact_group_of(blow.row); group >= 0) {
+                joints.exact_group(group).answer(blow, JointSystem::Drives::no_motors, add);
+                add_to_motors(i, group);
+            } else {
                 add(blow.row, change_of_free(step.records.velocity, blow));
+            }
         }
     }
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+        for_each_motor(g, joints, [&](std::size_t row, const JointSystem::Motor& motor) {
+            joints.exact_group(groups_[g])
+                .answer(motor, [&](std::int32_t body, const std::array<double, 3>& change) {
+                    add_answer(row, body, change);
+                });
+            add_to_motors(row, groups_[g]);
+            impulses_.least_inverse_mass[row] = kLeastOfAlone * motor.alone;
+        });
 }
 
 template <class Real>
-void HeavyLoads<Real>::drop_held_directions(const Bodies<Real>& bodies, SoftJoints<Real>& joints) {
-    for (std::size_t i = 0; i < impulses_.count(); ++i) {
+void HeavyLoads<Real>::leave_held_directions(const Bodies<Real>& bodies, SoftJoints<Real>& joints) {
+    for (std::size_t i = 0; i < kDirections * contacts_.size(); ++i) {
         double mass = 0;  // kg, of all that could move
         for (const std::int32_t row : contacts_[i / kDirections].row) {
             if (row == HeldContact::kNothing) continue;
@@ -189,8 +211,7 @@ void HeavyLoads<Real>::drop_held_directions(const Bodies<Real>& bodies, SoftJoin
             mass +=
                 group < 0 ? static_cast<double>(bodies.mass[index(row)]) : joints.exact_group(group).mass();
         }
-        double& inverse = impulses_.inverse_mass(i, i);
-        if (!(inverse * kMostOfAll * mass > 1)) inverse = 0;
+        impulses_.least_inverse_mass[i] = 1 / (kMostOfAll * mass);
     }
 }
 
@@ -199,7 +220,20 @@ void HeavyLoads<Real>::begin_substep(const JointStep<Real>& step, SoftJoints<Rea
     if (empty()) return;
     displace_loads(step, joints);
     find_masses(step, joints);
-    drop_held_directions(step.world.bodies, joints);
+    leave_held_directions(step.world.bodies, joints);
+}
+
+/// What motors give and lack now, behind the rows of contacts.
+template <class Real>
+void HeavyLoads<Real>::read_motors(const JointStep<Real>& step, SoftJoints<Real>& joints) {
+    motors_.clear();
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+        joints.exact_group(groups_[g]).motors(step);
+        for_each_motor(g, joints, [&](std::size_t row, const JointSystem::Motor& motor) {
+            impulses_.given[row] = motor.impulse, impulses_.lack[row] = motor.lack;
+            motors_.push_back({motor.low, motor.high});
+        });
+    }
 }
 
 template <class Real>
@@ -211,22 +245,23 @@ void HeavyLoads<Real>::solve(const HeldContacts<Real>& contacts, const JointStep
         std::copy(lack.begin(), lack.end(), &impulses_.lack[kDirections * c]);
         std::copy(impulses.begin(), impulses.end(), &impulses_.given[kDirections * c]);
     }
-    before_ = impulses_.given;
+    read_motors(step, joints);
+    more_ = impulses_.given;
     const auto bound = [&](std::size_t i, double wanted) {
         if (i % kDirections < kTangent) return std::fmax(wanted, 0);
         const double limit =
             contacts_[i / kDirections].friction * (impulses_.given[i - 2] + impulses_.given[i - 1]);
         return std::clamp(wanted, -limit, limit);
     };
-    impulses_.solve(bound, kTolerance * step.terms.fall_speed());
+    impulses_.solve(motors_, bound, kTolerance * step.terms.fall_speed());
+    for (std::size_t i = 0; i < more_.size(); ++i) more_[i] = impulses_.given[i] - more_[i];
 
     if (blows_.size() < groups_.size()) blows_.resize(groups_.size());
     for (std::vector<JointBlow>& blows : blows_) blows.clear();
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
         const HeldContact& contact = contacts_[c];
         HeldContact::Values more;
-        for (std::size_t d = 0; d < kDirections; ++d)
-            more[d] = impulses_.given[kDirections * c + d] - before_[kDirections * c + d];
+        std::copy_n(&more_[kDirections * c], kDirections, more.begin());
         contacts.add(contact, more);
         for (std::size_t side = 0; side < 2; ++side) {
             JointBlow blow{contact.row[side], {}, 0};
@@ -235,8 +270,7 @@ void HeavyLoads<Real>::solve(const HeldContacts<Real>& contacts, const JointStep
                 blow.impulse += more[d] * contact.impulse_on(side, d),
                     blow.at_rim += more[d] * contact.at_rim[side][d];
             if (const std::int32_t group = joints.exact_group_of(blow.row); group >= 0) {
-                const auto at = std::lower_bound(groups_.begin(), groups_.end(), group);
-                blows_[static_cast<std::size_t>(at - groups_.begin())].push_back(blow);
+                blows_[number_of(group)].push_back(blow);
                 continue;
             }
             const std::array<double, 3> change = change_of_free(step.records.velocity, blow);
@@ -244,15 +278,18 @@ void HeavyLoads<Real>::solve(const HeldContacts<Real>& contacts, const JointStep
                 step.records.velocity[4 * index(blow.row) + k] += static_cast<Real>(change[k]);
         }
     }
+    const std::span<const double> of_motors(more_.data() + kDirections * contacts_.size(), motors_.size());
     for (std::size_t g = 0; g < groups_.size(); ++g)
-        joints.exact_group(groups_[g]).take_blows(step, blows_[g], JointSystem::Drives::as_solved);
+        joints.exact_group(groups_[g])
+            .take_blows(step, blows_[g],
+                        of_motors.subspan(first_motor_[g], first_motor_[g + 1] - first_motor_[g]));
 }
 
 template <class Real>
 std::size_t HeavyLoads<Real>::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-    std::size_t bytes =
-        of(contacts_) + of(groups_) + of(weight_) + of(told_) + impulses_.bytes() + of(before_) + of(blows_);
+    std::size_t bytes = of(contacts_) + of(groups_) + of(weight_) + of(told_) + of(first_motor_) +
+                        of(motors_) + impulses_.bytes() + of(more_) + of(blows_);
     for (const std::vector<JointBlow>& blows : blows_) bytes += of(blows);
     return bytes;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -18,7 +19,9 @@ namespace carom {
 /// one is answered by the factored system of the group (JointSystem::answer) with a change R_i of the
 /// velocities of all its bodies, and J_k R_i, with the direction J_k of another, is their inverse mass. So
 /// impulses are found that the contacts hold with while joints hold: a problem of complementarity with
-/// friction, as small as these contacts are few. Rolling resistance is left to the turns.
+/// friction, as small as these contacts are few. Motors of these groups are rows of it: they hold a load up
+/// to the most that they have, and wheels that all of them drive have more motors and grips than ways to go.
+/// Rolling resistance is left to the turns.
 ///
 /// Where joints are corrected by displacements, what presses is displaced with them (JointSystem::Load).
 ///
@@ -57,14 +60,27 @@ class HeavyLoads {
     void displace_loads(const JointStep<Real>& step, SoftJoints<Real>& joints) const;
     void find_masses(const JointStep<Real>& step, SoftJoints<Real>& joints);
     void add_answer(std::size_t by, std::int32_t row, const std::array<double, 3>& change);
-    void drop_held_directions(const Bodies<Real>& bodies, SoftJoints<Real>& joints);
+    void leave_held_directions(const Bodies<Real>& bodies, SoftJoints<Real>& joints);
+    void read_motors(const JointStep<Real>& step, SoftJoints<Real>& joints);
+    /// Calls fn(row of impulses_, motor) for the motors of groups_[g].
+    template <class Fn>
+    void for_each_motor(std::size_t g, SoftJoints<Real>& joints, const Fn& fn) const {
+        std::size_t row = kDirections * contacts_.size() + first_motor_[g];
+        for (const JointSystem::Motor& motor : joints.exact_group(groups_[g]).motors()) fn(row++, motor);
+    }
+    std::size_t number_of(std::int32_t group) const {
+        return static_cast<std::size_t>(std::lower_bound(groups_.begin(), groups_.end(), group) -
+                                        groups_.begin());
+    }
 
     std::vector<HeldContact> contacts_;
     std::vector<std::int32_t> groups_;  // of their bodies, ascending
     std::vector<double> weight_;        // kg, by group: the heaviest of its bodies and of what touches them
     std::vector<Told> told_;
-    CoupledImpulses impulses_;                   // by contact and direction
-    std::vector<double> before_;                 // N s, likewise
+    std::vector<std::size_t> first_motor_;       // as groups_, and the end: of motors_
+    std::vector<CoupledImpulses::Ends> motors_;  // by group
+    CoupledImpulses impulses_;                   // by contact and direction, then by motor
+    std::vector<double> more_;                   // N s, likewise: what is given beyond what was
     std::vector<std::vector<JointBlow>> blows_;  // as groups_
 };
 
