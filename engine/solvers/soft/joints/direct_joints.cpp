@@ -51,6 +51,7 @@ DirectJoints<Real>::DirectJoints(const WorldState<Real>& world, const std::vecto
             if (system_.bodies[static_cast<std::size_t>(number)].inverse_mass > 0)
                 longest = std::fmax(longest, std::sqrt(length_squared(arm)));
         system_.joints.push_back(member);
+        motor_count_ += joint.has_motor;
         may_drive_ = may_drive_ || joint.is_spring() || joint.has_motor || joint.type == JointType::target;
     }
     const auto number_in_system = [&](std::uint32_t slot) {

@@ -79,6 +79,7 @@ class DirectJoints {
     /// @param of_motors  N s, as motors()
     void take_blows(const JointStep<Real>& step, std::span<const JointBlow> blows,
                     std::span<const double> of_motors);
+    std::size_t motor_count() const { return motor_count_; }
     double mass() const { return mass_; }          ///< kg, of its bodies together
     double heaviest() const { return heaviest_; }  ///< kg, of one of them
     /// What presses on its bodies in the next solve_first, which moves none of them into it.
@@ -140,6 +141,7 @@ class DirectJoints {
     std::vector<std::array<double, 3>> last_impulse_;  // N s, by joint: of the last substep of a step
     std::vector<JointSystem::Blow> blows_;
     std::vector<JointSystem::Motor> motors_;
+    std::size_t motor_count_ = 0;
     double mass_ = 0, heaviest_ = 0;          // kg
     double least_error_ = 0, length_ = 0;     // m
     bool touches_ = false, was_free_ = true;  // in this step; in the last one

@@ -13,6 +13,8 @@ namespace {
 constexpr double kHeavy = 4;
 /// Contacts times joints of their groups, at most, in a step: what is beyond is solved in turns alone.
 constexpr std::size_t kMostWork = 1024;
+/// Likewise motors times the square of all rows, which is what it takes to eliminate them: 0.1 ms a turn.
+constexpr std::size_t kMostElimination = 1 << 18;
 /// How heavy bodies may be to an impulse, in masses of all that joints connect with them: they are heavier
 /// where joints hold them against the world, and a contact says what these say, or the contrary.
 constexpr double kMostOfAll = 2;
@@ -89,7 +91,7 @@ void HeavyLoads<Real>::find(const HeldContacts<Real>& contacts, const JointStep<
     if (!joints.touches_exactly()) return;
     const Bodies<Real>& bodies = step.world.bodies;
     weigh_groups(contacts, bodies, joints);
-    std::size_t work = 0;
+    std::size_t work = 0, motors = 0;
     contacts.for_each(bodies, [&](const HeldContact& contact) {
         if (!is_heavy(contact, bodies, joints)) return;
         std::size_t more = 0;
@@ -99,13 +101,20 @@ void HeavyLoads<Real>::find(const HeldContacts<Real>& contacts, const JointStep<
                     fn(joints.exact_group_of(row));
         };
         for_each_group([&](std::int32_t group) { more += joints.exact_group(group).joints(); });
-        if (work + more > kMostWork) return;
-        work += more;
+        std::size_t motors_with = motors;
+        for_each_group([&](std::int32_t group) {
+            if (std::find(groups_.begin(), groups_.end(), group) == groups_.end())
+                motors_with += joints.exact_group(group).motor_count();
+        });
+        const std::size_t rows = kDirections * (contacts_.size() + 1) + motors_with;
+        if (work + more > kMostWork || motors_with * rows * rows > kMostElimination) return;
+        work += more, motors = motors_with;
         contacts_.push_back(contact);
-        for_each_group([&](std::int32_t group) { groups_.push_back(group); });
+        for_each_group([&](std::int32_t group) {
+            if (std::find(groups_.begin(), groups_.end(), group) == groups_.end()) groups_.push_back(group);
+        });
     });
     std::sort(groups_.begin(), groups_.end());
-    groups_.erase(std::unique(groups_.begin(), groups_.end()), groups_.end());
 }
 
 template <class Real>
