@@ -8,6 +8,8 @@ namespace carom {
 
 /// An island sleeps when all its bodies have been still for so long [s].
 inline constexpr double kTimeToSleep = 0.5;
+/// But for no fewer steps: in long ones what has been thrown up is still for one or two at its highest.
+inline constexpr double kFewestStepsToSleep = 12;
 /// Without gravity nothing is pressed to rest: still is what would cross less than this share of its radius
 /// in the time above.
 inline constexpr double kStillShareOfRadius = 0.001;

@@ -139,6 +139,7 @@ template <class Real>
 bool Sleepers<Real>::note_still(WorldState<Real>& world, double dt, double substep) const {
     Bodies<Real>& bodies = world.bodies;
     const double gravity = std::sqrt(length_squared(world.gravity));
+    const auto counted = static_cast<float>(std::fmin(dt, kTimeToSleep / kFewestStepsToSleep));  // s
     bool any = false;
     for (std::size_t row = 0; row < bodies.moving(); ++row) {
         const double vx = bodies.velocity_x[row], vy = bodies.velocity_y[row];
@@ -147,7 +148,7 @@ bool Sleepers<Real>::note_still(WorldState<Real>& world, double dt, double subst
                                                : 0;
         const double speed = still_speed(gravity, substep, bodies.inradius(row));
         const bool is_still = vx * vx + vy * vy <= speed * speed && rim * rim <= speed * speed;
-        bodies.still[row] = is_still ? bodies.still[row] + static_cast<float>(dt) : 0.0f;
+        bodies.still[row] = is_still ? bodies.still[row] + counted : 0.0f;
         any = any || bodies.still[row] >= static_cast<float>(kTimeToSleep);
     }
     return any;

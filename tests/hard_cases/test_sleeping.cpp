@@ -310,4 +310,24 @@ TEST_SUITE("hard cases/sleeping") {
         REQUIRE(sleep_all(world) < 3000);
         CHECK(world.state({1, 0}).position.y == doctest::Approx(0.5).epsilon(0.01));
     }
+
+    // After one step of half a second they slept in mid-air, where they were slowest.
+    TEST_CASE_TEMPLATE("what is thrown up does not fall asleep at its highest, however long steps are", Real,
+                       float, double) {
+        for (const double step : {0.1, 0.25, 0.5, 1.0, 4.0}) {
+            Scene scene;
+            scene.gravity = {0, -10};
+            scene.effects.sleep = true;
+            for (int i = 0; i < 20; ++i) {
+                Body thrown = rough_disc(0.5, {2.0 * i, 0});
+                thrown.velocity = {0, 10 * step * (1 + 0.1 * i)};  // at its highest after a step or more
+                scene.add(thrown);
+            }
+            BasicWorld<Real> world(scene);
+            for (int i = 0; i < 10; ++i) {
+                world.step(step);
+                CHECK(world.profile().asleep == 0);
+            }
+        }
+    }
 }

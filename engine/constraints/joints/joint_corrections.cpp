@@ -216,8 +216,11 @@ void JointSystem::measure_anew() {
 
 bool JointSystem::correct_once(double least, double length) {
     double worst = largest_error_;
-    for (const Extra& extra : extras_)
-        if (row_of(extra).law == RowLaw::stop) worst = std::fmax(worst, -row_of(extra).value);
+    for (const Extra& extra : extras_) {
+        const JointRow& row = row_of(extra);
+        const double arm = row.n == Vec2{} ? length : 1;  // of an angle
+        if (row.law == RowLaw::stop) worst = std::fmax(worst, -arm * row.value);
+    }
     if (!(worst > least)) return false;
     const double most = kLargestCorrection * length;
     double share = find_small_displacements(std::fmin(1, most / worst), most, length);

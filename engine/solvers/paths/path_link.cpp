@@ -20,8 +20,8 @@ void write_link(const LinkPlace<Real>& to, ManifoldList<Real>& list, std::size_t
     const auto row_a = static_cast<std::size_t>(list.a[i]);
     const Real rim_a = 1 / bodies.rim(row_a);
     const bool is_body = list.b[i] >= 0;
-    // The rim of what is no body is 1 m.
-    const Real rim_b = is_body ? 1 / bodies.rim(static_cast<std::size_t>(list.b[i])) : Real(1);
+    // What is no body has the rim of the body that touches it.
+    const Real rim_b = is_body ? 1 / bodies.rim(static_cast<std::size_t>(list.b[i])) : rim_a;
     Real a1 = list.lever_a1[i] * rim_a, a2 = list.lever_a2[i] * rim_a, at = list.lever_a_t[i] * rim_a;
     Real b1 = list.lever_b1[i] * rim_b, b2 = list.lever_b2[i] * rim_b, bt = list.lever_b_t[i] * rim_b;
     ManifoldMemory<Real>& memory = list.memory[i];

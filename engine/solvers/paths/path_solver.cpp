@@ -192,17 +192,18 @@ void PathSolver<Real>::move_still_rows(const WorldState<Real>& world, const Edge
     const Bodies<Real>& bodies = world.bodies;
     const std::span<const std::int32_t> live = manifolds.live();
     const auto move = [&](std::size_t n) {
-        const Partner partner(manifolds.list_of(live[n]).b[Manifolds<Real>::place_of(live[n])]);
+        const ManifoldList<Real>& list = manifolds.list_of(live[n]);
+        const std::size_t i = Manifolds<Real>::place_of(live[n]);
+        const Partner partner(list.b[i]);
         if (partner.is_wall()) return;
         const std::size_t b = partner.is_edge() ? edges.pose_of(world.edges[partner.edge_number()]).row
                                                 : static_cast<std::size_t>(partner.row());
         if ((bodies.flags_of(b) & kKinematic) == 0) return;
         Real* velocity = &records.velocity[4 * static_cast<std::size_t>(row_of_far_[n])];
         velocity[0] = bodies.velocity_x[b], velocity[1] = bodies.velocity_y[b];
-        if (bodies.has_rotation)
-            velocity[2] = bodies.angular_velocity[b] * (partner.is_edge() ? Real(1) : bodies.rim(b));
-        const ManifoldList<Real>& list = manifolds.list_of(live[n]);
-        const std::size_t i = Manifolds<Real>::place_of(live[n]);
+        // An edge has the rim of what touches it: write_link.
+        const std::size_t of_rim = partner.is_edge() ? static_cast<std::size_t>(list.a[i]) : b;
+        if (bodies.has_rotation) velocity[2] = bodies.angular_velocity[b] * bodies.rim(of_rim);
         if (partner.is_edge()) {
             const Edge& edge = world.edges[partner.edge_number()];
             turning_edges_.add_edge(list, i, row_of_far_[n], edge, edges.pose_of(edge), terms, records);
