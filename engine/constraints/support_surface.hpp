@@ -120,9 +120,12 @@ SupportSurface surface_of_edge(const WorldState<Real>& world, const EdgeCandidat
     const double met = time_of_meeting(p, way, edge.a, edge.b, radius);
     // Edges that turn take what they press along: nothing swings on them.
     const bool rolls_on = presses && !pose.turns() && length_squared(way) < radius * radius;
-    const double time = rolls_on ? 0.5 : met;
-    const Vec2 there = p + time * way;
-    const double share = nearest_share(there, edge.a, edge.b);
+    double time = rolls_on ? 0.5 : met;
+    Vec2 there = p + time * way;
+    double share = nearest_share(there, edge.a, edge.b);
+    // What rolls over the corner rests on one edge after the other.
+    if (!presses && passes_inner_corner(p, share, world.edges, edge))
+        time = 0, there = p, share = nearest_share(p, edge.a, edge.b);
     const Vec2 point = point_at(edge.a, edge.b, share), d = point - there;
     const double distance = std::sqrt(length_squared(d));
     Vec2 n = (1 / distance) * d;

@@ -35,6 +35,18 @@ inline bool is_touched_here(Vec2 p, double share, const EdgeStore& edges, const 
     return true;
 }
 
+/// Whether a disc is over an edge, but its way ends beyond the corner where the chain bends towards it: the
+/// next edge keeps it from there, and it may meet both.
+/// @param share  of the edge, nearest to where its way ends
+inline bool passes_inner_corner(Vec2 p, double share, const EdgeStore& edges, const Edge& edge) {
+    if (share > 0 && share < 1) return false;
+    const std::int32_t neighbour = share == 0 ? edge.previous : edge.next;
+    if (neighbour < 0) return false;
+    const double now = nearest_share(p, edge.a, edge.b);
+    const Vec2 along = edge.b - edge.a, far = share == 0 ? edges[neighbour].a : edges[neighbour].b;
+    return now > 0 && now < 1 && cross(along, p - edge.a) * cross(along, far - edge.a) > 0;
+}
+
 namespace disc_edge {
 
 /// When p0 + t way comes within `radius` of the corner, for t in [0, 1] and p0 outside; else 2.

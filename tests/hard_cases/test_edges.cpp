@@ -120,4 +120,32 @@ TEST_SUITE("hard cases/edges") {
             CHECK(-3 * p.x + 2 * p.y < 4);
         }
     }
+
+    // The second edge was met at the end of a way that the first one cut short, where it is the corner that
+    // is met: the ball left the first one with its speed and had none along the other.
+    TEST_CASE_TEMPLATE("a ball bounces off both edges of a corner within a step", Real, float, double) {
+        std::mt19937 random(5);
+        std::uniform_real_distribution<double> uniform(0, 1);
+        for (const double speed : {5.0, 20.0, 40.0})
+            for (const double radius : {0.05, 0.15})
+                for (int shot = 0; shot < test::scaled(200, 60); ++shot) {
+                    const double angle = 0.1 + 1.37 * uniform(random);
+                    const Vec2 v{-speed * std::cos(angle), -speed * std::sin(angle)};
+                    const double way = 0.7 * speed * kStep;  // m, within which both are met in the third step
+                    const Vec2 start{radius + way * uniform(random) * std::cos(angle) - 2 * kStep * v.x,
+                                     radius + way * uniform(random) * std::sin(angle) - 2 * kStep * v.y};
+                    Scene scene;
+                    const Material elastic{.restitution = 1};
+                    scene.add({.type = BodyType::static_body,
+                               .shape = Chain{.points = {{8, 0}, {0, 0}, {0, 8}}},
+                               .material = elastic});
+                    const BodyId ball = scene.add(
+                        {.shape = Disc{radius}, .position = start, .velocity = v, .material = elastic});
+                    BasicWorld<Real> world(scene, {.threads = 1});
+                    for (int i = 0; i < 8; ++i) world.step(kStep);
+                    INFO("from ", start.x, ", ", start.y);
+                    CHECK(world.state(ball).velocity.x == doctest::Approx(-v.x).epsilon(1e-4));
+                    CHECK(world.state(ball).velocity.y == doctest::Approx(-v.y).epsilon(1e-4));
+                }
+    }
 }
