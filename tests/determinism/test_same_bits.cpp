@@ -27,7 +27,7 @@ namespace {
 constexpr int kSteps = 90;
 
 constexpr Golden kGolden[] = {
-    {"mixed shapes", 0x03bf37c6bf4d6956, 0xd659312e5a4c1d82},
+    {"mixed shapes", 0x80530e7edbb42171, 0x8dca028b37527b72},
     {"bouncing crowd", 0x32f5cf7cf7591ae8, 0x5d0e0f7fea4c8122},
     {"rough gas", 0xc009256aceff94e4, 0xb74961daf77a2622},
     {"gas", 0x680b8eec4001de52, 0x87bedad9b790c353},
@@ -38,7 +38,7 @@ constexpr Golden kGolden[] = {
     {"rolling sizes", 0x263e12283b58366d, 0x8c50dfc5f6f4e985},
     {"turning chain", 0x4ec535f1f7be0f7b, 0xf92b06a52802958b},
     {"woken sleepers", 0xc96d16ac37412fb, 0x73b51f7b255f0ebe},
-    {"falling compounds", 0x12cf64f451925846, 0x06f24f1039266548},
+    {"falling compounds", 0x3581b450658110ed, 0x007e9bd67be6e6ae},
 };
 
 }  // namespace

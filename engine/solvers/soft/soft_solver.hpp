@@ -104,8 +104,8 @@ class SoftSolver {
     }
     /// Carries out the impacts of shapes in a substep.
     void carry_out_shape_impacts(const Bodies<Real>& bodies, Books& books) {
-        paths.counters.impacts +=
-            carom::carry_out_impacts(paths, terms_, bodies, records_, impacts.held, books, deflected_);
+        paths.counters.impacts += carom::carry_out_impacts(paths, terms_, bodies, records_, impacts.held,
+                                                           books, books_.gravity_work, deflected_);
         impacts.note_deflected(deflected_, records_.velocity);
     }
     /// Solves the contacts of shapes in substep `number`.

@@ -29,6 +29,7 @@ void BodyRecords<Real>::begin(const WorldState<Real>& world, const Column<Real>&
                               const SubstepTerms& terms, const StepLoops<Real>& loops) {
     const Bodies<Real>& bodies = world.bodies;
     count_ = bodies.count, moving_ = bodies.moving(), has_rotation_ = world.effects.rotation;
+    delays_.clear();
     const std::size_t rows = padded(count_ + padding_rows);
     velocity.resize(4 * rows), displacement.resize(2 * rows);
     // Contacts of shapes ask for turns even where no body can turn.
@@ -74,8 +75,32 @@ void BodyRecords<Real>::add_velocity(std::int32_t row, Vec2 dv, double du, const
 }
 
 template <class Real>
+void BodyRecords<Real>::delay(std::int32_t row, Vec2 dv, double du, double time) {
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    const auto i = static_cast<std::size_t>(row);
+    Delay& delay = delays_.emplace_back();
+    delay = {i, {real(time * dv.x), real(time * dv.y), real(time * du)}, {}};
+    const auto places = places_of(i);
+    for (std::size_t k = 0; k < places.size() && places[k]; ++k)
+        delay.before[k] = *places[k], *places[k] -= delay.by[k];
+}
+
+template <class Real>
+void BodyRecords<Real>::put_off_delays() {
+    for (std::size_t n = delays_.size(); n-- > 0;) {
+        const auto places = places_of(delays_[n].row);
+        for (std::size_t k = 0; k < places.size() && places[k]; ++k) *places[k] = delays_[n].before[k];
+    }
+}
+
+template <class Real>
 void BodyRecords<Real>::advance(bool is_last, const SubstepTerms& terms, const StepLoops<Real>& loops,
                                 const Real* joined) {
+    for (const Delay& delay : delays_) {
+        const auto places = places_of(delay.row);
+        for (std::size_t k = 0; k < places.size() && places[k]; ++k) *places[k] -= delay.by[k];
+    }
+    delays_.clear();
     const auto real = [](double value) { return static_cast<Real>(value); };
     AdvanceBodies<Real> k{};
     k.velocity = velocity.data(), k.start = start_columns();

@@ -49,6 +49,11 @@ class BodyRecords {
     /// Changes the velocity of a body by dv [m/s] and du [m/s] of its rim at once: at the start of the
     /// substep, and at its end by what drag leaves of it, so that the next one does not foresee it.
     void add_velocity(std::int32_t row, Vec2 dv, double du, const SubstepTerms& terms);
+    /// Such a change comes later in the substep: what it moves the body by until then is taken back.
+    /// @param time  s, from the start of the substep
+    void delay(std::int32_t row, Vec2 dv, double du, double time);
+    /// Puts what was taken back off to `advance`: contacts see the bodies where the substep began.
+    void put_off_delays();
     /// All rows, padding and such still ones included.
     std::size_t rows() const { return displacement.size() / 2; }
     /// Nothing of the last step is known any more.
@@ -87,6 +92,15 @@ class BodyRecords {
     Column<Real> turn_;                           // m, rim displacement since the start of the step
     Column<Real> start_x_, start_y_, start_rim_;  // m/s, velocities at the start of the substep
     std::vector<EnergyGain> gains_;               // by chunk of rows
+    struct Delay {
+        std::size_t row;
+        std::array<Real, 3> by, before;  // m, displacement and that of the rim: what is taken, what was there
+    };
+    std::vector<Delay> delays_;  // of this substep
+    std::array<Real*, 3> places_of(std::size_t row) {
+        Real* const to = &displacement[2 * row];
+        return {to, to + 1, has_rotation_ ? &turn_[row] : nullptr};
+    }
 };
 
 extern template class BodyRecords<float>;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace carom {
 namespace {
@@ -31,7 +32,28 @@ struct StruckBody {
         const auto [x, y, rim] = records.start_of_substep(row);
         start = Vec2{x, y} + half_kick, start_rim = rim;
     }
+    /// Its velocity becomes that of a later time. @param share  of the substep
+    void go_on(double share) {
+        start += share * (foreseen - start), start_rim += share * (foreseen_rim - start_rim);
+    }
 };
+
+/// How far the points of a body that turns come off the ways that a contact knows of, at most [m].
+/// @param rim_speed  m/s  @param time  s, for which it turns
+template <class Real>
+double bend_of(const Bodies<Real>& bodies, std::int32_t number, double rim_speed, double time) {
+    const auto row = static_cast<std::size_t>(number);
+    if (row >= bodies.count || rim_speed == 0) return 0;
+    const double angle = time * rim_speed / static_cast<double>(bodies.rim(row));
+    return 0.5 * angle * angle * static_cast<double>(bodies.radius[row]);
+}
+
+/// The time [s] at which a gap closes that has a velocity now and another one after h.
+double time_to_close(double gap, double velocity, double soon, double h) {
+    if (!(gap > 0)) return 0;
+    const double change = (soon - velocity) / h, root = velocity * velocity - 2 * change * gap;
+    return std::fmin(h, 2 * gap / (-velocity + std::sqrt(std::fmax(root, 0))));
+}
 
 template <class Real>
 Vec2 half_kick_of(const HeldImpacts<Real>& held, std::int32_t row, const SubstepTerms& terms) {
@@ -45,15 +67,17 @@ using Levers = std::array<double, 3>;
 /// where each body has carried the point since the contact was found. An impulse along one line gives the two
 /// no angular momentum; about a point of each body it gives them the impulse times the way that the points
 /// have gone apart, which is of the order of the step.
+/// @param come  m, of b against a up to the impact
 template <class Real>
 void share_points(const Bodies<Real>& bodies, const BodyRecords<Real>& records,
-                  const PathContact<Real>& contact, Vec2 n, Vec2 t, Levers& lever_a, Levers& lever_b) {
+                  const PathContact<Real>& contact, Vec2 come, Vec2 n, Vec2 t, Levers& lever_a,
+                  Levers& lever_b) {
     const auto row_a = static_cast<std::size_t>(contact.near), row_b = static_cast<std::size_t>(contact.far);
     const auto place = [&](std::size_t row) {
         return Vec2{static_cast<double>(bodies.position_x[row]) + records.displacement[2 * row],
                     static_cast<double>(bodies.position_y[row]) + records.displacement[2 * row + 1]};
     };
-    const Vec2 apart = place(row_b) - place(row_a);
+    const Vec2 apart = place(row_b) - place(row_a) + come;
     const double rim_a = bodies.rim(row_a), rim_b = bodies.rim(row_b);
     // r x n = -(r . t), r . n: from a's points to b's.
     const double along = dot(apart, t) - (rim_b * lever_b[0] - rim_a * lever_a[0]),
@@ -176,13 +200,13 @@ bool is_slow(const PathContact<Real>& contact, const SubstepTerms& terms, const 
 
 template <class Real>
 Outcome carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, const Bodies<Real>& bodies,
-                  BodyRecords<Real>& records, HeldImpacts<Real>& held, Books& books) {
+                  BodyRecords<Real>& records, HeldImpacts<Real>& held, Books& books, double& gravity_work) {
     const double rest_speed = kRestFalls * terms.fall_speed(), h = terms.substep_dt;
     const PathLink<Real>& link = contact.link;
     const std::size_t lane = contact.lane;
     const double e = contact.restitution;
     const bool is_near_held = held.holds(contact.near), is_far_held = held.holds(contact.far);
-    const StruckBody<Real> a(records, contact.near, half_kick_of(held, contact.near, terms)),
+    StruckBody<Real> a(records, contact.near, half_kick_of(held, contact.near, terms)),
         b(records, contact.far, half_kick_of(held, contact.far, terms));
     const Vec2 n{link.normal_x[lane], link.normal_y[lane]}, t{-n.y, n.x};
     Levers lever_a{link.near1[lane], link.near2[lane], link.near_t[lane]},
@@ -201,6 +225,11 @@ Outcome carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, c
     std::array<double, 2> v{};
     std::array<bool, 2> meets{};  // what is not met yet has an impact of its own, later
     bool comes = false, is_free = true;
+    double time = h;  // s, to the impact
+    // Bodies that turn are struck earlier by what bends their ways since the contact was found, so that they
+    // do not end in each other, where they would be pushed apart.
+    const double since = terms.elapsed + h, bend = bend_of(bodies, a.row, a.start_rim, since) +
+                                                   bend_of(bodies, b.row, b.start_rim, since);
     for (std::size_t k = 0; k < 2; ++k) {
         v[k] = relative(a.start, a.start_rim, b.start, b.start_rim, k);
         if (k == 1 && !has_two) break;
@@ -210,36 +239,68 @@ Outcome carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, c
         const double soon = relative(a.foreseen, a.foreseen_rim, b.foreseen, b.foreseen_rim, k);
         const bool is_fast = v[k] < -rest_speed, touches = gap + h * soon < 0;
         meets[k] = is_fast && touches, comes = comes || is_fast, is_free = is_free && !touches;
+        if (meets[k]) time = std::fmin(time, time_to_close(gap - bend, v[k], soon, h));
     }
     const double pressing = static_cast<double>(link.normal1[lane]) + static_cast<double>(link.normal2[lane]);
     if (pressing > kLightPress * std::fmax(-v[0], -v[1]) / (a.w + b.w)) return Outcome::none;
     if (!meets[0] && !meets[1]) return comes && is_free ? Outcome::comes : Outcome::none;
-    if (a.w > 0 && b.w > 0) {
-        const Levers own_a = lever_a, own_b = lever_b;
-        const std::array<double, 2> own_v = v;
-        share_points(bodies, records, contact, n, t, lever_a, lever_b);
+    // The system that answers for what joints hold is that of the substep's start.
+    if (is_near_held || is_far_held) time = 0;
+    const StruckBody<Real> first_a = a, first_b = b;
+    const Levers own_a = lever_a, own_b = lever_b;
+    const bool both_move = a.w > 0 && b.w > 0;
+    /// @return whether the bodies still meet then, about the points that they share, if both move
+    const auto go_to = [&](double then, bool shares) {
+        time = then, a = first_a, b = first_b, lever_a = own_a, lever_b = own_b;
+        a.go_on(time / h), b.go_on(time / h);
+        if (shares)
+            share_points(bodies, records, contact, time * (b.start - a.start), n, t, lever_a, lever_b);
         for (std::size_t k = 0; k < 2; ++k) v[k] = relative(a.start, a.start_rim, b.start, b.start_rim, k);
+        if (!shares) return true;
         const std::array<bool, 2> still_meets{meets[0] && v[0] < 0, meets[1] && v[1] < 0};
-        // If the bodies part already about shared points: the paths know those of each alone, and would take
-        // the approach that they see without restitution.
-        if (still_meets[0] || still_meets[1])
-            meets = still_meets;
-        else
-            lever_a = own_a, lever_b = own_b, v = own_v;
-    }
+        if (!still_meets[0] && !still_meets[1]) return false;
+        meets = still_meets;
+        return true;
+    };
+    // If the bodies part already about shared points: the paths know those of each alone, and would take
+    // the approach that they see without restitution.
+    if (!go_to(time, both_move) && !go_to(0, true)) go_to(0, false);
     const auto friction = static_cast<double>(link.friction[lane]);
     PointImpulses found;
     if (!(is_near_held || is_far_held) || !strike_held(held, a, b, n, t, lever_a, lever_b, meets,
                                                        {e, friction, 0}, terms, records, books, found))
         found = solve_free(a, b, t, lever_a, lever_b, meets, e, friction, v);
+    const auto change_of_rim = [&](const StruckBody<Real>& body, double sign, const Levers& lever) {
+        return sign * body.w2 * (lever[0] * found.x[0] + lever[1] * found.x[1] + lever[2] * found.y);
+    };
+    if (time > 0) {
+        // Likewise by what will bend them, until contacts are found anew.
+        const double left = terms.dt - terms.elapsed,
+                     later = bend_of(bodies, a.row, a.start_rim + change_of_rim(a, -1, lever_a), left) +
+                             bend_of(bodies, b.row, b.start_rim + change_of_rim(b, 1, lever_b), left),
+                     closing = std::fmax(meets[0] ? -v[0] : 0, meets[1] ? -v[1] : 0);
+        if (later > 0) {
+            const double earlier = std::fmax(0, time - later / closing);
+            if (go_to(earlier, both_move))
+                found = solve_free(a, b, t, lever_a, lever_b, meets, e, friction, v);
+            else
+                go_to(0, false), found = solve_free(a, b, t, lever_a, lever_b, meets, e, friction, v);
+        }
+    }
     const std::array<double, 2>& x = found.x;
     const double sum = x[0] + x[1], y = found.y;
     const Vec2 impulse = sum * n + y * t;
     const auto give = [&](const StruckBody<Real>& body, double sign, const Levers& lever) {
         if (!(body.w > 0) || found.is_given) return;
         const Vec2 dv = (sign * body.w) * impulse;
-        records.add_velocity(body.row, dv,
-                             sign * body.w2 * (lever[0] * x[0] + lever[1] * x[1] + lever[2] * y), terms);
+        const double du = change_of_rim(body, sign, lever);
+        // From the substep's start on drag takes more of a change than from its own time.
+        const double share = time / h, least = std::numeric_limits<double>::min(),
+                     left = std::fmax(1 - share * (1 - terms.decay), least),
+                     spin_left = std::fmax(1 - share * (1 - terms.spin_decay), least);
+        records.add_velocity(body.row, (1 / left) * dv, du / spin_left, terms);
+        records.delay(body.row, (1 / left) * dv, du / spin_left, time);
+        gravity_work -= share / body.w * dot(terms.gravity_change, dv);
     };
     give(a, -1, lever_a), give(b, 1, lever_b);
     if (contact.partner.is_wall()) books.wall_impulse += sum;
@@ -262,7 +323,7 @@ Outcome carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, c
 template <class Real>
 std::int64_t carry_out_impacts(PathSolver<Real>& paths, const SubstepTerms& terms, const Bodies<Real>& bodies,
                                BodyRecords<Real>& records, HeldImpacts<Real>& held, Books& books,
-                               std::vector<std::int32_t>& deflected) {
+                               double& gravity_work, std::vector<std::int32_t>& deflected) {
     std::int64_t impacts = 0;
     deflected.clear();
     bool goes_on = true;
@@ -272,7 +333,7 @@ std::int64_t carry_out_impacts(PathSolver<Real>& paths, const SubstepTerms& term
         paths.for_each([&](const PathContact<Real>& contact) {
             if (!(contact.restitution > 0)) return;
             if (is_slow(contact, terms, records)) return;
-            const Outcome outcome = carry_out(contact, terms, bodies, records, held, books);
+            const Outcome outcome = carry_out(contact, terms, bodies, records, held, books, gravity_work);
             if (outcome == Outcome::comes) paths.hide(contact);
             if (outcome != Outcome::met) return;
             ++impacts, goes_on = true;
@@ -283,14 +344,15 @@ std::int64_t carry_out_impacts(PathSolver<Real>& paths, const SubstepTerms& term
         });
     }
     if (goes_on) paths.unhide();  // what was seen in the last round no longer holds
+    records.put_off_delays();
     return impacts;
 }
 
 template std::int64_t carry_out_impacts(PathSolver<float>&, const SubstepTerms&, const Bodies<float>&,
-                                        BodyRecords<float>&, HeldImpacts<float>&, Books&,
+                                        BodyRecords<float>&, HeldImpacts<float>&, Books&, double&,
                                         std::vector<std::int32_t>&);
 template std::int64_t carry_out_impacts(PathSolver<double>&, const SubstepTerms&, const Bodies<double>&,
-                                        BodyRecords<double>&, HeldImpacts<double>&, Books&,
+                                        BodyRecords<double>&, HeldImpacts<double>&, Books&, double&,
                                         std::vector<std::int32_t>&);
 
 }  // namespace carom
