@@ -8,8 +8,10 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <string>
+#include <variant>
 #include <vector>
 
 using namespace carom;
@@ -219,5 +221,84 @@ TEST_SUITE("physics/passing shapes") {
         World world(scene);
         for (int i = 0; i < 300; ++i) world.step(kStep);
         CHECK(world.state(chassis).velocity.x == doctest::Approx(6).epsilon(0.01));
+    }
+
+    // A player that a game gives a velocity into the wall in every step was held by the side of the next tile
+    // below, behind the face of this one: a box stood on it for good.
+    TEST_CASE_TEMPLATE("what is pressed on a wall of tiles falls freely", Real, float, double) {
+        constexpr double kFall = 1.5;  // s
+        for (const char* kind : {"boxes", "segments"})
+            for (const double push : {1.0, 5.0})
+                for (const Shape& shape :
+                     {Shape{Box{0.6, 1.6}}, Shape{Capsule{1, 0.3}}, Shape{Box{0.6, 0.6}}}) {
+                    Scene scene;
+                    scene.gravity = {0, -kGravity};
+                    for (int i = -3; i < 40; ++i) {
+                        const double y = -i;
+                        const BodyType fixed = BodyType::static_body;
+                        if (kind == std::string("boxes"))
+                            scene.add(smooth(Box{1, 1}, {1.1, y}, fixed));
+                        else
+                            scene.add(smooth(Segment{{0.6, 0.5}, {0.6, -0.5}}, {0, y}, fixed));
+                    }
+                    Body player = smooth(shape, {0.29, 0.2});
+                    player.fixed_rotation = true;
+                    if (std::holds_alternative<Capsule>(shape)) player.angle = 0.5 * std::numbers::pi;
+                    const BodyId id = scene.add(player);
+                    BasicWorld<Real> world(scene);
+                    for (int i = 0; i < 90; ++i) {
+                        world.set_velocity(id, {push, world.state(id).velocity.y});
+                        world.step(kStep);
+                    }
+                    INFO(std::string(kind), ", pressed at ", push, " m/s");
+                    CHECK(world.state(id).velocity.y == doctest::Approx(-kGravity * kFall).epsilon(0.02));
+                    CHECK(world.state(id).position.x < 0.301);
+                }
+    }
+
+    TEST_CASE_TEMPLATE("what is pressed on a floor of tiles runs over it", Real, float, double) {
+        for (const char* kind : {"boxes", "segments", "pieces of one body"})
+            for (const double push : {2.0, 5.0})
+                for (const double step : {1.0 / 60, 1.0 / 120})
+                    for (const Shape& shape : {Shape{Box{0.6, 1.6}}, Shape{Capsule{1, 0.3}}}) {
+                        Scene scene = tiled(kind, 40);
+                        const bool is_capsule = std::holds_alternative<Capsule>(shape);
+                        Body player = smooth(shape, {1, 0.8});
+                        player.fixed_rotation = true;
+                        if (is_capsule) player.angle = 0.5 * std::numbers::pi;
+                        const BodyId id = scene.add(player);
+                        BasicWorld<Real> world(scene);
+                        for (int i = 0; i < 5 / step; ++i) {
+                            world.set_velocity(id, {5, -push});
+                            world.step(step);
+                        }
+                        INFO(std::string(kind), ", pressed at ", push, " m/s, steps of ", step, " s");
+                        CHECK(world.state(id).position.x == doctest::Approx(26).epsilon(0.001));
+                    }
+    }
+
+    TEST_CASE_TEMPLATE("what is thrown onto tiles slides on", Real, float, double) {
+        for (const double size : {1.0, 0.4})
+            for (const double fall : {1.0, 3.0, 8.0}) {
+                std::mt19937 random(1);
+                std::uniform_real_distribution<double> uniform(0, 1);
+                const int throws = scaled(100, 50);
+                int slowed = 0, stopped = 0;
+                for (int i = 0; i < throws; ++i) {
+                    Scene scene = tiled("boxes", 30);
+                    const double x = 2 + uniform(random), y = size / 2 + 0.02 + 0.3 * uniform(random);
+                    Body box = smooth(Box{size, size}, {x, y});
+                    box.velocity = {6, -fall}, box.fixed_rotation = true;
+                    const BodyId id = scene.add(box);
+                    BasicWorld<Real> world(scene);
+                    for (int k = 0; k < 60; ++k) world.step(kStep);
+                    slowed += world.state(id).velocity.x < 0.95 * 6;
+                    stopped += world.state(id).velocity.x < 0.1 * 6;
+                }
+                report("boxes of ", size, " m thrown down at ", fall, " m/s: ", slowed, " of ", throws,
+                       " slowed");
+                CHECK(50 * slowed <= throws);  // 2 to 12 of 100 were, and half of those stood still
+                CHECK(stopped == 0);
+            }
     }
 }

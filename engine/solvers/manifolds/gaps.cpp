@@ -30,6 +30,19 @@ void Gaps<Real>::look_at(std::size_t first, std::size_t last) {
     }
 }
 
+template <class Real>
+bool Gaps<Real>::holds(std::size_t i) const {
+    const Bodies<Real>& bodies = in_.world.bodies;
+    const auto a = static_cast<std::size_t>(contacts_.a[i]), b = static_cast<std::size_t>(contacts_.b[i]);
+    if (!bodies.stands(b)) return false;
+    const Vec2 normal{contacts_.normal_x[i], contacts_.normal_y[i]},
+        velocity{bodies.velocity_x[a], bodies.velocity_y[a]};
+    const double gap = std::min(contacts_.separation1[i], contacts_.separation2[i]),
+                 thickness = contacts_.thickness[i];
+    return HeldFlights<Real>::comes_into(velocity, normal, gap, thickness, in_.dt) &&
+           meets_face(flying_a(i), flying_b(i), normal, in_.dt, gap, thickness);
+}
+
 /// Whether a contact is one of a corner beside a corner. Only contacts of one point between shapes with sharp
 /// corners are looked at, which are few.
 template <class Real>
@@ -42,7 +55,7 @@ bool Gaps<Real>::are_corners_beside(std::size_t i) const {
     const auto a = static_cast<std::size_t>(contacts_.a[i]), b = static_cast<std::size_t>(contacts_.b[i]);
     const std::int32_t of_a = shape_of(a, contacts_.item_a, i), of_b = shape_of(b, contacts_.item_b, i);
     if (world.shapes[of_a].radius > 0 || world.shapes[of_b].radius > 0) return false;
-    return are_beside(moving_row(world, a, of_a), moving_row(world, b, of_b), contacts_.manifold(i), in_.dt,
+    return are_beside(flying_a(i), flying_b(i), contacts_.manifold(i), in_.dt,
                       static_cast<double>(contacts_.thickness[i]));
 }
 
@@ -74,33 +87,26 @@ bool Gaps<Real>::stay_parted(std::size_t i) const {
 /// @param facing  how they face each other at its start
 template <class Real>
 bool Gaps<Real>::do_pass(std::size_t i, const Manifold<double>& facing) const {
-    const WorldState<Real>& world = in_.world;
-    const auto a = static_cast<std::size_t>(contacts_.a[i]), b = static_cast<std::size_t>(contacts_.b[i]);
-    return pass_each_other(moving_row(world, a, shape_of(a, contacts_.item_a, i)),
-                           moving_row(world, b, shape_of(b, contacts_.item_b, i)), facing, in_.dt,
+    return pass_each_other(flying_a(i), flying_b(i), facing, in_.dt,
                            static_cast<double>(contacts_.thickness[i]));
 }
 
 /// @return whether the bodies meet later than at once
 template <class Real>
 bool Gaps<Real>::find_meeting(std::size_t i, double gap) {
-    const WorldState<Real>& world = in_.world;
-    const Bodies<Real>& bodies = world.bodies;
+    const Bodies<Real>& bodies = in_.world.bodies;
     const auto turns = [&](std::size_t row) {
         return bodies.has_rotation ? static_cast<double>(bodies.angular_velocity[row]) : 0;
     };
     const auto a = static_cast<std::size_t>(contacts_.a[i]), b = static_cast<std::size_t>(contacts_.b[i]);
-    const Vec2 dv{static_cast<double>(bodies.velocity_x[b]) - static_cast<double>(bodies.velocity_x[a]),
-                  static_cast<double>(bodies.velocity_y[b]) - static_cast<double>(bodies.velocity_y[a])};
+    const Vec2 dv = velocity_of_b(i) - velocity_of_a(i);
     const double way = in_.dt * (std::sqrt(length_squared(dv)) + std::fabs(turns(a)) * bodies.radius[a] +
                                  std::fabs(turns(b)) * bodies.radius[b]);
     const double thickness = contacts_.thickness[i];
     if (!(way > kFastThicknesses * thickness) || !(way > gap)) return false;
     if (stay_parted(i)) return false;
     Manifold<double> met{};
-    const bool meets =
-        meeting_manifold(moving_row(world, a, shape_of(a, contacts_.item_a, i)),
-                         moving_row(world, b, shape_of(b, contacts_.item_b, i)), in_.dt, thickness, met);
+    const bool meets = meeting_manifold(flying_a(i), flying_b(i), in_.dt, thickness, met);
     if (meets) contacts_.set_manifold(i, met);
     return meets;
 }
@@ -118,7 +124,8 @@ bool Gaps<Real>::can_close(std::size_t i) const {
     const Real wa = bodies.has_rotation ? bodies.angular_velocity[a] : Real(0),
                wb = bodies.has_rotation ? bodies.angular_velocity[b] : Real(0);
     const auto towards = [&](Real speed) { return std::max(speed, -e * speed); };
-    const auto reach = static_cast<Real>(in_.near(static_cast<double>(contacts_.thickness[i])));
+    const Real reach = static_cast<Real>(in_.near(static_cast<double>(contacts_.thickness[i]))) +
+                       in_.poses.way_of_motors(a, b);
     const auto closes = [&](Real separation, Real lever_a, Real lever_b) {
         return separation <=
                reach + static_cast<Real>(in_.dt) * (towards(va + wa * lever_a) + towards(-vb - wb * lever_b));

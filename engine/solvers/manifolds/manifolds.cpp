@@ -282,15 +282,27 @@ bool Manifolds<Real>::find(const WorldState<Real>& world, const EdgeCandidates<R
     found_within_ = within;
     poses_.look(world, terms.dt, near, finds_all, loops.kernels->convex->turn_angles, *loops.executor);
     take_near(world, terms.dt, near, loops);
-    ahead_.look(world, terms.dt, poses_, items_, *loops.executor);
+    flights_.clear();
+    flights_.hold_what_pressed(world, edges, items_, terms.dt, bodies_, old_surfaces_);
+    flights_.settle(world.bodies, terms.dt);
+    ahead_.look(world, terms.dt, poses_, flights_, items_, *loops.executor);
     ahead_.look_at_surfaces(world, terms, old_surfaces_);
-    surface_finder_.find(world, edges, terms, near, ahead_.on_surfaces(), surfaces_, *loops.executor);
+    surface_finder_.find({world, edges, terms, near, flights_, ahead_.on_surfaces()}, surfaces_,
+                         *loops.executor);
     recall_surfaces();
     block_is_found_.assign(padded(bodies_.count()) / kRowPadding, 0);
     ahead_.resize_places(bodies_.count());
     loops.executor->for_each_chunk(bodies_.count(), kContactsPerTask, kNanosecondsToFind,
                                    [&](std::size_t, std::size_t first, std::size_t last) {
                                        find_chunk(world, terms, near, *loops.kernels->convex, first, last);
+                                   });
+    Gaps<Real> gaps({world, items_, poses_, flights_, near, terms.dt}, bodies_);
+    find_flights(gaps, world, terms.dt, *loops.executor);
+    loops.executor->for_each_chunk(bodies_.count(), kContactsPerTask, kNanosecondsToJudge,
+                                   [&](std::size_t, std::size_t first, std::size_t last) {
+                                       for (std::size_t begin = first; begin < last; begin += kRowPadding)
+                                           if (block_is_found_[begin / kRowPadding] != 0)
+                                               gaps.look_at(begin, std::min(last, begin + kRowPadding));
                                    });
     note_thicknesses(std::min(bodies_.count(), first_new_block_ * kRowPadding));
     first_new_block_ = block_is_found_.size();
@@ -303,7 +315,6 @@ template <class Real>
 void Manifolds<Real>::find_chunk(const WorldState<Real>& world, const SubstepTerms& terms,
                                  const ContactDistance& near, const ConvexKernels<Real>& kernels,
                                  std::size_t first, std::size_t last) {
-    Gaps<Real> gaps({world, items_, poses_, near, terms.dt}, bodies_);
     for (std::size_t begin = first; begin < last;) {
         std::size_t end = begin;  // of the blocks from `begin` on that must be found
         while (end < last && must_find(end / kRowPadding)) {
@@ -313,10 +324,35 @@ void Manifolds<Real>::find_chunk(const WorldState<Real>& world, const SubstepTer
         if (end > begin) {
             describe_pairs(world, near, begin, end);
             find_pairs(world, terms, kernels, begin, end);
-            gaps.look_at(begin, end);
         }
         begin = end + kRowPadding;  // that block need not
     }
+}
+
+template <class Real>
+void Manifolds<Real>::find_flights(const Gaps<Real>& gaps, const WorldState<Real>& world, double dt,
+                                   const Executor& executor) {
+    const auto none = static_cast<Real>(kNoPoint);
+    holding_.choose(bodies_.count(), kNanosecondsToList, executor, [&](std::size_t i) {
+        return bodies_.separation1[i] < none && block_is_found_[i / kRowPadding] != 0 && gaps.holds(i);
+    });
+    const auto hold = [&](const ManifoldList<Real>& list, std::size_t i) {
+        flights_.hold(static_cast<std::size_t>(list.a[i]), {list.normal_x[i], list.normal_y[i]},
+                      std::min(list.separation1[i], list.separation2[i]));
+    };
+    holding_.for_each([&](std::int32_t i) { hold(bodies_, static_cast<std::size_t>(i)); });
+    const Bodies<Real>& bodies = world.bodies;
+    for (std::size_t i = 0; i < surfaces_.count(); ++i) {
+        const auto row = static_cast<std::size_t>(surfaces_.a[i]);
+        const BodyId of_edge = surfaces_.names[i].b;
+        if (of_edge == BodyId{} || !bodies.stands(world.handles.row_of_slot(of_edge.index))) continue;
+        if (HeldFlights<Real>::comes_into({bodies.velocity_x[row], bodies.velocity_y[row]},
+                                          {surfaces_.normal_x[i], surfaces_.normal_y[i]},
+                                          std::min(surfaces_.separation1[i], surfaces_.separation2[i]),
+                                          surfaces_.thickness[i], dt))
+            hold(surfaces_, i);
+    }
+    flights_.settle(bodies, dt);
 }
 
 /// Coefficients, and how near is near enough: what both fly in the step, wherever to, and some more.
@@ -445,8 +481,8 @@ std::size_t Manifolds<Real>::bytes() const {
     return bodies_.bytes() + surfaces_.bytes() + old_.bytes() + old_surfaces_.bytes() +
            surface_finder_.bytes() + items_.bytes() + distant_.bytes() + of(asleep_) + of(is_recalled_) +
            of(loaded_) + of(is_box_of_) + of(blocks_are_boxes_) + of(first_of_slot_) + of(next_of_slot_) +
-           poses_.bytes() + ahead_.bytes() + of(block_is_found_) + of(live_) + of(was_live_) +
-           live_of_bodies_.bytes() + chosen_pairs_.bytes();
+           poses_.bytes() + ahead_.bytes() + flights_.bytes() + of(block_is_found_) + of(live_) +
+           of(was_live_) + live_of_bodies_.bytes() + chosen_pairs_.bytes();
 }
 
 template class Manifolds<float>;

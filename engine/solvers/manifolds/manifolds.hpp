@@ -9,6 +9,8 @@
 #include "sleeping/sleepers.hpp"
 #include "solvers/manifolds/contact_distance.hpp"
 #include "solvers/manifolds/distant_pairs.hpp"
+#include "solvers/manifolds/gaps.hpp"
+#include "solvers/manifolds/held_flights.hpp"
 #include "solvers/manifolds/manifold_list.hpp"
 #include "solvers/manifolds/piece_items.hpp"
 #include "solvers/manifolds/pose_watch.hpp"
@@ -122,6 +124,9 @@ class Manifolds {
     /// Finds the contacts of a chunk of pairs that must be found in this step.
     void find_chunk(const WorldState<Real>& world, const SubstepTerms& terms, const ContactDistance& near,
                     const ConvexKernels<Real>& kernels, std::size_t first, std::size_t last);
+    /// Finds how bodies fly that surfaces and standing bodies hold.
+    void find_flights(const Gaps<Real>& gaps, const WorldState<Real>& world, double dt,
+                      const Executor& executor);
     bool must_find(std::size_t block) const;
     void note_thicknesses(std::size_t first);
     void describe_pairs(const WorldState<Real>& world, const ContactDistance& near, std::size_t first,
@@ -152,6 +157,8 @@ class Manifolds {
     std::vector<std::uint8_t> blocks_are_boxes_;  // by block of kRowPadding contacts of bodies_
     PoseWatch<Real> poses_;
     PosesAhead<Real> ahead_;
+    HeldFlights<Real> flights_;
+    ChunkedList holding_;  // contacts that hold their bodies a
     /// What contacts are found within, by block of the last step; all zero: all are to be found anew.
     struct Within {
         double share = 0, fall = 0, dt = 0;  // ContactDistance; s

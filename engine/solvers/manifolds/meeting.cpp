@@ -37,19 +37,17 @@ Interval outermost(const MovingConvex& body, Vec2 normal, Vec2 tangent, double t
     return {centre + found.low, centre + found.high};
 }
 
-/// Whether one of the bodies has a face along the gap, and what of the other is nearest to it is over it when
-/// the gap has closed, farther from its ends than `grazing` [m].
+}  // namespace
+
 bool meets_face(const MovingConvex& a, const MovingConvex& b, Vec2 normal, double dt, double gap,
-                double grazing) {
-    const double closing = dot(a.velocity - b.velocity, normal);
-    const double time = closing * dt > gap ? gap / closing : dt;
+                double thickness) {
+    const double closing = dot(a.velocity - b.velocity, normal), grazing = kGrazing * thickness;
+    const double time = closing * dt > gap ? std::fmax(gap, 0) / closing : dt;
     const Vec2 tangent{-normal.y, normal.x};
     const Interval of_a = outermost(a, normal, tangent, time), of_b = outermost(b, -normal, tangent, time);
     const double longer = std::fmax(of_a.high - of_a.low, of_b.high - of_b.low);
     return longer > grazing && std::fmin(of_a.high - of_b.low, of_b.high - of_a.low) > grazing;
 }
-
-}  // namespace
 
 MovingConvex still_edge(const Edge& edge) {
     const Vec2 centre = 0.5 * (edge.a + edge.b), half = 0.5 * (edge.b - edge.a);
@@ -81,9 +79,9 @@ bool pass_each_other(const MovingConvex& a, const MovingConvex& b, const Manifol
     const double beyond =
         -std::fmin(then.separation1, then.separation2);  // the plane, at the end of the step
     if (!(beyond > kPassing * thickness)) return false;
-    const double grazing = kGrazing * thickness, target = kMeetingTarget * thickness;
-    if (meets_face(a, b, {manifold.normal_x, manifold.normal_y}, dt, gap, grazing)) return false;
-    return !impact_time(a, b, dt, target, grazing + target).touches;
+    if (meets_face(a, b, {manifold.normal_x, manifold.normal_y}, dt, gap, thickness)) return false;
+    const double target = kMeetingTarget * thickness;
+    return !impact_time(a, b, dt, target, kGrazing * thickness + target).touches;
 }
 
 bool are_beside(const MovingConvex& a, const MovingConvex& b, const Manifold<double>& manifold, double dt,

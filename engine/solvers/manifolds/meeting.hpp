@@ -40,6 +40,12 @@ bool meeting_manifold(const MovingConvex& a, const MovingConvex& b, double dt, d
 bool pass_each_other(const MovingConvex& a, const MovingConvex& b, const Manifold<double>& manifold,
                      double dt, double thickness);
 
+/// Whether a plane between two bodies is that of a face: one of them has a face along the gap, and what of
+/// the other is nearest to it is over it when the gap has closed, farther from its ends than kGrazing.
+/// @param gap  m, below zero where they overlap
+bool meets_face(const MovingConvex& a, const MovingConvex& b, Vec2 normal, double dt, double gap,
+                double thickness);
+
 /// Faces that are opposite each other by no more than this share of the thickness of the thinner body, and no
 /// farther apart or deeper in each other, are corners beside each other.
 inline constexpr double kBeside = 0.001;
@@ -53,15 +59,14 @@ bool are_beside(const MovingConvex& a, const MovingConvex& b, const Manifold<dou
                 double thickness);
 
 /// A body, or a piece of it, as it flies at the start of a step.
-/// @param shape  its number in the ShapeStore
+/// @param velocity  m/s, of its centre
+/// @param shape     its number in the ShapeStore
 template <class Real>
-MovingConvex moving_row(const WorldState<Real>& world, std::size_t row, std::int32_t shape) {
+MovingConvex moving_row(const WorldState<Real>& world, std::size_t row, Vec2 velocity, std::int32_t shape) {
     const Bodies<Real>& bodies = world.bodies;
     const Vec2 at{bodies.position_x[row], bodies.position_y[row]};
     const bool turns = bodies.has_rotation;
-    return {placed(world.shapes[shape], at, {}).shape,
-            at,
-            {bodies.velocity_x[row], bodies.velocity_y[row]},
+    return {placed(world.shapes[shape], at, {}).shape, at, velocity,
             turns ? static_cast<double>(bodies.angle[row]) : 0,
             turns ? static_cast<double>(bodies.angular_velocity[row]) : 0};
 }

@@ -4,6 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "math/rotation.hpp"
+#include "math/vec2_math.hpp"
 
 namespace carom {
 namespace {
@@ -44,6 +48,80 @@ void PoseWatch<Real>::look(const WorldState<Real>& world, double dt, const Conta
                             });
     if (forgets) std::fill(thinnest_.begin(), thinnest_.end(), std::numeric_limits<Real>::infinity());
     begins_paths_ = false;
+    look_at_motors(world, dt);
+}
+
+/// What a motor adds to the motion of its two bodies in a step, by its torque or force on each alone and up
+/// to its speed. What hangs on them moves along, but is not looked for.
+template <class Real>
+void PoseWatch<Real>::look_at_motors(const WorldState<Real>& world, double dt) {
+    driven_.clear();
+    if (joints_version_ != world.joints.version) {
+        joints_version_ = world.joints.version, with_motors_.clear();
+        world.joints.for_each([&](std::size_t slot, const StoredJoint& joint) {
+            if (joint.has_motor) with_motors_.push_back(static_cast<std::uint32_t>(slot));
+        });
+    }
+    const Bodies<Real>& bodies = world.bodies;
+    for (const std::uint32_t slot : with_motors_) {
+        const StoredJoint& joint = world.joints[slot];
+        struct End {
+            std::size_t row = SIZE_MAX;  // of a body that can move
+            Vec2 velocity;               // m/s
+            double spin = 0;             // rad/s
+            double inverse_mass = 0, inverse_inertia = 0;
+        };
+        const auto end_of = [&](BodyId id) {
+            End end;
+            if (id == BodyId{}) return end;
+            const std::size_t row = world.handles.row_of_slot(id.index);
+            if (row >= bodies.count) return end;  // it sleeps, or was quarantined
+            end.velocity = {bodies.velocity_x[row], bodies.velocity_y[row]};
+            end.spin = bodies.has_rotation ? static_cast<double>(bodies.angular_velocity[row]) : 0;
+            if (bodies.is_immovable(row)) return end;
+            const double rim = bodies.rim(row);
+            end.row = row, end.inverse_mass = bodies.inverse_mass(row);
+            end.inverse_inertia = 2 * end.inverse_mass / (rim * rim);
+            return end;
+        };
+        const End a = end_of(joint.a), b = end_of(joint.b);
+        const bool slides = joint.type == JointType::prismatic;
+        double speed = b.spin - a.spin, inverse = a.inverse_inertia + b.inverse_inertia;
+        if (slides) {
+            const double angle =
+                a.row < bodies.count && bodies.has_rotation ? static_cast<double>(bodies.angle[a.row]) : 0;
+            speed = dot(b.velocity - a.velocity, rotate(rotation_by(angle), joint.axis));
+            inverse = a.inverse_mass + b.inverse_mass;
+        }
+        const double more =
+            std::fmin(std::fabs(joint.motor_speed - speed), joint.max_motor * dt * inverse);  // m/s or rad/s
+        for (const auto& [end, anchor] : {std::pair{a, joint.anchor_a}, {b, joint.anchor_b}}) {
+            if (end.row == SIZE_MAX) continue;
+            const double arm =
+                slides ? 1 : static_cast<double>(bodies.radius[end.row]) + std::sqrt(length_squared(anchor));
+            driven_.push_back({end.row, static_cast<Real>(dt * more * arm)});
+        }
+    }
+    std::sort(driven_.begin(), driven_.end(), [](const Driven& left, const Driven& right) {
+        return left.row != right.row ? left.row < right.row : left.way < right.way;
+    });
+    for (const Driven& driven : driven_) {
+        way_[driven.row] += driven.way;
+        if (driven.way > static_cast<Real>(kCarriedShare) * thinnest_[driven.row]) has_moved_[driven.row] = 1;
+    }
+}
+
+template <class Real>
+Real PoseWatch<Real>::way_of_motors(std::size_t a, std::size_t b) const {
+    Real way = 0;
+    if (driven_.empty()) return way;
+    for (const std::size_t row : {a, b}) {
+        auto found =
+            std::lower_bound(driven_.begin(), driven_.end(), row,
+                             [](const Driven& driven, std::size_t number) { return driven.row < number; });
+        for (; found != driven_.end() && found->row == row; ++found) way += found->way;
+    }
+    return way;
 }
 
 /// Cosines and sines of the rows of a block, if one of them has turned.
@@ -107,7 +185,8 @@ const Real* PoseWatch<Real>::come(std::size_t rows) {
 template <class Real>
 std::size_t PoseWatch<Real>::bytes() const {
     return pose.bytes() + angle_.bytes() + base_.bytes() + thinnest_.bytes() + has_moved_.bytes() +
-           come_.bytes() + turned_.bytes() + way_.bytes() + path_.bytes();
+           come_.bytes() + turned_.bytes() + way_.bytes() + path_.bytes() +
+           driven_.capacity() * sizeof(Driven) + with_motors_.capacity() * sizeof(std::uint32_t);
 }
 
 template class PoseWatch<float>;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "isa/convex_kernels.hpp"
 #include "parallel/executor.hpp"
@@ -32,8 +33,11 @@ class PoseWatch {
     void begin_paths() { begins_paths_ = true; }
     /// m, how far the surface of a row can have come up to now, in both directions and by turning;
     double path(std::size_t row) const { return path_[row]; }
-    /// m, and what it can come in this step alone.
+    /// m, and what it can come in this step alone, with what motors may add.
     Real way(std::size_t row) const { return way_[row]; }
+    /// m, what motors may add to that of both bodies of a contact: a flipper at rest strikes what is just
+    /// above it.
+    Real way_of_motors(std::size_t a, std::size_t b) const;
     /// Whether the contacts of a row must be found again.
     bool has_moved(std::int32_t row) const { return has_moved_[static_cast<std::size_t>(row)] != 0; }
     /// Tells that a row has a contact of this thickness [m]: what it moves is measured in the thinnest.
@@ -60,6 +64,7 @@ class PoseWatch {
   private:
     void turn(const Bodies<Real>& bodies, const TurnAngles& turn_angles, std::size_t first, std::size_t last);
     void look_at(const WorldState<Real>& world, double dt, const ContactDistance& near, std::size_t row);
+    void look_at_motors(const WorldState<Real>& world, double dt);
 
     std::size_t awake_ = 0;  // rows of bodies that may move
     Column<double> angle_;   // rad, by row
@@ -69,6 +74,13 @@ class PoseWatch {
     Column<Real> come_, turned_, way_;
     Column<double> path_;  // m, by row: small steps must not get lost in a long way
     bool begins_paths_ = false;
+    struct Driven {
+        std::size_t row;
+        Real way;  // m
+    };
+    std::vector<Driven> driven_;              // by row
+    std::vector<std::uint32_t> with_motors_;  // slots of joints
+    std::int64_t joints_version_ = -1;        // JointStore::version of that list
 };
 
 extern template class PoseWatch<float>;

@@ -59,7 +59,8 @@ void PosesAhead<Real>::note_shapes(const ShapeStore<Real>& shapes) {
 
 template <class Real>
 void PosesAhead<Real>::look(const WorldState<Real>& world, double dt, const PoseWatch<Real>& now,
-                            const PieceItems<Real>& pieces, const Executor& executor) {
+                            const HeldFlights<Real>& flights, const PieceItems<Real>& pieces,
+                            const Executor& executor) {
     some_are_smooth_ = may_be_smooth(world, pieces);
     items_ = 0;
     if (!some_are_smooth_ && !some_are_round_) return;
@@ -70,6 +71,7 @@ void PosesAhead<Real>::look(const WorldState<Real>& world, double dt, const Pose
                             [&](std::size_t, std::size_t first, std::size_t last) {
                                 look_at(world.bodies, static_cast<Real>(dt), now, first, last);
                             });
+    flights.for_each([&](std::size_t row, Vec2 velocity) { hold(row, velocity); });
     pieces.for_each_piece([&](std::size_t item, std::size_t row, std::int32_t number) {
         for (const Lead lead : kLeads) {
             if (!is_used(lead)) continue;
@@ -113,6 +115,18 @@ void PosesAhead<Real>::move(const Bodies<Real>& bodies, std::size_t row, Lead le
                sine = 2 * half * grown;
     const Real cosine_now = to[2], sine_now = to[3];
     to[2] = cosine_now * cosine - sine_now * sine, to[3] = sine_now * cosine + cosine_now * sine;
+}
+
+/// Places of a row whose flight is held: what it goes by is that of another velocity.
+template <class Real>
+void PosesAhead<Real>::hold(std::size_t row, Vec2 velocity) {
+    for (const Lead lead : {Lead::half, Lead::whole}) {
+        Real *to = &pose[4 * place_of(row, lead)], *way = &come[4 * place_of(row, lead)];
+        if (!is_used(lead) || !(way[3] > 0)) continue;
+        const Real x = way[3] * static_cast<Real>(velocity.x), y = way[3] * static_cast<Real>(velocity.y);
+        to[0] += x - way[0], to[1] += y - way[1];
+        way[0] = x, way[1] = y;
+    }
 }
 
 template <class Real>

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "parallel/executor.hpp"
+#include "solvers/manifolds/held_flights.hpp"
 #include "solvers/manifolds/manifold_list.hpp"
 #include "solvers/manifolds/piece_items.hpp"
 #include "solvers/manifolds/pose_watch.hpp"
@@ -48,7 +49,7 @@ class PosesAhead {
     /// Reads the poses at the start of a step, unless every contact is found where it is.
     /// @param dt  s, of the step
     void look(const WorldState<Real>& world, double dt, const PoseWatch<Real>& now,
-              const PieceItems<Real>& pieces, const Executor& executor);
+              const HeldFlights<Real>& flights, const PieceItems<Real>& pieces, const Executor& executor);
     /// Whether every contact is found where it is in this step.
     bool empty() const { return items_ == 0; }
 
@@ -78,6 +79,7 @@ class PosesAhead {
     void look_at(const Bodies<Real>& bodies, Real dt, const PoseWatch<Real>& now, std::size_t first,
                  std::size_t last);
     void move(const Bodies<Real>& bodies, std::size_t row, Lead lead, Real ahead);
+    void hold(std::size_t row, Vec2 velocity);
     /// Friction so small that its mean is none has no poses at the end.
     Lead used_or_none(Lead lead) const { return is_used(lead) ? lead : Lead::none; }
     std::size_t place_of(std::size_t item, Lead lead) const {

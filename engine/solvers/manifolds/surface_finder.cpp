@@ -106,16 +106,11 @@ void SurfaceFinder<Real>::add(const WorldState<Real>& world, const EdgeCandidate
 }
 
 template <class Real>
-void SurfaceFinder<Real>::find(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
-                               const SubstepTerms& terms, const ContactDistance& near,
-                               std::span<const double> ahead, ManifoldList<Real>& list,
-                               const Executor& executor) {
+void SurfaceFinder<Real>::find(const Inputs& in, ManifoldList<Real>& list, const Executor& executor) {
+    const WorldState<Real>& world = in.world;
     list.clear(), manifolds_.clear(), pieces_.clear();
-    if (world.walls) {
-        list_near_walls(world, terms, near, executor);
-        find_walls(world, terms, near, ahead, list);
-    }
-    find_edges(world, edges, terms, near, ahead, list);
+    if (world.walls) list_near_walls(in, executor), find_walls(in, list);
+    find_edges(in, list);
     list.fit();
     const Bodies<Real>& bodies = world.bodies;
     const auto real = [](double value) { return static_cast<Real>(value); };
@@ -129,7 +124,7 @@ void SurfaceFinder<Real>::find(const WorldState<Real>& world, const EdgeCandidat
         if (support.is_wall()) {
             friction = world.walls->material.friction, restitution = world.walls->material.restitution;
         } else {
-            const std::size_t other = edges.pose_of(world.edges[support.edge_number()]).row;
+            const std::size_t other = in.edges.pose_of(world.edges[support.edge_number()]).row;
             friction = bodies.friction[other], restitution = bodies.restitution[other];
         }
         const double own_friction = piece ? piece->material.friction : double{bodies.friction[row]},
@@ -142,13 +137,12 @@ void SurfaceFinder<Real>::find(const WorldState<Real>& world, const EdgeCandidat
 /// Rows that may come near a wall in the step, by a bound that is cheaper than what `find_walls` asks: a body
 /// is no thicker than its radius.
 template <class Real>
-void SurfaceFinder<Real>::list_near_walls(const WorldState<Real>& world, const SubstepTerms& terms,
-                                          const ContactDistance& near, const Executor& executor) {
-    const Bodies<Real>& bodies = world.bodies;
-    const Enclosure<double> enclosure(&*world.walls);
+void SurfaceFinder<Real>::list_near_walls(const Inputs& in, const Executor& executor) {
+    const Bodies<Real>& bodies = in.world.bodies;
+    const Enclosure<double> enclosure(&*in.world.walls);
     rows_near_walls_.choose(bodies.moving(), kNanosecondsToLook, executor, [&](std::size_t row) {
         const double radius = bodies.radius[row];
-        const double most = 2 * radius + near(radius) + reach_in_step(bodies, row, terms.dt);
+        const double most = 2 * radius + in.near(radius) + reach_in_step(bodies, row, in.terms.dt);
         return enclosure.clearance(bodies.position_x[row], bodies.position_y[row]) <
                (1 + kRoundingOfReach) * most;
     });
@@ -157,27 +151,27 @@ void SurfaceFinder<Real>::list_near_walls(const WorldState<Real>& world, const S
 /// A wall is a wall everywhere: it is kept one thickness farther than others, as a crowd may yet throw a body
 /// there within the step.
 template <class Real>
-void SurfaceFinder<Real>::find_walls(const WorldState<Real>& world, const SubstepTerms& terms,
-                                     const ContactDistance& near, std::span<const double> ahead,
-                                     ManifoldList<Real>& list) {
+void SurfaceFinder<Real>::find_walls(const Inputs& in, ManifoldList<Real>& list) {
+    const WorldState<Real>& world = in.world;
     const Bodies<Real>& bodies = world.bodies;
     const Walls& walls = *world.walls;
     const Enclosure<double> enclosure(&walls);
     const auto look_at = [&](std::size_t row) {
         if (bodies.is_disc(row) || bodies.shape[row] < 0 || bodies.is_immovable(row)) return;
         if (bodies.flags_of(row) & kSensor) return;
-        const double way = reach_in_step(bodies, row, terms.dt), thickness = bodies.inradius(row);
-        const double reach = static_cast<double>(bodies.radius[row]) + near(thickness) + thickness + way;
+        const double way = reach_in_step(bodies, row, in.terms.dt), thickness = bodies.inradius(row);
+        const double reach = static_cast<double>(bodies.radius[row]) + in.near(thickness) + thickness + way;
         const auto find_wall = [&](std::int32_t side) {
             world.shapes.for_each_piece(
                 bodies.shape[row],
                 [&](const ConvexShape<Real>& shape, std::int32_t number, const StoredPiece* piece) {
-                    const double thick = shape.inradius, margin = near(thick) + thick + way;
+                    const double thick = shape.inradius, margin = in.near(thick) + thick + way;
                     const std::int32_t shape_number = piece ? piece->number : bodies.shape[row];
-                    const MovingConvex moving = moving_row(world, row, shape_number);
-                    Manifold<double> m = manifold_on_plane(at_time(moving, ahead[row]), wall_normal(side),
+                    const MovingConvex moving =
+                        moving_row(world, row, in.flights.velocity(bodies, row), shape_number);
+                    Manifold<double> m = manifold_on_plane(at_time(moving, in.ahead[row]), wall_normal(side),
                                                            wall_corner(walls, side));
-                    move_back(m, moving, {}, ahead[row]);
+                    move_back(m, moving, {}, in.ahead[row]);
                     if (m.separation1 > margin && m.separation2 > margin) return;
                     list.add(static_cast<std::int32_t>(row), Partner::wall(side).stored(),
                              {bodies.id[row], BodyId{}, ManifoldName::place_of_side(side, number)});
@@ -190,10 +184,8 @@ void SurfaceFinder<Real>::find_walls(const WorldState<Real>& world, const Subste
 }
 
 template <class Real>
-void SurfaceFinder<Real>::find_edges(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
-                                     const SubstepTerms& terms, const ContactDistance& near,
-                                     std::span<const double> ahead, ManifoldList<Real>& list) {
-    const Bodies<Real>& bodies = world.bodies;
+void SurfaceFinder<Real>::find_edges(const Inputs& in, ManifoldList<Real>& list) {
+    const WorldState<Real>& world = in.world;
     for (std::size_t first = 0, last = 0; first < pairs_.size(); first = last) {
         near_edges_.clear();
         for (; last < pairs_.size() && pairs_[last].row == pairs_[first].row &&
@@ -201,24 +193,25 @@ void SurfaceFinder<Real>::find_edges(const WorldState<Real>& world, const EdgeCa
              ++last)
             near_edges_.push_back(pairs_[last].edge);
         const auto row = static_cast<std::size_t>(pairs_[first].row);
-        const EdgePose& pose = edges.pose_of(world.edges[near_edges_[0]]);
+        const EdgePose& pose = in.edges.pose_of(world.edges[near_edges_[0]]);
         if (!pose.takes_part) continue;
-        world.shapes.for_each_piece(bodies.shape[row], [&](const ConvexShape<Real>& shape,
-                                                           std::int32_t number, const StoredPiece* piece) {
-            find_on_chain(world, pose, terms, near, ahead[row], row, shape, number, piece, list);
-        });
+        world.shapes.for_each_piece(
+            world.bodies.shape[row],
+            [&](const ConvexShape<Real>& shape, std::int32_t number, const StoredPiece* piece) {
+                find_on_chain(in, pose, row, shape, number, piece, list);
+            });
     }
 }
 
 /// Finds where a body, or a piece of it, touches the near edges, which are of one chain.
 template <class Real>
-void SurfaceFinder<Real>::find_on_chain(const WorldState<Real>& world, const EdgePose& pose,
-                                        const SubstepTerms& terms, const ContactDistance& near, double ahead,
-                                        std::size_t row, const ConvexShape<Real>& shape, std::int32_t number,
+void SurfaceFinder<Real>::find_on_chain(const Inputs& in, const EdgePose& pose, std::size_t row,
+                                        const ConvexShape<Real>& shape, std::int32_t number,
                                         const StoredPiece* piece, ManifoldList<Real>& list) {
+    const WorldState<Real>& world = in.world;
     const Bodies<Real>& bodies = world.bodies;
-    const double thickness = shape.inradius;
-    const double margin = near(thickness) + reach_in_step(bodies, row, terms.dt) +
+    const double thickness = shape.inradius, dt = in.terms.dt;
+    const double margin = in.near(thickness) + reach_in_step(bodies, row, dt) +
                           std::sqrt(length_squared(pose.end_position - pose.position)) +
                           std::fabs(pose.end_angle - pose.angle) * world.edges.body_of(near_edges_[0]).reach;
     PlacedConvex body = placed_row(world, row, shape);
@@ -230,16 +223,17 @@ void SurfaceFinder<Real>::find_on_chain(const WorldState<Real>& world, const Edg
                  body.turn.sin * pose.turn.cos - body.turn.cos * pose.turn.sin};
     found_.clear();
     const std::int32_t shape_number = piece ? piece->number : bodies.shape[row];
-    MovingConvex moving = moving_row(world, row, shape_number);  // in the frame of the chain
+    // In the frame of the chain.
+    MovingConvex moving = moving_row(world, row, in.flights.velocity(bodies, row), shape_number);
     moving.centre = body.centre;
     moving.velocity =
-        (1 / terms.dt) *
-        (rotate_back(pose.end_turn, centre + terms.dt * moving.velocity - pose.end_position) - body.centre);
-    moving.spin -= (pose.end_angle - pose.angle) / terms.dt;
+        (1 / dt) *
+        (rotate_back(pose.end_turn, centre + dt * moving.velocity - pose.end_position) - body.centre);
+    moving.spin -= (pose.end_angle - pose.angle) / dt;
     moving.angle = angle_in_chain;
-    const double met = time_of_meeting_edges(world, moving, terms.dt, thickness);
+    const double met = time_of_meeting_edges(world, moving, dt, thickness);
     // What an edge that turns does in the step is in turning_edges.hpp.
-    const double time = met > 0 ? met : pose.turns() ? 0 : ahead;
+    const double time = met > 0 ? met : pose.turns() ? 0 : in.ahead[row];
     PlacedConvex then = body;
     if (time > 0)
         then.centre = body.centre + time * moving.velocity,
@@ -251,7 +245,7 @@ void SurfaceFinder<Real>::find_on_chain(const WorldState<Real>& world, const Edg
         if (piece) found.manifold = about_body(found.manifold, rotate(then.turn, offset));
         if (time > 0) move_back(found.manifold, moving, {}, time);
         const Edge edge = with_what_goes_on(world.edges.edges, found.edge, moving);
-        if (pass_each_other(moving, still_edge(edge), found.manifold, terms.dt, thickness)) continue;
+        if (pass_each_other(moving, still_edge(edge), found.manifold, dt, thickness)) continue;
         list.add(static_cast<std::int32_t>(row), Partner::edge(found.edge).stored(),
                  {bodies.id[row], bodies.id[pose.row], ManifoldName::place_of_side(0, number)});
         manifolds_.push_back(turned(found.manifold, pose.turn)), pieces_.push_back(piece);

@@ -8,6 +8,7 @@
 #include "narrowphase/convex_edge.hpp"
 #include "narrowphase/convex_impact_time.hpp"
 #include "solvers/manifolds/contact_distance.hpp"
+#include "solvers/manifolds/held_flights.hpp"
 #include "solvers/manifolds/manifold_list.hpp"
 #include "solvers/substeps/step_terms.hpp"
 #include "state/chunked_list.hpp"
@@ -28,12 +29,17 @@ class SurfaceFinder {
     /// Whether nothing can be found.
     bool is_idle(const WorldState<Real>& world) const { return pairs_.empty() && !world.walls; }
 
+    struct Inputs {
+        const WorldState<Real>& world;
+        const EdgeCandidates<Real>& edges;
+        const SubstepTerms& terms;
+        const ContactDistance& near;
+        const HeldFlights<Real>& flights;
+        std::span<const double> ahead;  ///< s, by row: how far ahead of the start a body is to be looked for
+    };
     /// Lists the contacts of the step, with what they are like, by body. Their memory is empty.
-    /// @param ahead  s, by row: how far ahead of the start of the step a body is to be looked for
     /// Cost: 2 ns a body where there are walls; about 200 ns a body near a wall or a chain.
-    void find(const WorldState<Real>& world, const EdgeCandidates<Real>& edges, const SubstepTerms& terms,
-              const ContactDistance& near, std::span<const double> ahead, ManifoldList<Real>& list,
-              const Executor& executor);
+    void find(const Inputs& in, ManifoldList<Real>& list, const Executor& executor);
 
     std::size_t bytes() const;
 
@@ -49,16 +55,10 @@ class SurfaceFinder {
         friend auto operator<=>(const Near&, const Near&) = default;
     };
     void take_over(const WorldState<Real>& world, std::span<const EdgePair> pairs);
-    void list_near_walls(const WorldState<Real>& world, const SubstepTerms& terms,
-                         const ContactDistance& near, const Executor& executor);
-    void find_walls(const WorldState<Real>& world, const SubstepTerms& terms, const ContactDistance& near,
-                    std::span<const double> ahead, ManifoldList<Real>& list);
-    void find_edges(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
-                    const SubstepTerms& terms, const ContactDistance& near, std::span<const double> ahead,
-                    ManifoldList<Real>& list);
-
-    void find_on_chain(const WorldState<Real>& world, const EdgePose& pose, const SubstepTerms& terms,
-                       const ContactDistance& near, double ahead, std::size_t row,
+    void list_near_walls(const Inputs& in, const Executor& executor);
+    void find_walls(const Inputs& in, ManifoldList<Real>& list);
+    void find_edges(const Inputs& in, ManifoldList<Real>& list);
+    void find_on_chain(const Inputs& in, const EdgePose& pose, std::size_t row,
                        const ConvexShape<Real>& shape, std::int32_t number, const StoredPiece* piece,
                        ManifoldList<Real>& list);
     double time_of_meeting_edges(const WorldState<Real>& world, const MovingConvex& body, double dt,
