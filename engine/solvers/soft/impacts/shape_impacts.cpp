@@ -198,111 +198,163 @@ bool is_slow(const PathContact<Real>& contact, const SubstepTerms& terms, const 
     return most <= (kRestFalls - 1) * terms.fall_speed();  // half a kick of gravity may come to each
 }
 
+/// An impact as it is worked out: what meets, when, and with what velocities.
 template <class Real>
-Outcome carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, const Bodies<Real>& bodies,
-                  BodyRecords<Real>& records, HeldImpacts<Real>& held, Books& books, double& gravity_work) {
-    const double rest_speed = kRestFalls * terms.fall_speed(), h = terms.substep_dt;
-    const PathLink<Real>& link = contact.link;
-    const std::size_t lane = contact.lane;
-    const double e = contact.restitution;
-    const bool is_near_held = held.holds(contact.near), is_far_held = held.holds(contact.far);
-    StruckBody<Real> a(records, contact.near, half_kick_of(held, contact.near, terms)),
-        b(records, contact.far, half_kick_of(held, contact.far, terms));
-    const Vec2 n{link.normal_x[lane], link.normal_y[lane]}, t{-n.y, n.x};
-    Levers lever_a{link.near1[lane], link.near2[lane], link.near_t[lane]},
-        lever_b{link.far1[lane], link.far2[lane], link.far_t[lane]};
-    const auto relative = [&](Vec2 va, double ua, Vec2 vb, double ub, std::size_t k) {
-        return dot(vb - va, k < 2 ? n : t) + ub * lever_b[k] - ua * lever_a[k];
-    };
-    const bool has_two = link.separation2[lane] < static_cast<Real>(kNoPoint);
-    const auto place_of_row = [&](std::int32_t row) {
-        const auto r = static_cast<std::size_t>(row);
-        return Vec2{records.displacement[2 * r], records.displacement[2 * r + 1]};
-    };
-    const auto turn_of = [&](std::int32_t row) {
-        return static_cast<double>(records.turn()[static_cast<std::size_t>(row)]);
-    };
-    std::array<double, 2> v{};
+struct Meeting {
+    const PathContact<Real>& contact;
+    const SubstepTerms& terms;
+    const Bodies<Real>& bodies;
+    const BodyRecords<Real>& records;
+    const Vec2 n, t;                          // normal, from near to far; tangent
+    const StruckBody<Real> first_a, first_b;  // at the start of the substep
+    const Levers own_a, own_b;                // about the points that each has carried
+    StruckBody<Real> a = first_a, b = first_b;
+    Levers lever_a = own_a, lever_b = own_b;
+    std::array<double, 2> v{};    // m/s, normal velocities of the points
     std::array<bool, 2> meets{};  // what is not met yet has an impact of its own, later
-    bool comes = false, is_free = true;
-    double time = h;  // s, to the impact
-    // Bodies that turn are struck earlier by what bends their ways since the contact was found, so that they
-    // do not end in each other, where they would be pushed apart.
-    const double since = terms.elapsed + h, bend = bend_of(bodies, a.row, a.start_rim, since) +
-                                                   bend_of(bodies, b.row, b.start_rim, since);
-    for (std::size_t k = 0; k < 2; ++k) {
-        v[k] = relative(a.start, a.start_rim, b.start, b.start_rim, k);
-        if (k == 1 && !has_two) break;
-        const double gap = static_cast<double>(k == 0 ? link.separation1[lane] : link.separation2[lane]) +
-                           relative(place_of_row(contact.near), turn_of(contact.near),
-                                    place_of_row(contact.far), turn_of(contact.far), k);
-        const double soon = relative(a.foreseen, a.foreseen_rim, b.foreseen, b.foreseen_rim, k);
-        const bool is_fast = v[k] < -rest_speed, touches = gap + h * soon < 0;
-        meets[k] = is_fast && touches, comes = comes || is_fast, is_free = is_free && !touches;
-        if (meets[k]) time = std::fmin(time, time_to_close(gap - bend, v[k], soon, h));
+    double time = 0;              // s, from the start of the substep
+
+    Meeting(const PathContact<Real>& of, const SubstepTerms& of_substep, const Bodies<Real>& all,
+            BodyRecords<Real>& of_bodies, const HeldImpacts<Real>& held)
+        : contact(of),
+          terms(of_substep),
+          bodies(all),
+          records(of_bodies),
+          n{of.link.normal_x[of.lane], of.link.normal_y[of.lane]},
+          t{-n.y, n.x},
+          first_a(of_bodies, of.near, half_kick_of(held, of.near, of_substep)),
+          first_b(of_bodies, of.far, half_kick_of(held, of.far, of_substep)),
+          own_a{of.link.near1[of.lane], of.link.near2[of.lane], of.link.near_t[of.lane]},
+          own_b{of.link.far1[of.lane], of.link.far2[of.lane], of.link.far_t[of.lane]} {}
+
+    bool both_move() const { return a.w > 0 && b.w > 0; }
+    double closing() const { return std::fmax(meets[0] ? -v[0] : 0, meets[1] ? -v[1] : 0); }
+    /// Of b against a at a point, along the normal; along the tangent for the third lever.
+    double relative(Vec2 va, double ua, Vec2 vb, double ub, std::size_t k) const {
+        return dot(vb - va, k < 2 ? n : t) + ub * lever_b[k] - ua * lever_a[k];
     }
-    const double pressing = static_cast<double>(link.normal1[lane]) + static_cast<double>(link.normal2[lane]);
-    if (pressing > kLightPress * std::fmax(-v[0], -v[1]) / (a.w + b.w)) return Outcome::none;
-    if (!meets[0] && !meets[1]) return comes && is_free ? Outcome::comes : Outcome::none;
-    // The system that answers for what joints hold is that of the substep's start.
-    if (is_near_held || is_far_held) time = 0;
-    const StruckBody<Real> first_a = a, first_b = b;
-    const Levers own_a = lever_a, own_b = lever_b;
-    const bool both_move = a.w > 0 && b.w > 0;
-    /// @return whether the bodies still meet then, about the points that they share, if both move
-    const auto go_to = [&](double then, bool shares) {
+    void find_velocities() {
+        for (std::size_t k = 0; k < 2; ++k) v[k] = relative(a.start, a.start_rim, b.start, b.start_rim, k);
+    }
+
+    /// Finds which points meet in the substep, and when the first one does.
+    Outcome look() {
+        const PathLink<Real>& link = contact.link;
+        const std::size_t lane = contact.lane;
+        const double rest_speed = kRestFalls * terms.fall_speed(), h = terms.substep_dt;
+        const auto come = [&](std::int32_t row) {
+            const auto r = static_cast<std::size_t>(row);
+            return Vec2{records.displacement[2 * r], records.displacement[2 * r + 1]};
+        };
+        const auto turned = [&](std::int32_t row) {
+            return static_cast<double>(records.turn()[static_cast<std::size_t>(row)]);
+        };
+        // Bodies that turn are struck earlier by what bends their ways since the contact was found, so that
+        // they do not end in each other, where they would be pushed apart.
+        const double since = terms.elapsed + h, bend = bend_of(bodies, a.row, a.start_rim, since) +
+                                                       bend_of(bodies, b.row, b.start_rim, since);
+        bool comes = false, is_free = true;
+        find_velocities();
+        time = h;
+        for (std::size_t k = 0; k < 2; ++k) {
+            if (k == 1 && !(link.separation2[lane] < static_cast<Real>(kNoPoint))) break;
+            const double gap =
+                static_cast<double>(k == 0 ? link.separation1[lane] : link.separation2[lane]) +
+                relative(come(contact.near), turned(contact.near), come(contact.far), turned(contact.far), k);
+            const double soon = relative(a.foreseen, a.foreseen_rim, b.foreseen, b.foreseen_rim, k);
+            const bool is_fast = v[k] < -rest_speed, touches = gap + h * soon < 0;
+            meets[k] = is_fast && touches, comes = comes || is_fast, is_free = is_free && !touches;
+            if (meets[k]) time = std::fmin(time, time_to_close(gap - bend, v[k], soon, h));
+        }
+        const double pressing =
+            static_cast<double>(link.normal1[lane]) + static_cast<double>(link.normal2[lane]);
+        if (pressing > kLightPress * std::fmax(-v[0], -v[1]) / (a.w + b.w)) return Outcome::none;
+        if (meets[0] || meets[1]) return Outcome::met;
+        return comes && is_free ? Outcome::comes : Outcome::none;
+    }
+
+    /// Velocities and levers become those of a time.
+    /// @param shares  whether the levers are about points that both bodies share
+    /// @return whether the bodies still meet then
+    bool go_to(double then, bool shares) {
         time = then, a = first_a, b = first_b, lever_a = own_a, lever_b = own_b;
-        a.go_on(time / h), b.go_on(time / h);
+        const double share = time / terms.substep_dt;
+        a.go_on(share), b.go_on(share);
         if (shares)
             share_points(bodies, records, contact, time * (b.start - a.start), n, t, lever_a, lever_b);
-        for (std::size_t k = 0; k < 2; ++k) v[k] = relative(a.start, a.start_rim, b.start, b.start_rim, k);
+        find_velocities();
         if (!shares) return true;
         const std::array<bool, 2> still_meets{meets[0] && v[0] < 0, meets[1] && v[1] < 0};
         if (!still_meets[0] && !still_meets[1]) return false;
         meets = still_meets;
         return true;
-    };
-    // If the bodies part already about shared points: the paths know those of each alone, and would take
-    // the approach that they see without restitution.
-    if (!go_to(time, both_move) && !go_to(0, true)) go_to(0, false);
-    const auto friction = static_cast<double>(link.friction[lane]);
-    PointImpulses found;
-    if (!(is_near_held || is_far_held) || !strike_held(held, a, b, n, t, lever_a, lever_b, meets,
-                                                       {e, friction, 0}, terms, records, books, found))
-        found = solve_free(a, b, t, lever_a, lever_b, meets, e, friction, v);
-    const auto change_of_rim = [&](const StruckBody<Real>& body, double sign, const Levers& lever) {
-        return sign * body.w2 * (lever[0] * found.x[0] + lever[1] * found.x[1] + lever[2] * found.y);
-    };
-    if (time > 0) {
-        // Likewise by what will bend them, until contacts are found anew.
-        const double left = terms.dt - terms.elapsed,
-                     later = bend_of(bodies, a.row, a.start_rim + change_of_rim(a, -1, lever_a), left) +
-                             bend_of(bodies, b.row, b.start_rim + change_of_rim(b, 1, lever_b), left),
-                     closing = std::fmax(meets[0] ? -v[0] : 0, meets[1] ? -v[1] : 0);
-        if (later > 0) {
-            const double earlier = std::fmax(0, time - later / closing);
-            if (go_to(earlier, both_move))
-                found = solve_free(a, b, t, lever_a, lever_b, meets, e, friction, v);
-            else
-                go_to(0, false), found = solve_free(a, b, t, lever_a, lever_b, meets, e, friction, v);
-        }
     }
+    /// If the bodies part already about shared points: the paths know those of each alone, and would take the
+    /// approach that they see without restitution.
+    void go_to_meeting(double then) {
+        if (!go_to(then, both_move()) && !go_to(0, true)) go_to(0, false);
+    }
+
+    PointImpulses solve() const {
+        return solve_free(a, b, t, lever_a, lever_b, meets, contact.restitution,
+                          static_cast<double>(contact.link.friction[contact.lane]), v);
+    }
+    /// What impulses change the rim speed of a body by [m/s]. @param sign  -1 of a, 1 of b
+    double change_of_rim(const StruckBody<Real>& body, double sign, const Levers& lever,
+                         const PointImpulses& by) const {
+        return sign * body.w2 * (lever[0] * by.x[0] + lever[1] * by.x[1] + lever[2] * by.y);
+    }
+    /// Solves the impact of bodies that fly. They are struck earlier by what will bend their ways until
+    /// contacts are found anew, for the reason of look().
+    PointImpulses strike() {
+        const PointImpulses found = solve();
+        if (!(time > 0)) return found;
+        const double left = terms.dt - terms.elapsed,
+                     later =
+                         bend_of(bodies, a.row, a.start_rim + change_of_rim(a, -1, lever_a, found), left) +
+                         bend_of(bodies, b.row, b.start_rim + change_of_rim(b, 1, lever_b, found), left);
+        if (!(later > 0)) return found;
+        go_to_meeting(std::fmax(0, time - later / closing()));
+        return solve();
+    }
+};
+
+/// Gives a body what an impact gives it, from the start of the substep on: drag takes more of a change then
+/// than from its own time.
+/// @return J, work of gravity that velocities tell of but the body has not had
+template <class Real>
+double give(const Meeting<Real>& met, const StruckBody<Real>& body, Vec2 dv, double du,
+            BodyRecords<Real>& records) {
+    const SubstepTerms& terms = met.terms;
+    const double share = met.time / terms.substep_dt, least = std::numeric_limits<double>::min(),
+                 left = std::fmax(1 - share * (1 - terms.decay), least),
+                 spin_left = std::fmax(1 - share * (1 - terms.spin_decay), least);
+    records.add_velocity(body.row, (1 / left) * dv, du / spin_left, terms);
+    records.delay(body.row, (1 / left) * dv, du / spin_left, met.time);
+    return share / body.w * dot(terms.gravity_change, dv);
+}
+
+template <class Real>
+Outcome carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, const Bodies<Real>& bodies,
+                  BodyRecords<Real>& records, HeldImpacts<Real>& held, Books& books, double& gravity_work) {
+    Meeting<Real> met(contact, terms, bodies, records, held);
+    if (const Outcome outcome = met.look(); outcome != Outcome::met) return outcome;
+    const bool are_held = held.holds(contact.near) || held.holds(contact.far);
+    // The system that answers for what joints hold is that of the substep's start.
+    met.go_to_meeting(are_held ? 0 : met.time);
+    const StruckBody<Real>&a = met.a, &b = met.b;
+    const auto friction = static_cast<double>(contact.link.friction[contact.lane]);
+    PointImpulses found;
+    if (!are_held || !strike_held(held, a, b, met.n, met.t, met.lever_a, met.lever_b, met.meets,
+                                  {contact.restitution, friction, 0}, terms, records, books, found))
+        found = met.strike();
     const std::array<double, 2>& x = found.x;
     const double sum = x[0] + x[1], y = found.y;
-    const Vec2 impulse = sum * n + y * t;
-    const auto give = [&](const StruckBody<Real>& body, double sign, const Levers& lever) {
-        if (!(body.w > 0) || found.is_given) return;
-        const Vec2 dv = (sign * body.w) * impulse;
-        const double du = change_of_rim(body, sign, lever);
-        // From the substep's start on drag takes more of a change than from its own time.
-        const double share = time / h, least = std::numeric_limits<double>::min(),
-                     left = std::fmax(1 - share * (1 - terms.decay), least),
-                     spin_left = std::fmax(1 - share * (1 - terms.spin_decay), least);
-        records.add_velocity(body.row, (1 / left) * dv, du / spin_left, terms);
-        records.delay(body.row, (1 / left) * dv, du / spin_left, time);
-        gravity_work -= share / body.w * dot(terms.gravity_change, dv);
-    };
-    give(a, -1, lever_a), give(b, 1, lever_b);
+    const Vec2 impulse = sum * met.n + y * met.t;
+    if (!found.is_given && a.w > 0)
+        gravity_work -= give(met, a, -a.w * impulse, met.change_of_rim(a, -1, met.lever_a, found), records);
+    if (!found.is_given && b.w > 0)
+        gravity_work -= give(met, b, b.w * impulse, met.change_of_rim(b, 1, met.lever_b, found), records);
     if (contact.partner.is_wall()) books.wall_impulse += sum;
     if (!books.is_open) return Outcome::met;
     books.restitution += found.by_normal, books.friction += found.by_friction;
@@ -310,7 +362,7 @@ Outcome carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, c
     if (is_far_moved && is_near_moved) return Outcome::met;
     // What nothing moves: the energy that its own motion gives the other body comes from outside.
     const StruckBody<Real>& still = is_far_moved ? a : b;
-    const Levers& lever = is_far_moved ? lever_a : lever_b;
+    const Levers& lever = is_far_moved ? met.lever_a : met.lever_b;
     const Vec2 on_still = is_far_moved ? -impulse : impulse;
     const double spin = (is_far_moved ? -1 : 1) * (lever[0] * x[0] + lever[1] * x[1] + lever[2] * y);
     books.drive -= dot(on_still, still.start) + still.start_rim * spin;
