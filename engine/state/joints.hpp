@@ -58,6 +58,10 @@ struct StoredJoint {
     bool turns_sign() const { return is_exchanged && type != JointType::distance; }
     /// A way, an angle or a speed of b against a, as it was given, in the order in which the bodies are kept.
     double as_kept(double value) const { return turns_sign() ? -value : value; }
+    bool may_break() const {
+        constexpr double kUnbreakable = std::numeric_limits<double>::infinity();
+        return break_force < kUnbreakable || break_torque < kUnbreakable;
+    }
     bool has_moving_limit() const { return lower.rate != 0 || upper.rate != 0; }
 };
 

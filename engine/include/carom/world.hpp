@@ -171,8 +171,8 @@ class BasicWorld {
     void set_limits(JointId joint, double lower, double upper);
     /// Moves the target of a target joint [m], within ±kLargestPosition. @throws Error as set_motor
     void set_target(JointId joint, Vec2 target);
-    /// Mean force on b in the last step [N], of a joint of a body and the world on the body; of solver `soft`
-    /// where joints are iterated, that of its last substep. @throws Error (stale_handle)
+    /// Mean force on b in the last step [N], of a joint of a body and the world on the body; of joints that
+    /// are swept and cannot break, that of its last substep. @throws Error (stale_handle)
     Vec2 joint_force(JointId joint) const;
     /// Mean torque on b, or on the body, in the last step, about its anchor [N m]. @throws Error
     /// (stale_handle)

@@ -42,11 +42,10 @@ void SoftJoints<Real>::find_groups(const WorldState<Real>& world) {
     };
     std::vector<Member> members;
     joined_.clear(), joined_.resize(rows);
-    constexpr double kNever = std::numeric_limits<double>::infinity();
     breakable_.clear();
     world.joints.for_each([&](std::size_t slot, const StoredJoint& joint) {
         const std::size_t a = row_of(joint.a), b = row_of(joint.b);
-        if (joint.break_force < kNever || joint.break_torque < kNever) breakable_.push_back(slot);
+        if (joint.may_break()) breakable_.push_back(slot);
         if (moves(a) && moves(b)) islands.join(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
     });
     world.joints.for_each([&](std::size_t slot, const StoredJoint& joint) {
@@ -262,6 +261,7 @@ void SoftJoints<Real>::end_substep(const JointStep<Real>& step, Books& books) {
         group.note_forces();
         if (books.is_open) group.book(step, books, false);
     }
+    if (!swept_.empty()) swept_.note_forces();
     if (books.is_open && !swept_.empty()) swept_.book(step, books);
 }
 
@@ -282,7 +282,7 @@ bool SoftJoints<Real>::end_step(const JointStep<Real>& step, const StepView<Real
         }
         group.store(joints, dt);
     }
-    if (!swept_.empty()) swept_.store(joints, step.terms.substep_dt, *contacts.loops.executor);
+    if (!swept_.empty()) swept_.store(joints, step.terms.substep_dt, dt, *contacts.loops.executor);
     joints.end_limits(dt);
     const std::size_t before = joints.broken.size();
     for (const std::size_t slot : breakable_) {

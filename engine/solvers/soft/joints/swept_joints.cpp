@@ -187,6 +187,7 @@ std::vector<std::size_t> SweptJoints<Real>::sort(const WorldState<Real>& world,
     const std::size_t rows = world.bodies.count;
     first_beyond_ = static_cast<std::int32_t>(rows), joints_ = parts_of_joints_ = 0, colours_ = 0;
     longest_ = 0, is_loaded_ = false;
+    breakable_.clear();
     groups_ = {};
     // Nets have their rows in order, so that joints reach into the next chunk at most: as long as a chunk has
     // so many rows that most do.
@@ -277,6 +278,7 @@ std::vector<std::size_t> SweptJoints<Real>::sort(const WorldState<Real>& world,
             for (std::size_t at = own.begin[g]; at < own.begin[g + 1]; ++at)
                 own.a[at] = own.b[at] = first_beyond_ + static_cast<std::int32_t>(g);
         for (const auto& [at, entry] : places) {
+            if (world.joints[entry->slot].may_break()) breakable_.push_back({kind, at, {}});
             if (moves(entry->a)) own.a[at] = entry->a;
             if (moves(entry->b)) own.b[at] = entry->b;
             own.slot[at] = static_cast<std::int32_t>(entry->slot);
@@ -472,7 +474,8 @@ void SweptJoints<Real>::book(const JointStep<Real>& step, Books& books) const {
 
 template <class Real>
 std::size_t SweptJoints<Real>::bytes() const {
-    std::size_t bytes = no_turn_.bytes() + stiffness_.bytes() + moments_.capacity() * sizeof(Moments);
+    std::size_t bytes = no_turn_.bytes() + stiffness_.bytes() + breakable_.capacity() * sizeof(Breakable) +
+                        moments_.capacity() * sizeof(Moments);
     for (const Kind& kind : kinds_) {
         bytes += kind.a.bytes() + kind.b.bytes() + kind.slot.bytes() + kind.order.bytes() +
                  kind.sources.capacity() * sizeof(typename Kind::Source);

@@ -46,8 +46,12 @@ class SweptJoints {
     void sweep(const JointStep<Real>& step, const StepLoops<Real>& loops, Begin begin);
     /// The work of the joints in this substep, and what they gave to what nothing moves.
     void book(const JointStep<Real>& step, Books& books) const;
-    /// What the store keeps of a step.
-    void store(JointStore& joints, double substep_dt, const Executor& executor) const;
+    /// Adds what joints that may break gave in this substep to what they have given in the step.
+    void note_forces();
+    /// What the store keeps of a step: forces of its last substep, of joints that may break those of all of
+    /// it.
+    /// @param dt  s, of the step
+    void store(JointStore& joints, double substep_dt, double dt, const Executor& executor) const;
 
     /// Calls fn(row) for every row that has such a joint.
     template <class Fn>
@@ -134,6 +138,14 @@ class SweptJoints {
 
     double work_of_drive(const JointStep<Real>& step, std::size_t kind, std::size_t i) const;
     double work_of_bend(const JointStep<Real>& step, std::size_t kind, std::size_t i) const;
+
+    /// A part of a joint that may break: a blow may fall in any substep.
+    struct Breakable {
+        std::size_t kind, place;
+        Vec2 force;         // N s, in this step so far
+        double torque = 0;  // N m s
+    };
+    std::vector<Breakable> breakable_;
 
     std::array<Kind, kKinds> kinds_;
     TaskGroups groups_;

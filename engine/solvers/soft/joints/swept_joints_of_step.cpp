@@ -34,6 +34,7 @@ void SweptJoints<Real>::begin_step(const JointStep<Real>& step, const StepLoops<
     };
     kernels_ = loops.kernels;
     ends_move_ = step.world.joints.may_move_limits();
+    for (Breakable& joint : breakable_) joint.force = {}, joint.torque = 0;
     if (!is_loaded_) load(step.world);
     arguments_.assign(kKinds, {});
     stiffness_.begin(static_cast<std::size_t>(first_beyond_));
@@ -194,9 +195,21 @@ void SweptJoints<Real>::begin_drive(const JointStep<Real>& step, Kind& own, std:
     own.impulse_z[i] = real(std::fmax(rest, 0)), own.impulse_w[i] = real(std::fmin(rest, 0));
 }
 
+template <class Real>
+void SweptJoints<Real>::note_forces() {
+    for (Breakable& joint : breakable_) {
+        const Kind& own = kinds_[joint.kind];
+        if (joint.kind == kAngles)
+            joint.torque += sum_of_impulses(own, joint.place);
+        else
+            joint.force += impulse_on_b(own, joint.place, joint.kind);
+    }
+}
+
 /// Joints lie apart in memory, each in one place of a kind: but for its angle, which comes after its points.
 template <class Real>
-void SweptJoints<Real>::store(JointStore& joints, double substep_dt, const Executor& executor) const {
+void SweptJoints<Real>::store(JointStore& joints, double substep_dt, double dt,
+                              const Executor& executor) const {
     for (std::size_t kind = 0; kind < kKinds; ++kind) {
         const Kind& own = kinds_[kind];
         executor.for_each_chunk(own.slot.size(), kPlacesPerTask, kNanosecondsToStore,
@@ -206,6 +219,13 @@ void SweptJoints<Real>::store(JointStore& joints, double substep_dt, const Execu
                                             store_joint(joints[static_cast<std::size_t>(own.slot[i])], own,
                                                         kind, i, substep_dt);
                                 });
+    }
+    for (const Breakable& part : breakable_) {
+        StoredJoint& joint = joints[static_cast<std::size_t>(kinds_[part.kind].slot[part.place])];
+        if (part.kind == kAngles)
+            joint.torque = part.torque / dt;
+        else
+            joint.force = (1 / dt) * part.force;
     }
 }
 
