@@ -68,6 +68,34 @@ void describe_precision(const WorldState<Real>& world, std::vector<std::string>&
     limits.push_back(text);
 }
 
+/// Paths of contacts are solved with cubes of inverse masses, 1/kg³: from here to the inverse of it they are
+/// numbers of single precision.
+constexpr double kSmallestMassOfShapes = 1e-12;  // kg
+
+/// Says of the body whose mass is the farthest beyond what contacts of shapes can be solved with.
+template <class Real>
+void describe_masses(const WorldState<Real>& world, std::vector<std::string>& limits) {
+    const Bodies<Real>& bodies = world.bodies;
+    if (!bodies.has_shapes || sizeof(Real) > sizeof(float)) return;
+    double worst = kSmallestMassOfShapes;
+    std::size_t worst_row = bodies.count;
+    for (std::size_t row = 0; row < bodies.count; ++row) {
+        if (bodies.is_immovable(row)) continue;
+        const double mass = bodies.mass[row], share = std::fmin(mass, 1 / mass);
+        if (share < worst) worst = share, worst_row = row;
+    }
+    if (worst_row == bodies.count) return;
+    char text[400];
+    std::snprintf(
+        text, sizeof text,
+        "body %u has a mass of %.2g kg; contacts of shapes are solved in single precision from %.0e "
+        "to %.0e kg: beyond, bodies may sink into each other or fall through. Use double precision, "
+        "or another unit of mass",
+        bodies.id[worst_row].index, static_cast<double>(bodies.mass[worst_row]), kSmallestMassOfShapes,
+        1 / kSmallestMassOfShapes);
+    limits.push_back(text);
+}
+
 }  // namespace
 
 template <class Real>
@@ -93,7 +121,7 @@ Plan describe_plan(Simulation<Real>& sim, const CalledEffects& called) {
     });
     plan.shapes = sim.world.shapes.distinct();
     if (plan.shapes > 0) plan.bytes_per_shape = sizeof(ConvexShape<Real>);
-    describe_precision(sim.world, plan.limits);
+    describe_precision(sim.world, plan.limits), describe_masses(sim.world, plan.limits);
     return plan;
 }
 

@@ -2,6 +2,8 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include <carom/carom.hpp>
 
@@ -57,4 +59,29 @@ TEST_CASE_TEMPLATE("a flipper at rest throws the ball above it", W, World, World
                     CHECK(got > 0.6 * of_flipper);
                     CHECK(got < 2 * of_flipper);
                 }
+}
+
+TEST_CASE("a flipper strikes in a world that its state was restored in, too") {
+    const auto scene_with = [](const JointKind& kind) {
+        Scene scene;
+        scene.gravity = {};
+        const BodyId flipper = scene.add({.shape = Box{1, kThickness}, .position = {0.5, 0}, .mass = 1});
+        scene.add({.shape = Disc{kRadius}, .position = {kArm, kThickness / 2 + kRadius + 0.01}, .mass = 0.2});
+        scene.add(Joint{.b = flipper, .kind = kind});
+        return scene;
+    };
+    const JointId joint = JointId::of(0);
+    World world(scene_with(RevoluteJoint{.anchor = Vec2{0, 0}, .lower = 0, .upper = 0.9}));
+    world.step(1.0 / 60);
+    world.set_motor(joint, 20, 5000);
+    // As many changes of its joints, none of which is a motor.
+    World other(scene_with(DistanceJoint{.anchor_a = {0, 5}, .max = 6}));
+    other.set_limits(joint, 0, 6);
+    other.step(1.0 / 60);
+    std::vector<std::byte> state(world.state_bytes());
+    world.save_state(state);
+    other.restore_state(state);
+    for (int i = 0; i < 6; ++i) world.step(1.0 / 60), other.step(1.0 / 60);
+    CHECK(world.state({1, 0}).velocity.y > 0.6 * 20 * kArm);
+    CHECK(other.state_hash() == world.state_hash());
 }

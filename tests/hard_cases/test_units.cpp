@@ -1,4 +1,4 @@
-// Units of length and mass are nobody's: a scene in units of a power of two has the same bits.
+// No unit of length or mass is built in: a scene in units of a power of two has the same bits.
 #include <doctest/doctest.h>
 
 #include <cmath>

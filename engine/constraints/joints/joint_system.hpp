@@ -143,7 +143,7 @@ class JointSystem {
     void note_answer();
     /// The last blows take place: velocities change, and impulses by what the joints gave in answer.
     void take_answer() { take_velocities(); }
-    /// A motor, for who solves motors together with what acts on bodies.
+    /// A motor, to be solved together with what acts on bodies (solvers/soft/joints/heavy_loads.hpp).
     struct Motor {
         std::size_t extra;          // its row
         double impulse, low, high;  // N s, of this substep so far, and within what it is

@@ -34,7 +34,7 @@ bool HeldFlights<Real>::comes_into(Vec2 velocity, Vec2 normal, double gap, doubl
     return dt * dot(velocity, normal) - std::fmax(gap, 0) > kPassing * thickness;
 }
 
-/// The plane of a corner on a corner is nobody's, and holds for one step alone.
+/// The plane of a corner on a corner is a face of neither body, and holds for one step alone.
 template <class Real>
 void HeldFlights<Real>::hold_what_pressed(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
                                           const PieceItems<Real>& items, double dt,

@@ -15,8 +15,8 @@ namespace carom {
 /// them. Walls have nothing behind them that could be met.
 ///
 /// What a program sets presses too: a player that walks into a wall, or down onto the floor, has a velocity
-/// into it in every step. The wall takes that at once; whoever asks what a body meets in the step, and takes
-/// it to fly on through the wall, finds the side of the next brick in its way, behind the face of this one.
+/// into it in every step. The wall takes that at once. A look at what a body meets in the step that took it
+/// to fly on through the wall would find the side of the next brick in its way, behind the face of this one.
 /// docs/decisions/0065-corners-that-pass.md.
 template <class Real>
 class HeldFlights {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "isa/convex_kernels.hpp"
@@ -59,6 +60,7 @@ class PoseWatch {
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
         archive(self.pose, self.angle_, self.base_, self.thinnest_, self.path_);
+        if constexpr (!std::is_const_v<Self>) self.joints_version_ = -1;  // of the world's own joints
     }
 
   private:

@@ -41,4 +41,17 @@ TEST_CASE("a small body nearer to the origin may be the coarsest, and a capsule 
     CHECK_MESSAGE(limits[0].find("body 2 ") != std::string::npos, limits[0]);
 }
 
+TEST_CASE("a mass that contacts of shapes have no numbers for is named, with the remedy") {
+    Scene scene;
+    for (const double mass : {1.0, 2e-11, 3e-14, 2e13, 1e11})
+        scene.add({.shape = Box{1, 1}, .position = {mass < 1 ? -3.0 : 3.0, 0}, .mass = mass});
+    CHECK(limits_of<World64>(scene).empty());
+    const std::vector<std::string> limits = limits_of<World>(scene);
+    REQUIRE(limits.size() == 1);
+    for (const char* part : {"body 2 ", "3e-14 kg", "1e-12", "1e+12 kg", "double precision"})
+        CHECK_MESSAGE(limits[0].find(part) != std::string::npos, limits[0]);
+    for (Body& body : scene.bodies) body.shape = Disc{0.5};
+    CHECK(limits_of<World>(scene).empty());
+}
+
 }  // namespace
