@@ -63,7 +63,9 @@ void HeldFlights<Real>::hold_what_pressed(const WorldState<Real>& world, const E
     }
     for (std::size_t i = 0; i < surfaces.count(); ++i) {
         const ManifoldName& name = surfaces.names[i];
-        if (Partner(surfaces.b[i]).is_wall() || !world.handles.is_alive(name.a)) continue;
+        // Contacts of bodies that have just woken are no edges yet: all that is known of them is their
+        // memory.
+        if (!Partner(surfaces.b[i]).is_edge() || !world.handles.is_alive(name.a)) continue;
         const std::size_t row = world.handles.row_of_slot(name.a.index);
         const Vec2 normal{surfaces.normal_x[i], surfaces.normal_y[i]};
         // What was stopped early in a step does not press at its end.
