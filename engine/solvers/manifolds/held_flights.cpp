@@ -13,6 +13,8 @@ namespace {
 /// Times that what the planes hold is taken from a body's velocity: a second plane gives back some of what
 /// the first one took, where they are not at right angles.
 constexpr int kTurns = 3;
+/// Share of kPassing below which a body comes in a step by any way: less than 1, for rounding.
+constexpr double kSlow = 0.99;
 /// A normal is that of a face if it is off by no more than this [rad].
 constexpr double kOff = 0.01;
 
@@ -37,8 +39,8 @@ bool HeldFlights<Real>::comes_into(Vec2 velocity, Vec2 normal, double gap, doubl
 /// The plane of a corner on a corner is a face of neither body, and holds for one step alone.
 template <class Real>
 void HeldFlights<Real>::hold_what_pressed(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
-                                          const PieceItems<Real>& items, double dt,
-                                          const ManifoldList<Real>& pairs,
+                                          const PieceItems<Real>& items, const PoseWatch<Real>& poses,
+                                          double dt, const ManifoldList<Real>& pairs,
                                           const ManifoldList<Real>& surfaces) {
     const Bodies<Real>& bodies = world.bodies;
     const auto presses = [&](std::size_t row, Vec2 normal) {
@@ -51,6 +53,8 @@ void HeldFlights<Real>::hold_what_pressed(const WorldState<Real>& world, const E
     };
     for (std::size_t i = 0; i < pairs.count(); ++i) {
         const auto a = static_cast<std::size_t>(pairs.a[i]), b = static_cast<std::size_t>(pairs.b[i]);
+        // Most bodies of a heap are too slow, whatever they press on.
+        if (!(static_cast<double>(poses.way(a)) > kSlow * kPassing * bodies.inradius(a))) continue;
         const ManifoldMemory<Real>& memory = pairs.memory[i];
         const Vec2 normal{memory.normal_x, memory.normal_y};
         if (!bodies.stands(b) || !memory.is_loaded() || !presses(a, normal)) continue;

@@ -7,6 +7,7 @@
 #include "math/vec2_math.hpp"
 #include "solvers/manifolds/manifold_list.hpp"
 #include "solvers/manifolds/piece_items.hpp"
+#include "solvers/manifolds/pose_watch.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {
@@ -32,8 +33,8 @@ class HeldFlights {
     }
     /// Faces that bodies pressed on in the step before, and surfaces that they touched, hold them.
     void hold_what_pressed(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
-                           const PieceItems<Real>& items, double dt, const ManifoldList<Real>& pairs,
-                           const ManifoldList<Real>& surfaces);
+                           const PieceItems<Real>& items, const PoseWatch<Real>& poses, double dt,
+                           const ManifoldList<Real>& pairs, const ManifoldList<Real>& surfaces);
     /// Finds the velocities of bodies that are held. To be called when all planes are known.
     void settle(const Bodies<Real>& bodies, double dt);
 

@@ -283,7 +283,7 @@ bool Manifolds<Real>::find(const WorldState<Real>& world, const EdgeCandidates<R
     poses_.look(world, terms.dt, near, finds_all, loops.kernels->convex->turn_angles, *loops.executor);
     take_near(world, terms.dt, near, loops);
     flights_.clear();
-    flights_.hold_what_pressed(world, edges, items_, terms.dt, bodies_, old_surfaces_);
+    flights_.hold_what_pressed(world, edges, items_, poses_, terms.dt, bodies_, old_surfaces_);
     flights_.settle(world.bodies, terms.dt);
     ahead_.look(world, terms.dt, poses_, flights_, items_, *loops.executor);
     ahead_.look_at_surfaces(world, terms, old_surfaces_);
