@@ -231,7 +231,8 @@ bool JointStore::excludes(BodyId a, BodyId b) const {
 }
 
 std::size_t JointStore::bytes() const {
-    return slots_.capacity() * sizeof(Slot) + (free_.capacity() + added_.capacity()) * sizeof(std::uint32_t) +
+    return slots_.capacity() * sizeof(Slot) +
+           (free_.capacity() + added_.capacity() + moving_.capacity()) * sizeof(std::uint32_t) +
            built_in_.capacity() * sizeof(BuiltInPair) + excluded_.capacity() * sizeof(std::uint64_t) +
            first_excluded_.capacity() * sizeof(std::uint32_t) + broken.capacity() * sizeof(JointBreak);
 }

@@ -363,7 +363,8 @@ TEST_SUITE("hard cases: nets of joints") {
         }
     }
 
-    // Of joints that are swept forces were those of the last substep: 7 N of a blow of 3,600, or 7,800.
+    // Forces of swept joints were those of the last substep: they told of 7 N or of 7,800 N of a blow of
+    // 3,600 N.
     TEST_CASE_TEMPLATE("joints of a net that may break tell of a blow whenever in a step it comes", W, World,
                        World64) {
         constexpr int kSide = 6;

@@ -168,7 +168,7 @@ Sums BodyRecords<Real>::sums_of_lost(const WorldState<Real>& world, std::size_t 
 template <class Real>
 std::size_t BodyRecords<Real>::bytes() const {
     return velocity.bytes() + displacement.bytes() + turn_.bytes() + start_x_.bytes() + start_y_.bytes() +
-           start_rim_.bytes() + gains_.capacity() * sizeof(EnergyGain);
+           start_rim_.bytes() + gains_.capacity() * sizeof(EnergyGain) + delays_.capacity() * sizeof(Delay);
 }
 
 template class BodyRecords<float>;

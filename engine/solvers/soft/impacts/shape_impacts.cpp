@@ -229,7 +229,8 @@ struct Meeting {
 
     bool both_move() const { return a.w > 0 && b.w > 0; }
     double closing() const { return std::fmax(meets[0] ? -v[0] : 0, meets[1] ? -v[1] : 0); }
-    /// Of b against a at a point, along the normal; along the tangent for the third lever.
+    /// The velocity of b against a at a point [m/s], along the normal; for the third lever along the tangent.
+    /// Displacements in place of velocities give the way [m].
     double relative(Vec2 va, double ua, Vec2 vb, double ub, std::size_t k) const {
         return dot(vb - va, k < 2 ? n : t) + ub * lever_b[k] - ua * lever_a[k];
     }
