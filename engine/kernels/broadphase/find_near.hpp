@@ -87,31 +87,82 @@ std::size_t pick_in_block(const GridLevel<Real>& level, const FindNear<Real>& k,
     return found;
 }
 
-/// A query larger than a cell: all cells that it touches, or the whole level if cells share numbers.
-template <class L, class Real, class Pick>
-std::size_t pick_in_box(const GridLevel<Real>& level, const FindNear<Real>& k, const Pick& pick) {
-    if (level.numbering.wraps) {
-        if (level.places + L::size > k.capacity) return kNoRoom;
-        return pick_from<L>(0, static_cast<std::int32_t>(level.places), pick, k.out, 0);
-    }
+/// Cells that a query touches, as coordinates from the lowest of the level.
+struct CellBox {
+    double left, right, bottom, top;
+};
+template <class Real>
+CellBox cells_around(const GridLevel<Real>& level, const FindNear<Real>& k) {
     constexpr double kRoundingMargin = 1 + 1e-5;
     const double reach =
         (static_cast<double>(k.reach) + static_cast<double>(level.largest_reach)) * kRoundingMargin;
     const CellNumbering& n = level.numbering;
     const auto cell = [&](double position, double low, double high) {
         using One = simd::Lanes<double, simd::Scalar>;
-        return static_cast<std::int32_t>(cell_coordinate<One>(position, n.inverse_size, low, high) - low);
+        return cell_coordinate<One>(position, n.inverse_size, low, high) - low;
     };
     const double x = static_cast<double>(k.x), y = static_cast<double>(k.y);
-    const std::int32_t left = cell(x - reach, n.low_u, n.high_u), right = cell(x + reach, n.low_u, n.high_u);
-    const std::int32_t bottom = cell(y - reach, n.low_v, n.high_v), top = cell(y + reach, n.low_v, n.high_v);
-    std::size_t count = 0;
-    for (std::int32_t line = bottom; line <= top; ++line) {
-        const std::int32_t* begin = level.bodies.cell_begin + line * level.width;
-        if (count + static_cast<std::size_t>(begin[right + 1] - begin[left]) + L::size > k.capacity)
-            return kNoRoom;
-        count = pick_from<L>(begin[left], begin[right + 1], pick, k.out, count);
+    return {cell(x - reach, n.low_u, n.high_u), cell(x + reach, n.low_u, n.high_u),
+            cell(y - reach, n.low_v, n.high_v), cell(y + reach, n.low_v, n.high_v)};
+}
+
+/// Picks from cells [first, last), after `count` that were; returns the new count, or kNoRoom.
+template <class L, class Real, class Pick>
+std::size_t pick_in_cells(const GridLevel<Real>& level, std::size_t first, std::size_t last,
+                          const FindNear<Real>& k, const Pick& pick, std::size_t count) {
+    const std::int32_t begin = level.bodies.cell_begin[first], end = level.bodies.cell_begin[last];
+    if (count + static_cast<std::size_t>(end - begin) + L::size > k.capacity) return kNoRoom;
+    return pick_from<L>(begin, end, pick, k.out, count);
+}
+
+/// A query larger than a cell where cells share numbers: the lines of cells that it touches, each number
+/// once, or the whole level where that is hardly more.
+template <class L, class Real, class Pick>
+std::size_t pick_in_folded_box(const GridLevel<Real>& level, const FindNear<Real>& k, const Pick& pick) {
+    constexpr std::size_t kMostLines = 32;
+    using One = simd::Lanes<double, simd::Scalar>;
+    const CellNumbering& n = level.numbering;
+    const CellBox box = cells_around(level, k);
+    const double columns = box.right - box.left + 1, lines = box.top - box.bottom + 1;
+    if (!(lines <= static_cast<double>(kMostLines)) || !(2 * lines * columns <= n.cells))
+        return pick_in_cells<L>(level, 0, static_cast<std::size_t>(level.cells), k, pick, 0);
+    struct Run {
+        std::size_t first, last;
+    } runs[2 * kMostLines];  // of numbers, ascending
+    std::size_t run_count = 0;
+    const auto add = [&](std::size_t first, std::size_t last) {
+        std::size_t at = run_count++;
+        for (; at > 0 && runs[at - 1].first > first; --at) runs[at] = runs[at - 1];
+        runs[at] = {first, last};
+    };
+    const auto cells = static_cast<std::size_t>(level.cells);
+    for (double line = box.bottom; line <= box.top; ++line) {
+        const auto first =
+            static_cast<std::size_t>(wrapped<One>(box.left + n.width * wrapped<One>(line, n), n));
+        const std::size_t last = first + static_cast<std::size_t>(columns);
+        add(first, last < cells ? last : cells);
+        if (last > cells) add(0, last - cells);
     }
+    std::size_t count = 0, done = 0;  // numbers below it are
+    for (std::size_t i = 0; i < run_count && count != kNoRoom; ++i) {
+        const std::size_t first = runs[i].first < done ? done : runs[i].first;
+        if (runs[i].last <= first) continue;
+        count = pick_in_cells<L>(level, first, runs[i].last, k, pick, count);
+        done = runs[i].last;
+    }
+    return count;
+}
+
+/// A query larger than a cell: all cells that it touches.
+template <class L, class Real, class Pick>
+std::size_t pick_in_box(const GridLevel<Real>& level, const FindNear<Real>& k, const Pick& pick) {
+    if (level.numbering.wraps) return pick_in_folded_box<L>(level, k, pick);
+    const CellBox box = cells_around(level, k);
+    const auto width = static_cast<std::size_t>(level.width), left = static_cast<std::size_t>(box.left),
+               right = static_cast<std::size_t>(box.right), top = static_cast<std::size_t>(box.top);
+    std::size_t count = 0;
+    for (auto line = static_cast<std::size_t>(box.bottom); line <= top && count != kNoRoom; ++line)
+        count = pick_in_cells<L>(level, line * width + left, line * width + right + 1, k, pick, count);
     return count;
 }
 

@@ -191,6 +191,13 @@ void check_world(const Bodies<Real>& bodies) {
             wrong += wrong_neighbours(bodies, grid, bodies.x[row] + shift, bodies.y[row] - shift,
                                       bodies.reach[other]);
         }
+        // Larger than cells: those of folded planes are looked at line by line.
+        for (const int times : {2, 3, 5, 9, 17})
+            for (int query = 0; query < 8; ++query) {
+                const std::size_t row = random() % bodies.count(), other = random() % bodies.count();
+                wrong += wrong_neighbours(bodies, grid, bodies.x[row], bodies.y[row],
+                                          static_cast<Real>(times) * bodies.reach[other]);
+            }
         wrong += wrong_neighbours(bodies, grid, Real(3e7), Real(-2e7), Real(1));
         wrong += wrong_neighbours(bodies, grid, bodies.x[0], bodies.y[0], 40 * bodies.reach[0]);
         CHECK(wrong == 0);
