@@ -87,21 +87,23 @@ bool Gaps<Real>::stay_parted(std::size_t i) const {
 /// @param facing  how they face each other at its start
 template <class Real>
 bool Gaps<Real>::do_pass(std::size_t i, const Manifold<double>& facing) const {
-    return pass_each_other(flying_a(i), flying_b(i), facing, in_.dt,
-                           static_cast<double>(contacts_.thickness[i]));
+    const double thickness = contacts_.thickness[i];
+    const RelativeMotion motion{velocity_of_b(i) - velocity_of_a(i), spin_of(contacts_.a[i]),
+                                spin_of(contacts_.b[i])};
+    // Most planes hold nothing back, which is known without the shapes.
+    return pass_plane(facing, motion, in_.dt, thickness) &&
+           pass_each_other(flying_a(i), flying_b(i), facing, in_.dt, thickness);
 }
 
 /// @return whether the bodies meet later than at once
 template <class Real>
 bool Gaps<Real>::find_meeting(std::size_t i, double gap) {
     const Bodies<Real>& bodies = in_.world.bodies;
-    const auto turns = [&](std::size_t row) {
-        return bodies.has_rotation ? static_cast<double>(bodies.angular_velocity[row]) : 0;
-    };
     const auto a = static_cast<std::size_t>(contacts_.a[i]), b = static_cast<std::size_t>(contacts_.b[i]);
     const Vec2 dv = velocity_of_b(i) - velocity_of_a(i);
-    const double way = in_.dt * (std::sqrt(length_squared(dv)) + std::fabs(turns(a)) * bodies.radius[a] +
-                                 std::fabs(turns(b)) * bodies.radius[b]);
+    const double way =
+        in_.dt * (std::sqrt(length_squared(dv)) + std::fabs(spin_of(contacts_.a[i])) * bodies.radius[a] +
+                  std::fabs(spin_of(contacts_.b[i])) * bodies.radius[b]);
     const double thickness = contacts_.thickness[i];
     if (!(way > kFastThicknesses * thickness) || !(way > gap)) return false;
     if (stay_parted(i)) return false;

@@ -47,6 +47,12 @@ class Gaps {
         const auto b = static_cast<std::size_t>(contacts_.b[i]);
         return {in_.world.bodies.velocity_x[b], in_.world.bodies.velocity_y[b]};
     }
+    double spin_of(std::int32_t row) const {
+        const Bodies<Real>& bodies = in_.world.bodies;
+        return bodies.has_rotation
+                   ? static_cast<double>(bodies.angular_velocity[static_cast<std::size_t>(row)])
+                   : 0;
+    }
     /// The bodies of contact i as they fly.
     MovingConvex flying_a(std::size_t i) const {
         const auto a = static_cast<std::size_t>(contacts_.a[i]);

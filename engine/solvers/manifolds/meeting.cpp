@@ -63,22 +63,26 @@ MovingConvex still_edge(const Edge& edge) {
     return {shape, centre, {}, 0, 0};
 }
 
-void move_back(Manifold<double>& manifold, const MovingConvex& a, const MovingConvex& b, double time) {
-    const double closing = dot(b.velocity - a.velocity, {manifold.normal_x, manifold.normal_y});
-    manifold.separation1 -= time * (closing + b.spin * manifold.lever_b1 - a.spin * manifold.lever_a1);
+void move_back(Manifold<double>& manifold, const RelativeMotion& motion, double time) {
+    const double closing = dot(motion.velocity, {manifold.normal_x, manifold.normal_y});
+    manifold.separation1 -=
+        time * (closing + motion.spin_b * manifold.lever_b1 - motion.spin_a * manifold.lever_a1);
     if (manifold.separation2 < kNoPoint)
-        manifold.separation2 -= time * (closing + b.spin * manifold.lever_b2 - a.spin * manifold.lever_a2);
+        manifold.separation2 -=
+            time * (closing + motion.spin_b * manifold.lever_b2 - motion.spin_a * manifold.lever_a2);
+}
+
+bool pass_plane(const Manifold<double>& manifold, const RelativeMotion& motion, double dt, double thickness) {
+    if (!(std::fmin(manifold.separation1, manifold.separation2) > 0)) return false;
+    Manifold<double> then = manifold;
+    move_back(then, motion, -dt);
+    return -std::fmin(then.separation1, then.separation2) > kPassing * thickness;
 }
 
 bool pass_each_other(const MovingConvex& a, const MovingConvex& b, const Manifold<double>& manifold,
                      double dt, double thickness) {
+    if (!pass_plane(manifold, relative_motion(a, b), dt, thickness)) return false;
     const double gap = std::fmin(manifold.separation1, manifold.separation2);
-    if (!(gap > 0)) return false;
-    Manifold<double> then = manifold;
-    move_back(then, a, b, -dt);
-    const double beyond =
-        -std::fmin(then.separation1, then.separation2);  // the plane, at the end of the step
-    if (!(beyond > kPassing * thickness)) return false;
     if (meets_face(a, b, {manifold.normal_x, manifold.normal_y}, dt, gap, thickness)) return false;
     const double target = kMeetingTarget * thickness;
     return !impact_time(a, b, dt, target, kGrazing * thickness + target).touches;
@@ -103,7 +107,7 @@ bool meeting_manifold(const MovingConvex& a, const MovingConvex& b, double dt, d
     const ConvexImpact impact = impact_time(a, b, dt, kMeetingTarget * thickness);
     if (!impact.touches || !(impact.time > 0)) return false;
     manifold = manifold_of(at_time(a, impact.time), at_time(b, impact.time));
-    move_back(manifold, a, b, impact.time);
+    move_back(manifold, relative_motion(a, b), impact.time);
     return true;
 }
 

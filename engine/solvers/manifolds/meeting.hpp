@@ -31,6 +31,21 @@ inline constexpr double kPassing = 0.0005;
 bool meeting_manifold(const MovingConvex& a, const MovingConvex& b, double dt, double thickness,
                       Manifold<double>& manifold);
 
+/// How a body b moves against a body a.
+struct RelativeMotion {
+    Vec2 velocity{};                // m/s
+    double spin_a = 0, spin_b = 0;  // rad/s
+};
+inline RelativeMotion relative_motion(const MovingConvex& a, const MovingConvex& b) {
+    return {b.velocity - a.velocity, a.spin, b.spin};
+}
+
+/// Whether bodies with a gap between them come through the plane there in the step: pass_each_other() says
+/// whether they meet.
+/// @param manifold   at the start of the step
+/// @param thickness  m, of the thinner of the two
+bool pass_plane(const Manifold<double>& manifold, const RelativeMotion& motion, double dt, double thickness);
+
 /// Whether bodies with a gap between them pass each other in the step, as they fly: a corner beside a corner.
 /// The plane between them, which holds for the step, would stop what does not touch. Where one of them has a
 /// face there, over which the other comes, it holds.
@@ -76,6 +91,6 @@ MovingConvex still_edge(const Edge& edge);
 
 /// Moves separations at a moment back to the start of the step.
 /// @param time  s, from the start of the step
-void move_back(Manifold<double>& manifold, const MovingConvex& a, const MovingConvex& b, double time);
+void move_back(Manifold<double>& manifold, const RelativeMotion& motion, double time);
 
 }  // namespace carom

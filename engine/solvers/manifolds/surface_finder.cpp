@@ -171,7 +171,7 @@ void SurfaceFinder<Real>::find_walls(const Inputs& in, ManifoldList<Real>& list)
                         moving_row(world, row, in.flights.velocity(bodies, row), shape_number);
                     Manifold<double> m = manifold_on_plane(at_time(moving, in.ahead[row]), wall_normal(side),
                                                            wall_corner(walls, side));
-                    move_back(m, moving, {}, in.ahead[row]);
+                    move_back(m, relative_motion(moving, {}), in.ahead[row]);
                     if (m.separation1 > margin && m.separation2 > margin) return;
                     list.add(static_cast<std::int32_t>(row), Partner::wall(side).stored(),
                              {bodies.id[row], BodyId{}, ManifoldName::place_of_side(side, number)});
@@ -243,7 +243,7 @@ void SurfaceFinder<Real>::find_on_chain(const Inputs& in, const EdgePose& pose, 
     find_chain_manifolds(then, world.edges.edges, near_edges_, margin, found_);
     for (ChainManifold& found : found_) {
         if (piece) found.manifold = about_body(found.manifold, rotate(then.turn, offset));
-        if (time > 0) move_back(found.manifold, moving, {}, time);
+        if (time > 0) move_back(found.manifold, relative_motion(moving, {}), time);
         const Edge edge = with_what_goes_on(world.edges.edges, found.edge, moving);
         if (pass_each_other(moving, still_edge(edge), found.manifold, dt, thickness)) continue;
         list.add(static_cast<std::int32_t>(row), Partner::edge(found.edge).stored(),
