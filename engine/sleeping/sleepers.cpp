@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "effects/sleeping.hpp"
 #include "math/vec2_math.hpp"
@@ -112,9 +113,46 @@ bool Sleepers<Real>::mark_hit(const WorldState<Real>& world, double dt, double s
         const double t = squared > 0 ? std::fmin(std::fmax(dot(d, v) / squared, 0), dt) : 0;
         const double reach = radius + static_cast<double>(bodies.radius[sleeper]) + kTouchingShare * smaller +
                              (falls ? 0.5 * gravity * dt * dt : 0);
-        if (length_squared(d - t * v) < reach * reach) mark(bodies.island[sleeper]);
+        if (!(length_squared(d - t * v) < reach * reach)) continue;
+        mark(bodies.island[sleeper]);
+        // Contacts act up to a substep before they close.
+        hits_.push_back({dt + substep - t, given, pair.sleeper});
     }
+    if (!hits_.empty()) hand_on_hits(world, gravity, substep);
     return !marked_.empty();
+}
+
+/// Marks what sleepers that are hit come to in turn, the nearest in time first. Without gravity bodies that
+/// touch are islands of their own: an impact with the first of a row reaches the last within a step, and one
+/// that slept on would take momentum as a wall does.
+template <class Real>
+void Sleepers<Real>::hand_on_hits(const WorldState<Real>& world, double gravity, double substep) {
+    const Bodies<Real>& bodies = world.bodies;
+    is_handed_.assign(bodies.asleep, 0);
+    std::make_heap(hits_.begin(), hits_.end());
+    while (!hits_.empty()) {
+        std::pop_heap(hits_.begin(), hits_.end());
+        const Hit hit = hits_.back();
+        hits_.pop_back();
+        const auto row = static_cast<std::size_t>(hit.sleeper);
+        if (std::exchange(is_handed_[row - bodies.count], 1)) continue;
+        const double radius = bodies.radius[row], mass = bodies.mass[row];
+        const Vec2 place = position_of(bodies, row);
+        for (const std::int32_t other : grid_.near(world, place, radius + hit.speed * hit.left)) {
+            const auto next = static_cast<std::size_t>(other);
+            if (is_handed_[next - bodies.count] || (bodies.flags_of(next) & kSensor) != 0) continue;
+            if (world.has_filters() && !world.may_collide(row, next)) continue;
+            const double given = 2 * hit.speed * mass / (mass + static_cast<double>(bodies.mass[next]));
+            if (given <= kWakingShare * still_speed(gravity, substep, bodies.inradius(next))) continue;
+            const double gap = std::sqrt(length_squared(position_of(bodies, next) - place)) - radius -
+                               (1 + kTouchingShare) * static_cast<double>(bodies.radius[next]);
+            const double left = hit.left - std::fmax(gap, 0) / hit.speed;
+            if (left < 0) continue;
+            mark(bodies.island[next]);
+            hits_.push_back({left, given, other});
+            std::push_heap(hits_.begin(), hits_.end());
+        }
+    }
 }
 
 template <class Real>
@@ -397,7 +435,8 @@ void Sleepers<Real>::restore_impulses(ContactGraph<Real>& graph, const WorldStat
 template <class Real>
 std::size_t Sleepers<Real>::bytes() const {
     return (kept_.capacity() + woken_.capacity()) * sizeof(Kept) + islands_.bytes() +
-           pairs_.capacity() * sizeof(SleeperPair) + grid_.bytes() + stays_awake_.capacity() +
+           pairs_.capacity() * sizeof(SleeperPair) + grid_.bytes() + hits_.capacity() * sizeof(Hit) +
+           is_handed_.capacity() + stays_awake_.capacity() +
            (label_.capacity() + order_.capacity() + marked_.capacity()) * sizeof(std::int32_t);
 }
 

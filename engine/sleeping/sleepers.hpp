@@ -39,7 +39,8 @@ class Sleepers {
                      std::span<const std::int32_t> rows);
     /// To be called before rows get another order: contacts with sleepers keep no impulses.
     static void forget_contacts(ContactGraph<Real>& graph, const WorldState<Real>& world);
-    /// Marks the islands that something is about to hit in this step. @return whether there are any.
+    /// Marks the islands that something is about to hit in this step, and those that are hit in turn by what
+    /// they hold. @return whether there are any.
     bool mark_hit(const WorldState<Real>& world, double dt, double substep);
     /// Gives contacts that have woken the impulses of a substep of length `substep`.
     void restore_impulses(ContactGraph<Real>& graph, const WorldState<Real>& world, double substep);
@@ -112,6 +113,18 @@ class Sleepers {
         std::int32_t row, island;
     };
 
+    /// A sleeper that something comes to, and how fast it may move then.
+    struct Hit {
+        double left;   // s, of the time looked ahead: how long it moves
+        double speed;  // m/s
+        std::int32_t sleeper;
+        /// The first to be hit is the largest; rows decide between equals, so that order does not.
+        friend bool operator<(const Hit& a, const Hit& b) {
+            return a.left != b.left ? a.left < b.left : a.sleeper > b.sleeper;
+        }
+    };
+
+    void hand_on_hits(const WorldState<Real>& world, double gravity, double substep);
     bool note_still(WorldState<Real>& world, double dt, double substep) const;
     void connect(const WorldState<Real>& world, const ContactGraph<Real>& graph,
                  std::span<const LoadedContact> others);
@@ -130,6 +143,10 @@ class Sleepers {
     std::int64_t island_count_ = 0, woken_count_ = 0;
     double since_look_ = 0;  // s
     SleeperGrid<Real> grid_;
+
+    // Scratch of `mark_hit`.
+    std::vector<Hit> hits_;                // a heap
+    std::vector<std::uint8_t> is_handed_;  // by sleeper: whether what hit it was handed on
 
     // Scratch of `connect` and `put_to_sleep`.
     Islands islands_;

@@ -37,7 +37,7 @@ constexpr Golden kGolden[] = {
     {"rough sizes", 0xa029d00f4fc8fcad, 0x87396337ad79866e},
     {"rolling sizes", 0x263e12283b58366d, 0x8c50dfc5f6f4e985},
     {"turning chain", 0x4ec535f1f7be0f7b, 0xf92b06a52802958b},
-    {"woken sleepers", 0xc96d16ac37412fb, 0x73b51f7b255f0ebe},
+    {"woken sleepers", 0x4a097a5e5e860e93, 0xe6b0cf2e09ab2674},
     {"falling compounds", 0x3581b450658110ed, 0x007e9bd67be6e6ae},
 };
 

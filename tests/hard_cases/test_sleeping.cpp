@@ -135,6 +135,37 @@ TEST_SUITE("hard cases/sleeping") {
         CHECK(world.profile().asleep == 101);
     }
 
+    // Without gravity bodies that touch are islands of their own: those behind the first one slept on and
+    // took what hit them as walls do.
+    TEST_CASE_TEMPLATE("rows that sleep without gravity take no momentum from what hits them", Real, float,
+                       double) {
+        for (const double gap : {0.0, 0.01, 0.2})  // m
+            for (const bool are_boxes : {false, true}) {
+                CAPTURE(gap);
+                CAPTURE(are_boxes);
+                constexpr double kSide = 0.4, kSpeed = 40;  // m, m/s
+                Scene scene;
+                scene.effects.sleep = true;
+                const auto add = [&](Vec2 place, Vec2 velocity, double mass) {
+                    Body body{.position = place, .velocity = velocity, .mass = mass};
+                    body.shape = are_boxes ? Shape{Box{kSide, kSide}} : Shape{Disc{kSide / 2}};
+                    body.material.friction = 0.6;
+                    return scene.add(std::move(body));
+                };
+                const BodyId bullet = add({-50, 0}, {kSpeed, 0}, 8);
+                for (int i = 0; i < 60; ++i) add({(kSide + gap) * i, 0}, {}, 1);
+                BasicWorld<Real> world(scene);
+                while (world.state(bullet).position.x < -2) world.step(kStep);
+                REQUIRE(world.profile().asleep == 60);
+                for (int i = 0; i < 20; ++i) {
+                    world.step(kStep);
+                    CHECK(world.ledger().momentum.x == doctest::Approx(8 * kSpeed).epsilon(1e-4));
+                }
+                CHECK(world.ledger().energy.kinetic < 0.5 * 8 * kSpeed * kSpeed);
+                CHECK(world.profile().asleep < 60);
+            }
+    }
+
     TEST_CASE_TEMPLATE("a pile that wakes does not jump", Real, float, double) {
         BasicWorld<Real> world(pile());
         REQUIRE(sleep_all(world) < 3000);

@@ -19,6 +19,9 @@ constexpr int kFirstPasses = 8;
 /// of crowds that are swept.
 constexpr int kTurns = 4;
 constexpr int kTurnsOfCrowd = 1;
+/// The former end when joints change no velocity by more than this share of what gravity adds in a substep:
+/// contacts hold as well then, and those of all other bodies are not solved once more for nothing.
+constexpr double kJointsSettled = 0.001;
 /// Times at most that energy is bounded in a substep, with a turn between each two.
 constexpr int kRounds = 6;
 constexpr std::size_t kRowsPerTask = 1024;  // where there is but one group
@@ -78,7 +81,7 @@ template <class Real>
 void SoftSolver<Real>::find_manifolds(const WorldState<Real>& world, const EdgeCandidates<Real>& edges) {
     paths.rescale(warm_start_.kept());
     paths.find(world, edges, terms_, {kNearFraction, settings_.fall}, records_, loops_);
-    uneven_.begin_shapes(world, paths, masses_);
+    shape_turns_.begin_step(world, paths, masses_);
     counters.contacts += paths.counters.contacts;
 }
 
@@ -117,18 +120,24 @@ void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
                 on_supports);
 }
 
+/// Joints, then all contacts. @return whether contacts are left as they are, since joints have changed no
+/// velocity by more than `settled` [m/s].
 template <class Real>
-void SoftSolver<Real>::solve_turn(WorldState<Real>& world) {
+bool SoftSolver<Real>::solve_turn(WorldState<Real>& world, double settled) {
     const auto next = Sweeps::next(view(), Sweeps::Blocks::all, 1);
-    if (!world.joints.empty()) joints.solve_again(joint_step(world), loops_);
+    if (!world.joints.empty() && joints.solve_again(joint_step(world), loops_) <= settled && heavy_.empty())
+        return true;
     if (!heavy_.empty()) heavy_.solve(held_contacts(), joint_step(world), joints);
     if (world.bodies.has_shapes) paths.solve(terms_, records_, loops_, 1, true);
     sweeps_.run(view(), {next.data(), next.size()});
+    return false;
 }
 
 template <class Real>
 void SoftSolver<Real>::solve_joints_and_contacts(WorldState<Real>& world) {
-    for (int turn = 0; turn < (joints.touches_exactly() ? kTurns : kTurnsOfCrowd); ++turn) solve_turn(world);
+    const double settled = kJointsSettled * terms_.fall_speed();
+    const int turns = joints.touches_exactly() ? kTurns : kTurnsOfCrowd;
+    for (int turn = 0; turn < turns && !solve_turn(world, settled); ++turn) continue;
 }
 
 template <class Real>
@@ -144,7 +153,7 @@ void SoftSolver<Real>::bound_energy(WorldState<Real>& world) {
         const bool becomes_less = passive_.has_scaled() || gained < before;
         if (is_last || !(gained > 0) || !becomes_less) break;
         before = gained;
-        solve_turn(world);
+        solve_turn(world, -1);
     }
 }
 
@@ -156,7 +165,7 @@ void SoftSolver<Real>::solve_wedged_bodies() {
 template <class Real>
 void SoftSolver<Real>::solve_uneven_contacts(bool is_last) {
     if (masses_.are_uneven()) uneven_.solve(view(), sweeps_, is_last);
-    if (uneven_.takes_turns()) uneven_.settle(view(), sweeps_, paths);
+    shape_turns_.settle(view(), sweeps_, paths);
 }
 
 template <class Real>
@@ -202,8 +211,9 @@ template <class Real>
 std::size_t SoftSolver<Real>::bytes() const {
     return graph.bytes() + paths.bytes() + impacts.bytes() + joints.bytes() + masses_.bytes() +
            records_.bytes() + supports_.bytes() + support_finder_.bytes() + warm_start_.bytes() +
-           warm_start_limit_.bytes() + sweeps_.bytes() + loads_.bytes() + uneven_.bytes() + chains_.bytes() +
-           passive_.bytes() + wedged_.bytes() + projection_.bytes() + pair_finder_.bytes();
+           warm_start_limit_.bytes() + sweeps_.bytes() + loads_.bytes() + uneven_.bytes() +
+           shape_turns_.bytes() + shape_impacts_.bytes() + chains_.bytes() + passive_.bytes() +
+           wedged_.bytes() + projection_.bytes() + pair_finder_.bytes();
 }
 
 template class SoftSolver<float>;

@@ -16,6 +16,7 @@
 #include "solvers/soft/contacts/load_correction.hpp"
 #include "solvers/soft/contacts/pair_finder.hpp"
 #include "solvers/soft/contacts/residual.hpp"
+#include "solvers/soft/contacts/shape_turns.hpp"
 #include "solvers/soft/contacts/support_finder.hpp"
 #include "solvers/soft/contacts/uneven_contacts.hpp"
 #include "solvers/soft/contacts/warm_start.hpp"
@@ -92,7 +93,7 @@ class SoftSolver {
     /// Spreads what they carried over other contacts.
     void rebalance_loads(const Bodies<Real>& bodies) { warm_start_.rebalance(view(), bodies); }
     /// Tells that a body was removed or put elsewhere between steps. @param mass  kg
-    void note_lost(double mass) { uneven_.note_lost(mass); }
+    void note_lost(double mass) { shape_turns_.note_lost(mass); }
     /// Gives the bodies last step's impulses.
     void warm_start();
 
@@ -104,9 +105,9 @@ class SoftSolver {
     }
     /// Carries out the impacts of shapes in a substep.
     void carry_out_shape_impacts(const Bodies<Real>& bodies, Books& books) {
-        paths.counters.impacts += carom::carry_out_impacts(paths, terms_, bodies, records_, impacts.held,
-                                                           books, books_.gravity_work, deflected_);
-        impacts.note_deflected(deflected_, records_.velocity);
+        paths.counters.impacts += shape_impacts_.carry_out(paths, terms_, bodies, records_, impacts.held,
+                                                           books, books_.gravity_work);
+        impacts.note_deflected(shape_impacts_.deflected(), records_.velocity);
     }
     /// Solves the contacts of shapes in substep `number`.
     void solve_paths(int number, bool is_last);
@@ -207,7 +208,7 @@ class SoftSolver {
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
         archive(self.graph, self.paths, self.counters, self.impacts.counters, self.warm_start_, self.loads_,
-                self.uneven_, self.chains_);
+                self.uneven_, self.shape_turns_, self.chains_);
         if constexpr (!std::is_const_v<Self>)
             self.forget_rows(), self.records_.forget(), self.impacts.forget();
     }
@@ -215,7 +216,7 @@ class SoftSolver {
   private:
     using Sweeps = ContactSweeps<Real>;
 
-    void solve_turn(WorldState<Real>& world);
+    bool solve_turn(WorldState<Real>& world, double settled);
     JointStep<Real> joint_step(WorldState<Real>& world) {
         return {world, records_, terms_, books_.gravity_work, joints.springs()};
     }
@@ -230,8 +231,8 @@ class SoftSolver {
     BodyMasses<Real> masses_;
     bool follows_rows_ = false;  // masses are to be derived, but pairs stay described
     BodyRecords<Real> records_;
-    std::vector<std::int32_t> deflected_;  // rows of discs that hit shapes in this substep
-    ContactRows<Real> supports_;           // those of graph.supports that can touch in this step
+    ShapeImpacts<Real> shape_impacts_;
+    ContactRows<Real> supports_;  // those of graph.supports that can touch in this step
     PairFinder<Real> pair_finder_;
     SupportFinder<Real> support_finder_;
     WarmStart<Real> warm_start_;
@@ -239,6 +240,7 @@ class SoftSolver {
     ContactSweeps<Real> sweeps_;
     LoadCorrection<Real> loads_;
     UnevenContacts<Real> uneven_;
+    ShapeTurns<Real> shape_turns_;
     ContactChains<Real> chains_;
     WedgedBodies<Real> wedged_;
     EndProjection<Real> projection_;

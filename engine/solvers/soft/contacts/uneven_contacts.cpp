@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "constraints/contact_law.hpp"
 
@@ -23,19 +22,6 @@ constexpr int kPatience = 60;
 // last ones that are not. docs/decisions/0064-uneven-masses-in-sweeps.md has what else was tried.
 constexpr int kRelaxedSweeps = 9;
 constexpr int kLastSweeps = 2;
-
-/// Turns over contacts of shapes in a substep, at most: a share of the largest ratio of masses of two that
-/// touch, and whatever that is. The same decision has what fewer leave.
-constexpr double kTurnsOfRatio = 0.05;
-constexpr int kMostTurns = 31;
-/// They end when a sweep changes no velocity by more than this share of what gravity adds in a substep, and
-/// after a few where the change has not become less.
-constexpr double kSettled = 0.2;
-constexpr int kFewTurns = 7;
-/// Where a body has gone that was heavier than so many others in the mean, the first step without it takes
-/// turns, too, and until less is left: docs/decisions/0067-weights-taken-off-heaps.md.
-constexpr double kHeavyLost = 10;
-constexpr double kSettledOfLost = 0.05;
 
 std::size_t index(std::int32_t row) {
     return static_cast<std::size_t>(row);
@@ -86,7 +72,7 @@ void UnevenContacts<Real>::begin_step(const StepView<Real>& step, const WorldSta
         local_.leave_step(), list_runs(step.graph.pairs);
     else
         local_.begin_step(step.graph.pairs, step.supports);
-    is_listed_ = false, turns_of_shapes_ = 0;
+    is_listed_ = false;
     may_relax_ = are_mixed && world.joints.empty() && !world.bodies.has_shapes && step.terms.fall_speed() > 0;
     if (!may_relax_) steps_left_ = 0;
     if (steps_left_ == 0) return;
@@ -222,62 +208,6 @@ void UnevenContacts<Real>::sweep(const StepView<Real>& step, ContactSweeps<Real>
     last.times = kLastSweeps;
     const std::array<Sweep, 2> both{relaxed, last};
     sweeps.run(step, both);
-}
-
-template <class Real>
-void UnevenContacts<Real>::begin_shapes(const WorldState<Real>& world, const PathSolver<Real>& paths,
-                                        const BodyMasses<Real>& masses) {
-    const double lost = std::exchange(heaviest_lost_, 0);
-    turns_of_shapes_ = 0, settled_ = kSettled;
-    // A single path is solved exactly: sweeps would only add their round-off, in units of the heaviest body.
-    if (paths.is_single_path()) return;
-    if (lost * static_cast<double>(world.bodies.moving()) > kHeavyLost * world.dynamic_mass) {
-        turns_of_shapes_ = kMostTurns, settled_ = kSettledOfLost;
-        return;
-    }
-    if (!masses.are_uneven()) return;
-    const Manifolds<Real>& manifolds = paths.manifolds;
-    const Column<Real>& inverse = masses.inverse_column();
-    Real most = 1;  // ratio of masses of two that touch
-    for (const std::int32_t contact : manifolds.live()) {
-        if (contact < 0) break;  // what nothing moves comes last
-        const ManifoldList<Real>& list = manifolds.list_of(contact);
-        const std::size_t i = Manifolds<Real>::place_of(contact);
-        const Partner partner(list.b[i]);
-        if (!partner.is_body()) continue;
-        const Real of_a = std::fabs(inverse[index(list.a[i])]),
-                   of_b = std::fabs(inverse[index(partner.row())]);
-        if (of_a > 0 && of_b > 0) most = std::max(most, std::max(of_a, of_b) / std::min(of_a, of_b));
-    }
-    if (most > static_cast<Real>(LocalSolve<Real>::kUneven))
-        turns_of_shapes_ = static_cast<int>(
-            std::min(kTurnsOfRatio * static_cast<double>(most), static_cast<double>(kMostTurns)));
-}
-
-/// A path hands on the load of a heavy body along it whatever the masses; what a light body owes to the other
-/// paths through it takes a turn a body.
-template <class Real>
-void UnevenContacts<Real>::settle(const StepView<Real>& step, ContactSweeps<Real>& sweeps,
-                                  PathSolver<Real>& paths) {
-    const auto next = ContactSweeps<Real>::next(step, ContactSweeps<Real>::Blocks::all, 1);
-    const bool has_discs = step.graph.pairs.contacts() > 0;
-    const auto settled = static_cast<Real>(settled_ * step.terms.fall_speed());
-    Real first = 0;  // change [m/s]
-    bool is_last = false;
-    for (int turn = 1; !is_last; ++turn) {
-        Column<Real>& velocity = step.records.velocity;
-        before_.resize_for_overwrite(velocity.size());
-        std::copy(velocity.begin(), velocity.end(), before_.begin());
-        paths.solve(step.terms, step.records, step.loops, 0, true);
-        if (has_discs) sweeps.run(step, next);
-        Real change = 0;
-        for (std::size_t i = 0; i < velocity.size(); ++i)
-            change = std::max(change, std::abs(velocity[i] - before_[i]));
-        if (!(change > settled)) return;
-        if (turn == 1) first = change;
-        is_last = turn == turns_of_shapes_ || (turn == kFewTurns && change > first);
-        paths.solve(step.terms, step.records, step.loops, 1, false);
-    }
 }
 
 template <class Real>

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <algorithm>
 #include <vector>
 
-#include "solvers/paths/path_solver.hpp"
 #include "solvers/shared/contact_relaxation.hpp"
 #include "solvers/shared/local_solve.hpp"
 #include "solvers/soft/contacts/contact_sweeps.hpp"
@@ -17,8 +15,6 @@ namespace carom {
 ///
 /// Few contacts around light bodies are solved for their impulses (solvers/shared/local_solve.hpp). Many are
 /// swept again where masses differ by up to a hundred times: docs/decisions/0064-uneven-masses-in-sweeps.md.
-/// Contacts of shapes are solved by turns with all others until little is left; so they are in the step after
-/// a heavy shape was removed, whose weight they still carry (docs/decisions/0067-weights-taken-off-heaps.md).
 /// Where masses differ by more and the impulses are still off, since heavy and light bodies are mixed in a
 /// pile, all contacts of the world are relaxed for the velocities of bodies
 /// (solvers/shared/contact_relaxation.hpp) from then on, until the sweeps alone have left little for a while.
@@ -35,31 +31,19 @@ class UnevenContacts {
     /// To be called when the contacts of a step are found.
     /// @param are_mixed  whether bodies that differ by more than a hundred times are mixed
     void begin_step(const StepView<Real>& step, const WorldState<Real>& world, bool are_mixed);
-    /// To be called when the contacts of shapes of a step are found. Cost: O(contacts of shapes) where masses
-    /// are uneven.
-    void begin_shapes(const WorldState<Real>& world, const PathSolver<Real>& paths,
-                      const BodyMasses<Real>& masses);
-    /// Tells that a body was removed or put elsewhere between steps. @param mass  kg
-    void note_lost(double mass) { heaviest_lost_ = std::max(heaviest_lost_, mass); }
-    /// Whether contacts of shapes are solved by turns in this step.
-    bool takes_turns() const { return turns_of_shapes_ > 0; }
-    /// Solves contacts of shapes and of discs by turns after all of them were solved in a substep, until a
-    /// sweep over them changes little: nothing where no two shapes of uneven masses touch and no heavy one
-    /// has gone. Cost: O(contacts), at most `kMostTurns` times that of a substep.
-    void settle(const StepView<Real>& step, ContactSweeps<Real>& sweeps, PathSolver<Real>& paths);
     /// After the sweeps of a substep. Cost: O(contacts), times a few dozen while piles of uneven masses move.
     /// @param is_last  in the last substep contacts at rest are swept again as well
     void solve(const StepView<Real>& step, ContactSweeps<Real>& sweeps, bool is_last);
 
     std::size_t bytes() const {
         return local_.bytes() + blocks_.capacity() + runs_.bytes() + smooth_.bytes() + rough_.bytes() +
-               contacts_.capacity() * sizeof(LocalContact) + before_.bytes() +
+               contacts_.capacity() * sizeof(LocalContact) +
                (number_of_.capacity() + rows_.capacity()) * sizeof(std::int32_t);
     }
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.steps_left_, self.heaviest_lost_);
+        archive(self.steps_left_);
     }
 
   private:
@@ -79,10 +63,6 @@ class UnevenContacts {
     PairRuns<Real> runs_;               // of these blocks, as far as they can touch in this step
     ContactRelaxation<2> smooth_;
     ContactRelaxation<3> rough_;
-    int turns_of_shapes_ = 0;             // in a substep, at most
-    double heaviest_lost_ = 0;            // kg, of what went where it was since the step before
-    double settled_ = 0;                  // turns end at this change, in what gravity adds in a substep
-    Column<Real> before_;                 // velocity records before a sweep
     bool may_relax_ = false;              // in this step
     bool is_listed_ = false;              // likewise
     int steps_left_ = 0;                  // for which all contacts are looked at

@@ -1,5 +1,6 @@
 #include "solvers/soft/impacts/shape_impacts.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -135,12 +136,13 @@ PointImpulses solve_free(const StruckBody<Real>& a, const StruckBody<Real>& b, V
 
 /// The impact of shapes of which joints hold one at least: held_impacts.hpp.
 /// @param meets  which of the two points
+/// @param note_changed  as of `carry_out_one`
 /// @return whether there was one
-template <class Real>
+template <class Real, class Fn>
 bool strike_held(HeldImpacts<Real>& held, const StruckBody<Real>& a, const StruckBody<Real>& b, Vec2 n,
                  Vec2 t, const Levers& lever_a, const Levers& lever_b, const std::array<bool, 2>& meets,
                  const typename HeldImpacts<Real>::Materials& materials, const SubstepTerms& terms,
-                 BodyRecords<Real>& records, Books& books, PointImpulses& found) {
+                 BodyRecords<Real>& records, Books& books, PointImpulses& found, const Fn& note_changed) {
     using Law = typename HeldImpacts<Real>::Law;
     std::array<typename HeldImpacts<Real>::Direction, 3> directions;
     std::array<std::size_t, 3> point{};  // of each direction
@@ -170,6 +172,7 @@ bool strike_held(HeldImpacts<Real>& held, const StruckBody<Real>& a, const Struc
         const double inverse_mass = std::fabs(records.velocity[4 * static_cast<std::size_t>(row) + 3]);
         books.joints -= dot(Vec2{by[0], by[1]}, half_kick_of(held, row, terms)) / inverse_mass;
         records.add_velocity(row, {by[0], by[1]}, by[2], terms);
+        note_changed(row);
     });
     return true;
 }
@@ -335,9 +338,11 @@ double give(const Meeting<Real>& met, const StruckBody<Real>& body, Vec2 dv, dou
     return share / body.w * dot(terms.gravity_change, dv);
 }
 
-template <class Real>
-Outcome carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, const Bodies<Real>& bodies,
-                  BodyRecords<Real>& records, HeldImpacts<Real>& held, Books& books, double& gravity_work) {
+/// @param note_changed  note_changed(row) is called for each body whose velocity changes
+template <class Real, class Fn>
+Outcome carry_out_one(const PathContact<Real>& contact, const SubstepTerms& terms, const Bodies<Real>& bodies,
+                      BodyRecords<Real>& records, HeldImpacts<Real>& held, Books& books, double& gravity_work,
+                      const Fn& note_changed) {
     Meeting<Real> met(contact, terms, bodies, records, held);
     if (const Outcome outcome = met.look(); outcome != Outcome::met) return outcome;
     const bool are_held = held.holds(contact.near) || held.holds(contact.far);
@@ -346,8 +351,9 @@ Outcome carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, c
     const StruckBody<Real>&a = met.a, &b = met.b;
     const auto friction = static_cast<double>(contact.link.friction[contact.lane]);
     PointImpulses found;
-    if (!are_held || !strike_held(held, a, b, met.n, met.t, met.lever_a, met.lever_b, met.meets,
-                                  {contact.restitution, friction, 0}, terms, records, books, found))
+    if (!are_held ||
+        !strike_held(held, a, b, met.n, met.t, met.lever_a, met.lever_b, met.meets,
+                     {contact.restitution, friction, 0}, terms, records, books, found, note_changed))
         found = met.strike();
     const std::array<double, 2>& x = found.x;
     const double sum = x[0] + x[1], y = found.y;
@@ -356,6 +362,7 @@ Outcome carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, c
         gravity_work -= give(met, a, -a.w * impulse, met.change_of_rim(a, -1, met.lever_a, found), records);
     if (!found.is_given && b.w > 0)
         gravity_work -= give(met, b, b.w * impulse, met.change_of_rim(b, 1, met.lever_b, found), records);
+    note_changed(contact.near), note_changed(contact.far);
     if (contact.partner.is_wall()) books.wall_impulse += sum;
     if (!books.is_open) return Outcome::met;
     books.restitution += found.by_normal, books.friction += found.by_friction;
@@ -373,39 +380,57 @@ Outcome carry_out(const PathContact<Real>& contact, const SubstepTerms& terms, c
 
 }  // namespace
 
+/// An impact changes what its bodies, and what joints hold them with, meet from then on: other contacts are
+/// not looked at again.
 template <class Real>
-std::int64_t carry_out_impacts(PathSolver<Real>& paths, const SubstepTerms& terms, const Bodies<Real>& bodies,
-                               BodyRecords<Real>& records, HeldImpacts<Real>& held, Books& books,
-                               double& gravity_work, std::vector<std::int32_t>& deflected) {
+std::int64_t ShapeImpacts<Real>::carry_out(PathSolver<Real>& paths, const SubstepTerms& terms,
+                                           const Bodies<Real>& bodies, BodyRecords<Real>& records,
+                                           HeldImpacts<Real>& held, Books& books, double& gravity_work) {
+    deflected_.clear(), bouncing_.clear();
+    std::size_t number = 0;
+    paths.for_each([&](const PathContact<Real>& contact) {
+        if (contact.restitution > 0) bouncing_.push_back({number, contact.near, contact.far});
+        ++number;
+    });
+    paths.unhide();
+    changed_.assign(records.rows(), 0);
+    std::uint32_t look = 0;
+    const auto note_changed = [&](std::int32_t row) { changed_[static_cast<std::size_t>(row)] = look; };
     std::int64_t impacts = 0;
-    deflected.clear();
     bool goes_on = true;
+    const auto look_at = [&](Bouncing& bouncing, const PathContact<Real>& contact) {
+        bouncing.looked = ++look, bouncing.comes = false;
+        if (is_slow(contact, terms, records)) return;
+        const Outcome outcome =
+            carry_out_one(contact, terms, bodies, records, held, books, gravity_work, note_changed);
+        bouncing.comes = outcome == Outcome::comes;
+        if (outcome != Outcome::met) return;
+        ++impacts, goes_on = true;
+        for (const std::int32_t row : {contact.near, contact.far})
+            if (static_cast<std::size_t>(row) < bodies.moving() &&
+                bodies.is_disc(static_cast<std::size_t>(row)))
+                deflected_.push_back(row);
+    };
     for (int round = 0; round < kRounds && goes_on; ++round) {
         goes_on = false;
-        paths.unhide();
-        paths.for_each([&](const PathContact<Real>& contact) {
-            if (!(contact.restitution > 0)) return;
-            if (is_slow(contact, terms, records)) return;
-            const Outcome outcome = carry_out(contact, terms, bodies, records, held, books, gravity_work);
-            if (outcome == Outcome::comes) paths.hide(contact);
-            if (outcome != Outcome::met) return;
-            ++impacts, goes_on = true;
-            for (const std::int32_t row : {contact.near, contact.far})
-                if (static_cast<std::size_t>(row) < bodies.moving() &&
-                    bodies.is_disc(static_cast<std::size_t>(row)))
-                    deflected.push_back(row);
-        });
+        for (Bouncing& bouncing : bouncing_) {
+            const std::uint32_t changed = std::max(changed_[static_cast<std::size_t>(bouncing.near)],
+                                                   changed_[static_cast<std::size_t>(bouncing.far)]);
+            if (changed >= bouncing.looked)
+                paths.for_each_of(bouncing.number, bouncing.number + 1,
+                                  [&](const PathContact<Real>& contact) { look_at(bouncing, contact); });
+        }
     }
-    if (goes_on) paths.unhide();  // what was seen in the last round no longer holds
+    if (!goes_on)  // else what was seen in the last round no longer holds
+        for (const Bouncing& bouncing : bouncing_)
+            if (bouncing.comes)
+                paths.for_each_of(bouncing.number, bouncing.number + 1,
+                                  [&](const PathContact<Real>& contact) { paths.hide(contact); });
     records.put_off_delays();
     return impacts;
 }
 
-template std::int64_t carry_out_impacts(PathSolver<float>&, const SubstepTerms&, const Bodies<float>&,
-                                        BodyRecords<float>&, HeldImpacts<float>&, Books&, double&,
-                                        std::vector<std::int32_t>&);
-template std::int64_t carry_out_impacts(PathSolver<double>&, const SubstepTerms&, const Bodies<double>&,
-                                        BodyRecords<double>&, HeldImpacts<double>&, Books&, double&,
-                                        std::vector<std::int32_t>&);
+template class ShapeImpacts<float>;
+template class ShapeImpacts<double>;
 
 }  // namespace carom

@@ -22,14 +22,40 @@ namespace carom {
 /// comes fast but would not yet meet is hidden from the paths: a push out of an overlap may take it to its
 /// partner in this substep, where it would be stopped.
 ///
-/// Cost: about 5 ns a contact that bounces and substep, and 100 ns an impact.
-/// @param held  impacts of bodies that joints hold
-/// @param gravity_work  J, gravity's work on velocities, to be booked
-/// @param deflected  out: rows of discs that an impact deflected; some may be named twice
-/// @return impacts
+/// Cost: about 5 ns a contact that bounces and substep, 100 ns an impact, and as much a contact of what it
+/// struck.
 template <class Real>
-std::int64_t carry_out_impacts(PathSolver<Real>& paths, const SubstepTerms& terms, const Bodies<Real>& bodies,
-                               BodyRecords<Real>& records, HeldImpacts<Real>& held, Books& books,
-                               double& gravity_work, std::vector<std::int32_t>& deflected);
+class ShapeImpacts {
+  public:
+    /// @param held  impacts of bodies that joints hold
+    /// @param gravity_work  J, gravity's work on velocities, to be booked
+    /// @return impacts
+    std::int64_t carry_out(PathSolver<Real>& paths, const SubstepTerms& terms, const Bodies<Real>& bodies,
+                           BodyRecords<Real>& records, HeldImpacts<Real>& held, Books& books,
+                           double& gravity_work);
+    /// Rows of discs that an impact deflected in this substep; some may be named twice.
+    const std::vector<std::int32_t>& deflected() const { return deflected_; }
+
+    std::size_t bytes() const {
+        return bouncing_.capacity() * sizeof(Bouncing) + changed_.capacity() * sizeof(std::uint32_t) +
+               deflected_.capacity() * sizeof(std::int32_t);
+    }
+
+  private:
+    /// A contact that has restitution.
+    struct Bouncing {
+        std::size_t number;        // among all contacts of the step
+        std::int32_t near, far;    // rows in the records
+        std::uint32_t looked = 0;  // number of the look at it, among all of the substep
+        bool comes = false;        // as that look found: fast, but not near enough yet
+    };
+
+    std::vector<Bouncing> bouncing_;
+    std::vector<std::uint32_t> changed_;  // by row: number of the look that changed its velocity last
+    std::vector<std::int32_t> deflected_;
+};
+
+extern template class ShapeImpacts<float>;
+extern template class ShapeImpacts<double>;
 
 }  // namespace carom

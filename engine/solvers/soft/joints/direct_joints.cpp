@@ -178,10 +178,14 @@ void DirectJoints<Real>::write_velocities(const JointStep<Real>& step) {
         if (!(body.inverse_mass > 0)) continue;
         Real* record = &step.records.velocity[4 * static_cast<std::size_t>(rows_[i])];
         record[0] = static_cast<Real>(body.velocity.x), record[1] = static_cast<Real>(body.velocity.y);
-        given_[i].velocity += Vec2{record[0], record[1]} - before_[i].velocity;
+        const Vec2 change = Vec2{record[0], record[1]} - before_[i].velocity;
+        given_[i].velocity += change;
+        largest_change_ = std::fmax(largest_change_, std::fmax(std::fabs(change.x), std::fabs(change.y)));
         if (!(body.inverse_inertia > 0)) continue;
         record[2] = static_cast<Real>(rim_[i] * body.spin);
-        given_[i].spin += static_cast<double>(record[2]) / rim_[i] - before_[i].spin;
+        const double turn = static_cast<double>(record[2]) / rim_[i] - before_[i].spin;
+        given_[i].spin += turn;
+        largest_change_ = std::fmax(largest_change_, rim_[i] * std::fabs(turn));
     }
 }
 
@@ -236,6 +240,7 @@ template <class Real>
 void DirectJoints<Real>::solve_again(const JointStep<Real>& step) {
     read_velocities(step);
     system_.solve_curved(1);
+    largest_change_ = 0;
     write_velocities(step);
 }
 

@@ -42,6 +42,8 @@ class DirectJoints {
     void solve_first(const JointStep<Real>& step, int substep);
     /// What contacts have changed since.
     void solve_again(const JointStep<Real>& step);
+    /// By which that changed the velocity of a centre or a rim, at most [m/s].
+    double largest_change() const { return largest_change_; }
     bool touches() const { return touches_; }
     /// At the end of a step: nothing that it could touch presses on it.
     void leave() { touches_ = false; }
@@ -136,7 +138,8 @@ class DirectJoints {
     std::vector<std::int32_t> rows_;  // by body of the system; -1: the world
     std::vector<double> rim_;         // m, likewise
     std::int32_t moving_row_ = 0;
-    std::vector<Change> given_;                        // by body: what its joints gave it in this substep
+    std::vector<Change> given_;  // by body: what its joints gave it in this substep
+    double largest_change_ = 0;
     std::vector<SystemBody> before_;                   // that were read
     std::vector<std::array<double, 3>> last_impulse_;  // N s, by joint: of the last substep of a step
     std::vector<JointSystem::Blow> blows_;

@@ -243,7 +243,7 @@ void SoftJoints<Real>::forget_blows(const JointStep<Real>& step, const StepView<
 }
 
 template <class Real>
-void SoftJoints<Real>::solve_again(const JointStep<Real>& step, const StepLoops<Real>& loops) {
+double SoftJoints<Real>::solve_again(const JointStep<Real>& step, const StepLoops<Real>& loops) {
     using Begin = typename SweptJoints<Real>::Begin;
     if (!swept_.empty()) swept_.sweep(step, loops, Begin::nothing);
     std::size_t joints = 0;
@@ -253,6 +253,11 @@ void SoftJoints<Real>::solve_again(const JointStep<Real>& step, const StepLoops<
                                       if (direct_[i].touches()) direct_[i].solve_again(step);
                                   });
     for (std::size_t i = first_beside_; i < direct_.size(); ++i) direct_[i].solve_again(step);
+    if (!swept_.empty()) return std::numeric_limits<double>::infinity();
+    double largest = 0;
+    for (const DirectJoints<Real>& group : direct_)
+        if (group.touches()) largest = std::fmax(largest, group.largest_change());
+    return largest;
 }
 
 template <class Real>

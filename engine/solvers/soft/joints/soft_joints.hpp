@@ -38,7 +38,9 @@ class SoftJoints {
     /// Takes back what contacts foresaw where that gives a group energy, after `solve`.
     void forget_blows(const JointStep<Real>& step, const StepView<Real>& contacts, PathSolver<Real>& paths);
     /// Once more, after contacts have changed velocities.
-    void solve_again(const JointStep<Real>& step, const StepLoops<Real>& loops);
+    /// @return by how much that changed the velocity of a centre or a rim, at most [m/s]; infinity where
+    /// joints are swept
+    double solve_again(const JointStep<Real>& step, const StepLoops<Real>& loops);
     /// Groups that are solved exactly, and the number of a body's group among them; -1: it is in none.
     std::size_t exact_groups() const { return first_beside_; }
     std::int32_t exact_group_of(std::int32_t row) const {

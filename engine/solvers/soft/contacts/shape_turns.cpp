@@ -1,0 +1,135 @@
+#include "solvers/soft/contacts/shape_turns.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "constraints/partner.hpp"
+#include "math/vec2_math.hpp"
+#include "solvers/shared/local_solve.hpp"
+
+namespace carom {
+namespace {
+
+/// Turns over contacts of shapes in a substep, at most: a share of the largest ratio of masses of two that
+/// touch, and whatever that is. The same decision has what fewer leave.
+constexpr double kTurnsOfRatio = 0.05;
+constexpr int kMostTurns = 31;
+/// They end when a sweep changes no velocity by more than this share of what gravity adds in a substep, and
+/// after a few where the change has not become less.
+constexpr double kSettled = 0.2;
+constexpr int kFewTurns = 7;
+/// They end after fewer where it changes one by more than so many times that: a few heavy bodies that strike
+/// light ones, and do not lie on them. In heaps of heavy and light ones, where one body in so many is a heavy
+/// one that touches light ones, they do not: their light bodies would be swallowed. Without gravity nothing
+/// lies on anything. docs/decisions/0079-struck-bodies.md has what more would do.
+constexpr double kStruck = 2;
+constexpr int kTurnsOfStruck = 3;
+constexpr std::size_t kMixed = 64;
+/// Light bodies that change the velocity of each heavy one by less than this share of what gravity adds in a
+/// substep are no load to it: it is to them as what nothing moves.
+constexpr double kLoaded = 0.1;
+/// Where a body has gone that was heavier than so many others in the mean, the first step without it takes
+/// turns, too, and until less is left: docs/decisions/0067-weights-taken-off-heaps.md.
+constexpr double kHeavyLost = 10;
+constexpr double kSettledOfLost = 0.05;
+
+std::size_t index(std::int32_t row) {
+    return static_cast<std::size_t>(row);
+}
+
+}  // namespace
+
+template <class Real>
+void ShapeTurns<Real>::begin_step(const WorldState<Real>& world, const PathSolver<Real>& paths,
+                                  const BodyMasses<Real>& masses) {
+    const double lost = std::exchange(heaviest_lost_, 0);
+    most_ = 0, settled_ = kSettled, most_of_struck_ = kTurnsOfStruck;
+    uneven_.clear();
+    // A single path is solved exactly: sweeps would only add their round-off, in units of the heaviest body.
+    if (paths.is_single_path()) return;
+    if (lost * static_cast<double>(world.bodies.moving()) > kHeavyLost * world.dynamic_mass) {
+        most_ = most_of_struck_ = kMostTurns, settled_ = kSettledOfLost;
+        return;
+    }
+    if (!masses.are_uneven()) return;
+    const Manifolds<Real>& manifolds = paths.manifolds;
+    const Column<Real>& inverse = masses.inverse_column();
+    Real most = 1;  // ratio of masses of two that touch
+    const std::span<const std::int32_t> live = manifolds.live();
+    for (std::size_t n = 0; n < live.size() && live[n] >= 0; ++n) {  // what nothing moves comes last
+        const ManifoldList<Real>& list = manifolds.list_of(live[n]);
+        const std::size_t i = Manifolds<Real>::place_of(live[n]);
+        const Partner partner(list.b[i]);
+        if (!partner.is_body()) continue;
+        const Real of_a = std::fabs(inverse[index(list.a[i])]),
+                   of_b = std::fabs(inverse[index(partner.row())]);
+        if (!(of_a > 0 && of_b > 0)) continue;
+        const Real ratio = std::max(of_a, of_b) / std::min(of_a, of_b);
+        if (!(ratio > static_cast<Real>(LocalSolve<Real>::kUneven))) continue;
+        most = std::max(most, ratio);
+        uneven_.push_back({n, of_a < of_b ? list.a[i] : partner.row()});
+    }
+    if (uneven_.empty()) return;
+    most_ = static_cast<int>(
+        std::min(kTurnsOfRatio * static_cast<double>(most), static_cast<double>(kMostTurns)));
+    const bool are_mixed = kMixed * count_heavy(world.bodies.count) >= world.bodies.moving();
+    most_of_struck_ = are_mixed && length_squared(world.gravity) > 0 ? most_ : kTurnsOfStruck;
+}
+
+/// @return how many heavy bodies touch light ones
+template <class Real>
+std::size_t ShapeTurns<Real>::count_heavy(std::size_t rows) {
+    if (load_.size() < rows) load_.resize(rows);
+    for (const Uneven& contact : uneven_) load_[index(contact.heavy)] = 1;
+    std::size_t count = 0;
+    for (const Uneven& contact : uneven_) count += std::exchange(load_[index(contact.heavy)], Real(0)) > 0;
+    return count;
+}
+
+/// Whether light bodies give a heavy one what changes its velocity.
+template <class Real>
+bool ShapeTurns<Real>::is_any_loaded(const StepView<Real>& step, const PathSolver<Real>& paths) {
+    const Column<Real>& velocity = step.records.velocity;
+    const auto light = static_cast<Real>(kLoaded * step.terms.fall_speed());
+    for (const Uneven& contact : uneven_) load_[index(contact.heavy)] = 0;
+    bool is_loaded = false;
+    for (const Uneven& contact : uneven_)
+        paths.for_each_of(contact.number, contact.number + 1, [&](const PathContact<Real>& c) {
+            Real& load = load_[index(contact.heavy)];
+            load += c.link.normal1[c.lane] + c.link.normal2[c.lane];
+            is_loaded = is_loaded || load * std::fabs(velocity[4 * index(contact.heavy) + 3]) > light;
+        });
+    return is_loaded;
+}
+
+template <class Real>
+void ShapeTurns<Real>::settle(const StepView<Real>& step, ContactSweeps<Real>& sweeps,
+                              PathSolver<Real>& paths) {
+    if (most_ == 0 || (!uneven_.empty() && !is_any_loaded(step, paths))) return;
+    const auto next = ContactSweeps<Real>::next(step, ContactSweeps<Real>::Blocks::all, 1);
+    const bool has_discs = step.graph.pairs.contacts() > 0;
+    const auto settled = static_cast<Real>(settled_ * step.terms.fall_speed());
+    const auto struck = static_cast<Real>(kStruck * step.terms.fall_speed());
+    Real first = 0;  // change [m/s]
+    bool is_last = false;
+    for (int turn = 1; !is_last; ++turn) {
+        Column<Real>& velocity = step.records.velocity;
+        before_.resize_for_overwrite(velocity.size());
+        std::copy(velocity.begin(), velocity.end(), before_.begin());
+        paths.solve(step.terms, step.records, step.loops, 0, true);
+        if (has_discs) sweeps.run(step, next);
+        Real change = 0;
+        for (std::size_t i = 0; i < velocity.size(); ++i)
+            change = std::max(change, std::abs(velocity[i] - before_[i]));
+        if (!(change > settled)) return;
+        if (turn == 1) first = change;
+        is_last = turn == most_ || (turn == most_of_struck_ && change > struck) ||
+                  (turn == kFewTurns && change > first);
+        paths.solve(step.terms, step.records, step.loops, 1, false);
+    }
+}
+
+template class ShapeTurns<float>;
+template class ShapeTurns<double>;
+
+}  // namespace carom
