@@ -1,6 +1,7 @@
 #include <box2d/box2d.h>
 
 #include <cmath>
+#include <type_traits>
 #include <variant>
 
 #include "measure/text.hpp"
@@ -93,8 +94,13 @@ class Box2d3Peer : public Peer {
         const b2BodyId body = b2CreateBody(world_, &definition);
         b2ShapeDef shape = shape_of(description.material);
         shape.filter.groupIndex = description.group;
-        shape.density = static_cast<float>(density_of(description));
-        add_shape(body, shape, description.shape);
+        if (const auto* compound = std::get_if<Compound>(&description.shape))
+            add_pieces(body, shape, recentred(*compound, description.material));
+        else if (const auto* chain = std::get_if<Chain>(&description.shape))
+            add_chain(body, description.material, *chain);
+        else
+            shape.density = static_cast<float>(density_of(description)),
+            add_shape(body, shape, description.shape);
         if (description.fixed_rotation) {  // every 3.x has this; how a rotation is locked changed in 3.2
             b2MassData mass = b2Body_GetMassData(body);
             mass.rotationalInertia = 0;
@@ -102,10 +108,56 @@ class Box2d3Peer : public Peer {
         }
         bodies_.push_back(body);
     }
-    /// Rods and hinges of two bodies, the anchors of rods at the centres.
+    /// Its pieces may have their own materials, but are as dense as the body is.
+    static void add_pieces(b2BodyId body, const b2ShapeDef& definition, const Compound& compound) {
+        for (const Piece& piece : compound.pieces)
+            std::visit(
+                [&](const auto& shape) {
+                    if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, Disc>) {
+                        const b2Circle circle{as_b2(piece.position), static_cast<float>(shape.radius)};
+                        b2CreateCircleShape(body, &definition, &circle);
+                    } else if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, Capsule>) {
+                        const Vec2 half{0.5 * shape.length * std::cos(piece.angle),
+                                        0.5 * shape.length * std::sin(piece.angle)};
+                        const b2Capsule capsule{as_b2({piece.position.x - half.x, piece.position.y - half.y}),
+                                                as_b2({piece.position.x + half.x, piece.position.y + half.y}),
+                                                static_cast<float>(shape.radius)};
+                        b2CreateCapsuleShape(body, &definition, &capsule);
+                    } else {
+                        const b2Transform place{as_b2(piece.position),
+                                                b2MakeRot(static_cast<float>(piece.angle))};
+                        const b2Polygon own = polygon_of(Shape{shape});
+                        const b2Polygon polygon = b2TransformPolygon(place, &own);
+                        b2CreatePolygonShape(body, &definition, &polygon);
+                    }
+                },
+                piece.shape);
+    }
+    static void add_chain(b2BodyId body, const Material& material, const Chain& chain) {
+        std::vector<b2Vec2> points;
+        for (const Vec2 point : chain.points) points.push_back(as_b2(point));
+        b2SurfaceMaterial surface = b2DefaultSurfaceMaterial();
+        surface.friction = static_cast<float>(material.friction);
+        surface.restitution = static_cast<float>(material.restitution);
+        b2ChainDef definition = b2DefaultChainDef();
+        definition.points = points.data(), definition.count = static_cast<int>(points.size());
+        definition.isLoop = chain.loop;
+        definition.materials = &surface, definition.materialCount = 1;
+        b2CreateChain(body, &definition);
+    }
+    b2BodyId world_body() {
+        if (!b2Body_IsValid(ground_)) {
+            const b2BodyDef ground = b2DefaultBodyDef();
+            ground_ = b2CreateBody(world_, &ground);
+        }
+        return ground_;
+    }
+    /// Rods of two bodies, their anchors at the centres, and hinges.
     void add_joint(const Joint& joint, const Scene& scene) {
-        const b2BodyId a = bodies_.at(joint.a->index), b = bodies_.at(joint.b->index);
-        const Vec2 from = scene.bodies[joint.a->index].position, to = scene.bodies[joint.b->index].position;
+        const b2BodyId a = joint.a ? bodies_.at(joint.a->index) : world_body(),
+                       b = bodies_.at(joint.b->index);
+        const Vec2 from = joint.a ? scene.bodies[joint.a->index].position : Vec2{},
+                   to = scene.bodies[joint.b->index].position;
         if (std::holds_alternative<DistanceJoint>(joint.kind)) {
             b2DistanceJointDef rod = b2DefaultDistanceJointDef();
             rod.bodyIdA = a, rod.bodyIdB = b;
@@ -124,6 +176,9 @@ class Box2d3Peer : public Peer {
         same.enableLimit = hinge.lower && hinge.upper;
         same.lowerAngle = static_cast<float>(hinge.lower.value_or(0));
         same.upperAngle = static_cast<float>(hinge.upper.value_or(0));
+        same.enableMotor = hinge.motor_speed.has_value();
+        same.motorSpeed = static_cast<float>(hinge.motor_speed.value_or(0));
+        same.maxMotorTorque = static_cast<float>(hinge.max_motor_torque);
         same.collideConnected = joint.collide;
         b2CreateRevoluteJoint(world_, &same);
     }
@@ -183,7 +238,7 @@ class Box2d3Peer : public Peer {
     bool keeps_counts_;
     PeerCounts counts_;
     std::vector<b2ContactData> contacts_;
-    b2BodyId walls_{};
+    b2BodyId walls_{}, ground_{};
     b2WorldId world_{};
     std::vector<b2BodyId> bodies_;
 };

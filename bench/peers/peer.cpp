@@ -121,16 +121,21 @@ void require_dynamic_discs(const Scene& scene) {
 }
 
 void require_solids_and_plain_joints(const Scene& scene) {
-    for (const Body& body : scene.bodies)
-        if (body.type == BodyType::kinematic_body || mass_properties_of(body.shape).area == 0)
-            throw Error(ErrorCode::not_built_yet, "the adapter of this engine makes solids, moving or still");
+    for (const Body& body : scene.bodies) {
+        const bool is_chain = std::holds_alternative<Chain>(body.shape) && body.type == BodyType::static_body;
+        if (body.type == BodyType::kinematic_body || (mass_properties_of(body.shape).area == 0 && !is_chain))
+            throw Error(
+                ErrorCode::not_built_yet,
+                "the adapter of this engine makes solids, moving or still, and chains that stand still");
+    }
     for (const Joint& joint : scene.joints) {
         const auto* rod = std::get_if<DistanceJoint>(&joint.kind);
         const auto* hinge = std::get_if<RevoluteJoint>(&joint.kind);
-        if (!joint.a || !joint.b || !(rod || hinge) ||
-            (rod && (rod->length || rod->min || rod->max || rod->frequency > 0)))
+        const bool is_plain_rod =
+            rod && joint.a && joint.b && !rod->length && !rod->min && !rod->max && !(rod->frequency > 0);
+        if (!is_plain_rod && !(hinge && joint.b))
             throw Error(ErrorCode::not_built_yet,
-                        "the adapter of this engine makes rigid rods and hinges of two bodies");
+                        "the adapter of this engine makes rigid rods of two bodies and hinges");
     }
 }
 

@@ -95,8 +95,8 @@ bool is_disc(const Body& body);
 /// @throws carom::Error if there is a body that is no disc, or that its own rules move, or a joint
 void require_dynamic_discs(const Scene& scene);
 
-/// @throws carom::Error if there is a body without area, or a joint that is no rod between centres of two
-/// bodies and no hinge of two bodies
+/// @throws carom::Error if there is a body without area that is no static chain, or a joint that is no rod
+/// between centres of two bodies and no hinge of two bodies or of one on the world
 void require_solids_and_plain_joints(const Scene& scene);
 
 }  // namespace carom::bench

@@ -125,6 +125,8 @@ const bool kAdded = [] {
         add_scene(scene, true, &sizes_of<10'000>);
     add_scene("smash", true, &sizes_of<5'001>);
     for (const char* scene : {"planks", "planks-start"}) add_scene(scene, true, &sizes_of<1'000>);
+    add_scene("driven-drum", true, &sizes_of<2'026>);
+    add_scene("spinner", true, &sizes_of<3'040>);
     return true;
 }();
 

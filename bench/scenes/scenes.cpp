@@ -8,6 +8,7 @@
 
 #include "measure/gas.hpp"
 #include "measure/text.hpp"
+#include "scenes/driven_scenes.hpp"
 #include "scenes/joint_scenes.hpp"
 #include "scenes/shape_scenes.hpp"
 
@@ -102,10 +103,24 @@ BenchScene tumbler(std::int64_t bodies) {
 }  // namespace
 
 const std::vector<std::string>& scene_names() {
-    static const std::vector<std::string> names{
-        "gas",      "rough-gas",      "pile",       "packed",           "tumbler", "pyramid", "pyramid-start",
-        "box-pile", "box-pile-start", "mixed-pile", "mixed-pile-start", "smash",   "planks",  "planks-start",
-        "net",      "ragdolls"};
+    static const std::vector<std::string> names{"gas",
+                                                "rough-gas",
+                                                "pile",
+                                                "packed",
+                                                "tumbler",
+                                                "pyramid",
+                                                "pyramid-start",
+                                                "box-pile",
+                                                "box-pile-start",
+                                                "mixed-pile",
+                                                "mixed-pile-start",
+                                                "smash",
+                                                "planks",
+                                                "planks-start",
+                                                "driven-drum",
+                                                "spinner",
+                                                "net",
+                                                "ragdolls"};
     return names;
 }
 
@@ -127,6 +142,8 @@ BenchScene make_scene(const std::string& name, std::int64_t bodies) {
     if (name == "smash") return smash(bodies);
     if (name == "planks") return planks(bodies);
     if (name == "planks-start") return start_of(planks(bodies), kStartOfPile);
+    if (name == "driven-drum") return driven_drum(bodies);
+    if (name == "spinner") return spinner(bodies);
     if (name == "net") return net(bodies);
     if (name == "ragdolls") return ragdolls(bodies);
     throw std::invalid_argument(measure::joined("no benchmark scene is called ", name));

@@ -27,8 +27,8 @@ struct BenchScene {
 };
 
 /// The kinds there are: "gas", "rough-gas", "pile", "packed", "tumbler" of discs; "pyramid", "box-pile",
-/// "mixed-pile", "smash", "planks" of other shapes, all but "smash" with "-start", too; "net" and "ragdolls"
-/// of joints.
+/// "mixed-pile", "smash", "planks" of other shapes, all but "smash" with "-start", too; "driven-drum" and
+/// "spinner", which motors keep moving; "net" and "ragdolls" of joints.
 const std::vector<std::string>& scene_names();
 
 /// @param name    one of `scene_names`
