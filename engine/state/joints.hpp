@@ -118,7 +118,7 @@ class JointStore {
     /// O(joints and built-in pairs that body `a` or `b` has).
     bool excludes(BodyId a, BodyId b) const;
 
-    /// Pairs that do not touch before they have come apart (solvers/soft/joints/built_in_pairs.hpp).
+    /// Pairs that do not touch before they have come apart (solvers/joints/built_in_pairs.hpp).
     std::span<const BuiltInPair> built_in_pairs() const { return built_in_; }
     /// Slots of joints that were added since the last call; some may be removed by now.
     std::vector<std::uint32_t> take_added_slots() { return std::exchange(added_, {}); }

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/soft/joints/built_in_pairs.hpp"
+#include "solvers/joints/built_in_pairs.hpp"
 #include "solvers/soft/stages.hpp"
 #include "step/make_simulation.hpp"
 #include "step/stage.hpp"

@@ -26,6 +26,7 @@ LAYER_OF_FOLDER = {
     "sleeping": 7,
     "solvers/shared": 8,
     "solvers/substeps": 8.2,  # the bodies over the substeps of a step
+    "solvers/joints": 8.3,  # joints over those substeps: trees solved exactly, nets swept
     "solvers/manifolds": 8.3,  # contacts of convex shapes: what touches
     "solvers/paths": 8.4,  # their exact solve along paths
     "solvers/impulse": 8.5, "solvers/soft": 8.5, "solvers/event": 8.5,  # nothing of one is in another

@@ -35,7 +35,7 @@ inline constexpr double kStiffestAlone = 1;
 /// implicit row: alpha = w² h, gamma = w² h² + 2 z w h, which no stiffness makes explode.
 ///
 /// @param frequency  Hz  @param ratio  of the damping  @param h  s
-/// @param least_gamma  for springs that meet with others: solvers/soft/joints/spring_loads.hpp
+/// @param least_gamma  for springs that meet with others: solvers/joints/spring_loads.hpp
 /// docs/decisions/0026-joints.md has the measurements.
 inline SpringTerms spring_terms(double frequency, double ratio, double h, double least_gamma) {
     const double wh = kTwoPi * frequency * h;

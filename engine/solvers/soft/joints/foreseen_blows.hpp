@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "solvers/joints/joint_step.hpp"
 #include "solvers/paths/path_solver.hpp"
-#include "solvers/soft/joints/joint_step.hpp"
 #include "solvers/soft/step_view.hpp"
 
 namespace carom {

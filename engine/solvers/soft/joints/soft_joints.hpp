@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "constraints/contact_graph.hpp"
+#include "solvers/joints/direct_joints.hpp"
+#include "solvers/joints/swept_joints.hpp"
 #include "solvers/paths/path_solver.hpp"
-#include "solvers/soft/joints/direct_joints.hpp"
 #include "solvers/soft/joints/foreseen_blows.hpp"
-#include "solvers/soft/joints/swept_joints.hpp"
 #include "solvers/soft/step_view.hpp"
 
 namespace carom {

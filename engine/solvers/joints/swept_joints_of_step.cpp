@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "constraints/joints/spring_law.hpp"
-#include "solvers/soft/joints/swept_joints.hpp"
+#include "solvers/joints/swept_joints.hpp"
 
 // What swept joints are at the start of a step, and what they leave at its end.
 

@@ -1,4 +1,4 @@
-#include "solvers/soft/joints/swept_joints.hpp"
+#include "solvers/joints/swept_joints.hpp"
 
 #include <algorithm>
 #include <bit>

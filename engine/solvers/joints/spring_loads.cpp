@@ -1,11 +1,11 @@
-#include "solvers/soft/joints/spring_loads.hpp"
+#include "solvers/joints/spring_loads.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "constraints/joints/spring_law.hpp"
-#include "solvers/soft/joints/joint_step.hpp"
+#include "solvers/joints/joint_step.hpp"
 
 namespace carom {
 namespace {

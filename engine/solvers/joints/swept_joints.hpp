@@ -6,8 +6,8 @@
 #include "constraints/task_groups.hpp"
 #include "kernels/joints/joint_arguments.hpp"
 #include "parallel/phases.hpp"
-#include "solvers/soft/joints/joint_step.hpp"
-#include "solvers/soft/joints/joint_stiffness.hpp"
+#include "solvers/joints/joint_step.hpp"
+#include "solvers/joints/joint_stiffness.hpp"
 
 namespace carom {
 

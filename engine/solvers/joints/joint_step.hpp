@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solvers/soft/joints/spring_loads.hpp"
+#include "solvers/joints/spring_loads.hpp"
 #include "solvers/substeps/body_records.hpp"
 #include "solvers/substeps/step_terms.hpp"
 #include "state/world_state.hpp"

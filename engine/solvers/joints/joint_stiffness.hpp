@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "solvers/soft/joints/joint_step.hpp"
+#include "solvers/joints/joint_step.hpp"
 
 namespace carom {
 

@@ -1,4 +1,4 @@
-#include "solvers/soft/joints/built_in_pairs.hpp"
+#include "solvers/joints/built_in_pairs.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "constraints/joints/joint_system.hpp"
-#include "solvers/soft/joints/joint_step.hpp"
+#include "solvers/joints/joint_step.hpp"
 
 namespace carom {
 

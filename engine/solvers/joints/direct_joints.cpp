@@ -1,4 +1,4 @@
-#include "solvers/soft/joints/direct_joints.hpp"
+#include "solvers/joints/direct_joints.hpp"
 
 #include <algorithm>
 #include <cmath>
