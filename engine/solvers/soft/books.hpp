@@ -2,6 +2,9 @@
 
 #include <carom/ledger.hpp>
 
+#include <vector>
+
+#include "solvers/paths/path_books.hpp"
 #include "solvers/soft/step_view.hpp"
 #include "state/world_state.hpp"
 
@@ -22,6 +25,11 @@ class SubstepBooks {
     /// Books what the impulses of this substep and free flight did; only the walls' impulses if the ledger is
     /// closed.
     void book_substep(const StepView<Real>& step, const WorldState<Real>& world, Books& books);
+    /// Books the same of contacts of shapes.
+    void book_paths(const PathSolver<Real>& paths, const BodyRecords<Real>& records, Books& books,
+                    const Executor& executor) {
+        carom::book_paths(paths, records, books, parts_of_paths_, executor);
+    }
     /// Books what the displacements of this step did against gravity.
     /// @param rows  bodies that took part in it
     void book_displacements(std::size_t rows, const WorldState<Real>& world, const Column<Real>& motion,
@@ -29,6 +37,8 @@ class SubstepBooks {
 
   private:
     void book_free_flight(const StepView<Real>& step, const WorldState<Real>& world, Books& books);
+
+    std::vector<Books> parts_of_paths_;  // of some contacts each
 };
 
 extern template class SubstepBooks<float>;

@@ -4,7 +4,6 @@
 #include <array>
 #include <limits>
 #include <numeric>
-#include <utility>
 
 #include "effects/flight.hpp"
 
@@ -43,7 +42,7 @@ void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Colum
     settings_.iterations = iterations(world);
     const bool are_new =
         masses_.derive(world.bodies, settings_.effects.friction && !settings_.is_smooth_heap);
-    if (are_new && !std::exchange(follows_rows_, false)) pair_finder_.forget(), uneven_.clear();
+    if (are_new && !masses_.have_followed_rows()) finder_.pairs.forget(), corrections_.uneven.clear();
     loops_ = {&kernels, &settings_.kernels_of(kernels, masses_.some_are_fixed()), &executor, rows_per_task()};
     const FlightClock clock = flight_clock_at(h, world.drag.linear);
     terms_.dt = dt, terms_.substep_dt = h, terms_.elapsed = 0;
@@ -62,14 +61,15 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const EdgeCa
     motion.resize(4 * padded(records_.count() + ContactGraph<Real>::padding_rows(graph.groups)));
     settings_.set_lengths(terms_);
     warm_start_.begin_step(graph, terms_.substep_dt, terms_.dt);
-    const bool is_new = pair_finder_.find(view(), world.bodies, masses_, motion,
-                                          flies_together && !world.bodies.has_shapes && world.joints.empty());
-    if (is_new) uneven_.find(graph.pairs, masses_, records_.count());
-    support_finder_.find(view(), world, edges);
-    settings_.has_uneven_sweeps = uneven_.are_swept();
-    uneven_.begin_step(view(), world, masses_.are_mixed());
-    chains_.begin_step(view());
-    wedged_.begin_step(view(), world.bodies);
+    const bool is_new =
+        finder_.pairs.find(view(), world.bodies, masses_, motion,
+                           flies_together && !world.bodies.has_shapes && world.joints.empty());
+    if (is_new) corrections_.uneven.find(graph.pairs, masses_, records_.count());
+    finder_.supports.find(view(), world, edges);
+    settings_.has_uneven_sweeps = corrections_.uneven.are_swept();
+    corrections_.uneven.begin_step(view(), world, masses_.are_mixed());
+    corrections_.chains.begin_step(view());
+    corrections_.wedged.begin_step(view(), world.bodies);
     counters.contacts = static_cast<std::int64_t>(
         std::accumulate(graph.pairs.live_count.begin(), graph.pairs.live_count.end(), supports_.contacts()));
     counters.colours = static_cast<std::int64_t>(graph.pairs.count.size());
@@ -81,7 +81,7 @@ template <class Real>
 void SoftSolver<Real>::find_manifolds(const WorldState<Real>& world, const EdgeCandidates<Real>& edges) {
     paths.rescale(warm_start_.kept());
     paths.find(world, edges, terms_, {kNearFraction, settings_.fall}, records_, loops_);
-    shape_turns_.begin_step(world, paths, masses_);
+    corrections_.shape_turns.begin_step(world, paths, masses_);
     counters.contacts += paths.counters.contacts;
 }
 
@@ -115,7 +115,7 @@ void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
                                      starts_anew ? std::max(kFirstSweeps, next) : next);
     const std::array<typename Sweeps::Sweep, 3> sweeps{
         {{kernels.first_pairs, kernels.first_supports, Blocks::all_and_mark}, others[0], others[1]}};
-    const bool is_first_alone = loads_.begin_substep(view(), number, is_last) || next == 0;
+    const bool is_first_alone = corrections_.loads.begin_substep(view(), number, is_last) || next == 0;
     sweeps_.run(view(), {sweeps.data(), is_first_alone ? std::size_t{1} : sweeps.size()}, on_pairs,
                 on_supports);
 }
@@ -159,13 +159,13 @@ void SoftSolver<Real>::bound_energy(WorldState<Real>& world) {
 
 template <class Real>
 void SoftSolver<Real>::solve_wedged_bodies() {
-    wedged_.solve(view(), Sweeps::arguments(view(), supports_));
+    corrections_.wedged.solve(view(), Sweeps::arguments(view(), supports_));
 }
 
 template <class Real>
 void SoftSolver<Real>::solve_uneven_contacts(bool is_last) {
-    if (masses_.are_uneven()) uneven_.solve(view(), sweeps_, is_last);
-    shape_turns_.settle(view(), sweeps_, paths);
+    if (masses_.are_uneven()) corrections_.uneven.solve(view(), sweeps_, is_last);
+    corrections_.shape_turns.settle(view(), sweeps_, paths);
 }
 
 template <class Real>
@@ -194,7 +194,7 @@ void SoftSolver<Real>::carry_out_impacts(const Column<Real>& motion, Books& book
 
 template <class Real>
 void SoftSolver<Real>::end_contacts() {
-    loads_.retain(view(), sweeps_, paths);
+    corrections_.loads.retain(view(), sweeps_, paths);
     paths.end(*loops_.executor);
     supports_.for_each([&](std::size_t i) {
         const auto candidate = static_cast<std::size_t>(supports_.candidate[i]);
@@ -210,10 +210,8 @@ void SoftSolver<Real>::end_contacts() {
 template <class Real>
 std::size_t SoftSolver<Real>::bytes() const {
     return graph.bytes() + paths.bytes() + impacts.bytes() + joints.bytes() + masses_.bytes() +
-           records_.bytes() + supports_.bytes() + support_finder_.bytes() + warm_start_.bytes() +
-           warm_start_limit_.bytes() + sweeps_.bytes() + loads_.bytes() + uneven_.bytes() +
-           shape_turns_.bytes() + shape_impacts_.bytes() + chains_.bytes() + passive_.bytes() +
-           wedged_.bytes() + projection_.bytes() + pair_finder_.bytes();
+           records_.bytes() + supports_.bytes() + finder_.bytes() + warm_start_.bytes() + sweeps_.bytes() +
+           corrections_.bytes() + projection_.bytes() + passive_.bytes();
 }
 
 template class SoftSolver<float>;

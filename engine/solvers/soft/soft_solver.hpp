@@ -6,21 +6,14 @@
 
 #include "constraints/contact_graph.hpp"
 #include "constraints/contact_rows.hpp"
-#include "solvers/paths/path_books.hpp"
 #include "solvers/paths/path_solver.hpp"
-#include "solvers/paths/warm_start_limit.hpp"
 #include "solvers/soft/books.hpp"
-#include "solvers/soft/contacts/contact_chains.hpp"
+#include "solvers/soft/contacts/contact_corrections.hpp"
+#include "solvers/soft/contacts/contact_finder.hpp"
 #include "solvers/soft/contacts/contact_settings.hpp"
 #include "solvers/soft/contacts/contact_sweeps.hpp"
-#include "solvers/soft/contacts/load_correction.hpp"
-#include "solvers/soft/contacts/pair_finder.hpp"
 #include "solvers/soft/contacts/residual.hpp"
-#include "solvers/soft/contacts/shape_turns.hpp"
-#include "solvers/soft/contacts/support_finder.hpp"
-#include "solvers/soft/contacts/uneven_contacts.hpp"
 #include "solvers/soft/contacts/warm_start.hpp"
-#include "solvers/soft/contacts/wedged_bodies.hpp"
 #include "solvers/soft/impacts/impacts.hpp"
 #include "solvers/soft/impacts/shape_impacts.hpp"
 #include "solvers/soft/joints/heavy_loads.hpp"
@@ -93,21 +86,21 @@ class SoftSolver {
     /// Spreads what they carried over other contacts.
     void rebalance_loads(const Bodies<Real>& bodies) { warm_start_.rebalance(view(), bodies); }
     /// Tells that a body was removed or put elsewhere between steps. @param mass  kg
-    void note_lost(double mass) { shape_turns_.note_lost(mass); }
+    void note_lost(double mass) { corrections_.shape_turns.note_lost(mass); }
     /// Gives the bodies last step's impulses.
     void warm_start();
 
     /// Gives bodies last step's impulses of shapes, as far as these make no energy.
     void warm_start_paths(const WorldState<Real>& world) {
         paths.warm_start(terms_, records_, loops_);
-        warm_start_limit_.apply(paths, world.bodies, terms_, records_,
+        warm_start_.limit_paths(paths, world.bodies, terms_, records_,
                                 world.joints.empty() ? nullptr : joints.joined(), loops_);
     }
     /// Carries out the impacts of shapes in a substep.
     void carry_out_shape_impacts(const Bodies<Real>& bodies, Books& books) {
-        paths.counters.impacts += shape_impacts_.carry_out(paths, terms_, bodies, records_, impacts.held,
+        paths.counters.impacts += impacts.shapes.carry_out(paths, terms_, bodies, records_, impacts.held,
                                                            books, books_.gravity_work);
-        impacts.note_deflected(shape_impacts_.deflected(), records_.velocity);
+        impacts.note_deflected(records_.velocity);
     }
     /// Solves the contacts of shapes in substep `number`.
     void solve_paths(int number, bool is_last);
@@ -116,13 +109,15 @@ class SoftSolver {
     void solve_contacts(int number, bool is_last);
     /// Corrects the loads of large piles between the sweeps of the last substep, if that is due, and sweeps
     /// once more.
-    void correct_loads(const StepFlight<Real>& flight) { loads_.correct(view(), flight, sweeps_, paths); }
+    void correct_loads(const StepFlight<Real>& flight) {
+        corrections_.loads.correct(view(), flight, sweeps_, paths);
+    }
     /// Whether some discs stand in columns.
-    bool has_chains() const { return !chains_.empty(); }
+    bool has_chains() const { return !corrections_.chains.empty(); }
     /// Solves what the sweeps leave in columns of discs.
-    void solve_chains() { chains_.solve(view()); }
+    void solve_chains() { corrections_.chains.solve(view()); }
     /// Whether some bodies are between supports that face each other.
-    bool has_wedged_bodies() const { return !wedged_.empty(); }
+    bool has_wedged_bodies() const { return !corrections_.wedged.empty(); }
     /// Solves what the sweeps leave of their supports.
     void solve_wedged_bodies();
     /// Solves what the sweeps leave where masses are uneven; nothing where they are not.
@@ -130,7 +125,7 @@ class SoftSolver {
     /// What the impulses of this substep did; only the walls' impulses if the ledger is closed.
     void book_substep(const WorldState<Real>& world, Books& books) {
         books_.book_substep(view(), world, books);
-        book_paths(paths, records_, books, parts_of_books_, *loops_.executor);
+        books_.book_paths(paths, records_, books, *loops_.executor);
     }
     /// Carries out the impacts of a substep.
     void carry_out_impacts(const Column<Real>& motion, Books& books, Interruption& interruption);
@@ -170,7 +165,7 @@ class SoftSolver {
     void end_contacts();
     /// Parts bodies that have ended the step deep in others, by displacement alone.
     void project_positions(const WorldState<Real>& world, const StepFlight<Real>& flight) {
-        projection_.project(view(), world, flight, pair_finder_.has_deep_pairs());
+        projection_.project(view(), world, flight, finder_.pairs.has_deep_pairs());
     }
     /// Columns from records.
     /// @param lost_rows  room for `lost` by chunk
@@ -191,7 +186,7 @@ class SoftSolver {
     /// Whether nothing of that has changed since the last step.
     bool knows_rows() const { return masses_.are_known(); }
     /// Rows have changed, and the graph has followed them.
-    void follow_rows() { follows_rows_ = masses_.are_known(), masses_.forget(); }
+    void follow_rows() { masses_.follow_rows(); }
 
     /// Nothing can touch any more.
     void drop_contacts() { graph.pairs = {}, graph.supports = {}, graph.lost.clear(), supports_ = {}; }
@@ -207,8 +202,8 @@ class SoftSolver {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.graph, self.paths, self.counters, self.impacts.counters, self.warm_start_, self.loads_,
-                self.uneven_, self.shape_turns_, self.chains_);
+        archive(self.graph, self.paths, self.counters, self.impacts.counters, self.warm_start_,
+                self.corrections_);
         if constexpr (!std::is_const_v<Self>)
             self.forget_rows(), self.records_.forget(), self.impacts.forget();
     }
@@ -229,25 +224,16 @@ class SoftSolver {
     ContactSettings settings_;
 
     BodyMasses<Real> masses_;
-    bool follows_rows_ = false;  // masses are to be derived, but pairs stay described
     BodyRecords<Real> records_;
-    ShapeImpacts<Real> shape_impacts_;
     ContactRows<Real> supports_;  // those of graph.supports that can touch in this step
-    PairFinder<Real> pair_finder_;
-    SupportFinder<Real> support_finder_;
+    ContactFinder<Real> finder_;
     WarmStart<Real> warm_start_;
-    WarmStartLimit<Real> warm_start_limit_;
     ContactSweeps<Real> sweeps_;
-    LoadCorrection<Real> loads_;
-    UnevenContacts<Real> uneven_;
-    ShapeTurns<Real> shape_turns_;
-    ContactChains<Real> chains_;
-    WedgedBodies<Real> wedged_;
+    ContactCorrections<Real> corrections_;
     EndProjection<Real> projection_;
     HeavyLoads<Real> heavy_;
     PassiveSubsteps<Real> passive_;
     SubstepBooks<Real> books_;
-    std::vector<Books> parts_of_books_;  // of some contacts of shapes each
 };
 
 extern template class SoftSolver<float>;

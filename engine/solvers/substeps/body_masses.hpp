@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 
 #include "state/bodies.hpp"
 #include "state/column.hpp"
@@ -15,6 +16,10 @@ class BodyMasses {
     /// Masses, flags or rows have changed.
     void forget() { are_known_ = false; }
     bool are_known() const { return are_known_; }
+    /// Rows have changed, and what was derived from them has followed, but for the masses.
+    void follow_rows() { has_followed_rows_ = are_known_, are_known_ = false; }
+    /// Whether that is why they were derived anew; asked once.
+    bool have_followed_rows() { return std::exchange(has_followed_rows_, false); }
     /// Derives them if they are not known. Cost: O(bodies) then, where masses vary.
     /// @param has_friction  without it no disc turns, so that none has a fixed angle
     /// @return whether they were derived anew
@@ -36,7 +41,7 @@ class BodyMasses {
     std::size_t bytes() const { return inverse_.bytes(); }
 
   private:
-    bool are_known_ = false, vary_ = false, some_are_fixed_ = false;
+    bool are_known_ = false, has_followed_rows_ = false, vary_ = false, some_are_fixed_ = false;
     bool are_uneven_ = false, are_very_uneven_ = false, are_mixed_ = false;
     Column<Real> inverse_;
 };

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "solvers/paths/warm_start_limit.hpp"
 #include "solvers/shared/rebalance.hpp"
 #include "solvers/soft/step_view.hpp"
 
@@ -19,6 +20,12 @@ class WarmStart {
     /// Spreads what removed bodies carried over other contacts.
     void rebalance(const StepView<Real>& step, const Bodies<Real>& bodies);
 
+    /// Takes from contacts of shapes the impulses that make energy (solvers/paths/warm_start_limit.hpp).
+    void limit_paths(PathSolver<Real>& paths, const Bodies<Real>& bodies, const SubstepTerms& terms,
+                     BodyRecords<Real>& records, const Real* joined, const StepLoops<Real>& loops) {
+        limit_of_paths_.apply(paths, bodies, terms, records, joined, loops);
+    }
+
     /// Factor by which `begin_step` has rescaled impulses.
     double kept() const { return kept_; }
     /// Whether this step's contacts begin without impulses.
@@ -29,7 +36,7 @@ class WarmStart {
     double substep_dt() const { return substep_dt_; }
 
     std::size_t bytes() const {
-        std::size_t bytes = rebalance_.bytes();
+        std::size_t bytes = rebalance_.bytes() + limit_of_paths_.bytes();
         for (const Column<Real>& column : before_) bytes += column.bytes();
         return bytes;
     }
@@ -53,6 +60,7 @@ class WarmStart {
     bool are_known_ = false, is_rebalanced_ = false;
     std::array<Column<Real>, 6> before_;  // N s, impulses at the start of the step, while steps vary
     Rebalance<Real> rebalance_;
+    WarmStartLimit<Real> limit_of_paths_;
 };
 
 extern template class WarmStart<float>;

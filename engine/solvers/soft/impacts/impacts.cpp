@@ -435,14 +435,14 @@ bool Impacts<Real>::carry_out(Place place, double time, Books& books, double& gr
 }
 
 template <class Real>
-void Impacts<Real>::note_deflected(const std::vector<std::int32_t>& rows, const Column<Real>& velocity) {
-    if (rows.empty()) return;
+void Impacts<Real>::note_deflected(const Column<Real>& velocity) {
+    if (shapes.deflected().empty()) return;
     find_contacts_of_bodies();
     const auto velocity_of = [&](std::int32_t row) {
         const Real* record = &velocity[4 * static_cast<std::size_t>(row)];
         return Vec2{record[0], record[1]};
     };
-    for (const std::int32_t row : rows) {
+    for (const std::int32_t row : shapes.deflected()) {
         const Vec2 v = velocity_of(row);
         for (const auto& entry : of_pairs_.of(static_cast<std::size_t>(row)))
             hide_from_sweeps({entry.contact & kIndexBits, kPair}, velocity_of(entry.other) - v);
@@ -486,7 +486,7 @@ std::size_t Impacts<Real>::bytes() const {
     return impacts_.capacity() * sizeof(Place) + strangers_.capacity() * sizeof(Strangers) +
            (first_strangers_.capacity() + mark_of_.capacity()) * sizeof(std::int32_t) + near_rows_.bytes() +
            queue_.capacity() * sizeof(Event) + of_pairs_.bytes() + of_supports_.bytes() + paths_.bytes() +
-           budget_.bytes() + held.bytes() + struck_.capacity() * sizeof(std::int32_t);
+           budget_.bytes() + held.bytes() + shapes.bytes() + struck_.capacity() * sizeof(std::int32_t);
 }
 
 template class Impacts<float>;

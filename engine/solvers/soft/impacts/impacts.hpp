@@ -13,6 +13,7 @@
 #include "solvers/soft/impacts/held_impacts.hpp"
 #include "solvers/soft/impacts/impact_budget.hpp"
 #include "solvers/soft/impacts/impact_paths.hpp"
+#include "solvers/soft/impacts/shape_impacts.hpp"
 #include "solvers/soft/step_view.hpp"
 #include "state/world_state.hpp"
 
@@ -43,15 +44,16 @@ template <class Real>
 class Impacts {
   public:
     ImpactCounters counters;
-    HeldImpacts<Real> held;  ///< told of joints, if there are any, once contacts are marked
+    HeldImpacts<Real> held;     ///< told of joints, if there are any, once contacts are marked
+    ShapeImpacts<Real> shapes;  ///< carried out before these
 
     /// Tells impacts from contacts among what can touch in this step.
     void mark(const WorldState<Real>& world, const StepView<Real>& step, const Candidates<Real>& neighbours);
 
-    /// Bodies have been deflected by what is none of these contacts: what they may hit now, fast, is an
-    /// impact, too.
-    /// @param rows  of discs  @param velocity  records
-    void note_deflected(const std::vector<std::int32_t>& rows, const Column<Real>& velocity);
+    /// Discs have been deflected by shapes, which are none of these contacts: what they may hit now, fast, is
+    /// an impact, too.
+    /// @param velocity  records
+    void note_deflected(const Column<Real>& velocity);
     /// Carries out the impacts of a substep.
     /// @param gravity_work  J, gravity's work on velocities, to be booked
     /// @param interruption  of the step: the rest is left if it is to end
