@@ -1,6 +1,7 @@
 #include <carom/world.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string>
 
@@ -10,6 +11,7 @@
 #include "scene/wording.hpp"
 #include "shapes/compound.hpp"
 #include "shapes/convex_geometry.hpp"
+#include "state/body_faults.hpp"
 #include "state/state_hash.hpp"
 #include "step/make_simulation.hpp"
 #include "step/plan.hpp"
@@ -131,12 +133,14 @@ void BasicWorld<Real>::step(double dt) {
         refuse_drag(drag, dt);
     if (!sim.world.sensing.keeps) clear_events();
     const double begin = sim.world.time;
+    assert(!fault_of(sim.world.bodies) && "between steps");
     sim.interruption.start();
     const auto step = [&] { sim.step(dt); };
     if (sim.has_long_loops())
         sim.executor.with_team(step);
     else
         step();
+    assert(!fault_of(sim.world.bodies) && "in the step");
     sim.executor.rethrow_host_error();
     sim.interruption.rethrow();
     if (sim.interruption.has_stopped()) throw_early_end(sim, begin, dt);
