@@ -1,5 +1,5 @@
 #include "kernels/kernel_benchmark.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 #include <numeric>
 #include <random>

@@ -1,6 +1,6 @@
 #include "effects/flight.hpp"
 #include "kernels/kernel_benchmark.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 #include <limits>
 #include <random>

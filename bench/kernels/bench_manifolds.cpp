@@ -1,6 +1,6 @@
 #include "kernels/kernel_benchmark.hpp"
 #include "shapes/convex_shape.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 #include <cmath>
 #include <random>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "broadphase/uniform_grid.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 #include <cstddef>
 #include <vector>

@@ -9,7 +9,7 @@
 #include "effects/flight.hpp"
 #include "parallel/executor.hpp"
 #include "state/bodies.hpp"
-#include "state/chunked_list.hpp"
+#include "state/columns/chunked_list.hpp"
 
 namespace carom {
 

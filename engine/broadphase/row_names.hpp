@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 namespace carom {
 

@@ -2,7 +2,7 @@
 
 #include "isa/kernel_table.hpp"
 #include "parallel/executor.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 #include <span>
 #include <type_traits>

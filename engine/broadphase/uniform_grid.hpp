@@ -6,7 +6,7 @@
 #include "parallel/executor.hpp"
 #include "simd/prefetch.hpp"
 #include "state/body_flags.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 #include <algorithm>
 #include <span>

@@ -7,7 +7,7 @@
 
 #include "constraints/partner.hpp"
 #include "kernels/contacts/contact_arguments.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 #include "state/edges.hpp"
 
 namespace carom {

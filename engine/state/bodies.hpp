@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "state/body_flags.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 namespace carom {
 

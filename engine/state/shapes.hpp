@@ -14,7 +14,7 @@
 #include "math/rotation.hpp"
 #include "shapes/convex_geometry.hpp"
 #include "shapes/convex_shape.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 namespace carom {
 

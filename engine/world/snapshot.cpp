@@ -8,7 +8,7 @@
 #include <string>
 
 #include "scene/wording.hpp"
-#include "state/archive.hpp"
+#include "state/columns/archive.hpp"
 
 namespace carom {
 namespace {

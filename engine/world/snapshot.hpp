@@ -22,8 +22,8 @@ struct WorldSettings {
     std::optional<int> substeps, iterations;  ///< that were asked for
 };
 
-// A snapshot is a header and the state as archives list it (state/archive.hpp), for programs of the same
-// build.
+// A snapshot is a header and the state as archives list it (state/columns/archive.hpp), for programs of the
+// same build.
 
 /// Its bytes. Cost: O(columns).
 template <class Real>

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "isa/select_isa.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 #include "support/convex_oracle.hpp"
 
 // Pairs of convex shapes for kernels that find manifolds, each pair with two bodies of its own, and random

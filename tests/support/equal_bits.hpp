@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 namespace carom::test {
 

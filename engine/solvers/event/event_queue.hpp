@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 namespace carom {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "solvers/event/event_disc.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 namespace carom {
 

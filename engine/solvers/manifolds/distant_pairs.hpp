@@ -8,7 +8,7 @@
 #include "parallel/executor.hpp"
 #include "solvers/manifolds/contact_distance.hpp"
 #include "solvers/manifolds/pose_watch.hpp"
-#include "state/chunked_list.hpp"
+#include "state/columns/chunked_list.hpp"
 #include "state/shape_frames.hpp"
 #include "state/world_state.hpp"
 

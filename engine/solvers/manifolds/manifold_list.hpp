@@ -8,7 +8,7 @@
 
 #include "kernels/manifolds/manifold_arguments.hpp"
 #include "narrowphase/manifold.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 namespace carom {
 

@@ -17,7 +17,7 @@
 #include "solvers/manifolds/poses_ahead.hpp"
 #include "solvers/manifolds/surface_finder.hpp"
 #include "solvers/substeps/step_terms.hpp"
-#include "state/chunked_list.hpp"
+#include "state/columns/chunked_list.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {

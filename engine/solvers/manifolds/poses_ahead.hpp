@@ -9,7 +9,7 @@
 #include "solvers/manifolds/piece_items.hpp"
 #include "solvers/manifolds/pose_watch.hpp"
 #include "solvers/substeps/step_terms.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {

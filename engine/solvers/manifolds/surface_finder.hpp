@@ -11,7 +11,7 @@
 #include "solvers/manifolds/held_flights.hpp"
 #include "solvers/manifolds/manifold_list.hpp"
 #include "solvers/substeps/step_terms.hpp"
-#include "state/chunked_list.hpp"
+#include "state/columns/chunked_list.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {

@@ -8,7 +8,7 @@
 
 #include "math/vec2_math.hpp"
 #include "parallel/executor.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 namespace carom {
 

@@ -13,8 +13,8 @@
 #include "isa/kernel_table.hpp"
 #include "parallel/executor.hpp"
 #include "parallel/interruption.hpp"
-#include "state/archive.hpp"
-#include "state/chunked_list.hpp"
+#include "state/columns/archive.hpp"
+#include "state/columns/chunked_list.hpp"
 #include "state/world_state.hpp"
 #include "step/stage.hpp"
 
@@ -86,7 +86,7 @@ class Simulation {
     /// Memory that it holds now.
     virtual std::size_t bytes() const;
 
-    // Its state as bytes (state/archive.hpp).
+    // Its state as bytes (state/columns/archive.hpp).
 
     virtual void visit_state(StateSize& archive) const = 0;
     virtual void visit_state(StateWriter& archive) const = 0;

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "state/bodies.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 namespace carom {
 

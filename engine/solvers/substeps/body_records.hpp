@@ -9,7 +9,7 @@
 #include "kernels/contacts/contact_arguments.hpp"
 #include "solvers/substeps/body_masses.hpp"
 #include "solvers/substeps/step_terms.hpp"
-#include "state/chunked_list.hpp"
+#include "state/columns/chunked_list.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {

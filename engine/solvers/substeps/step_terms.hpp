@@ -8,7 +8,7 @@
 #include "isa/kernel_table.hpp"
 #include "math/vec2_math.hpp"
 #include "parallel/executor.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 // What the parts of solver `soft` are told of a step: how its loops run, what a substep does to a body that
 // touches nothing, and where the bodies began the step.

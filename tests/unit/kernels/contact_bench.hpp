@@ -1,7 +1,7 @@
 #pragma once
 
 #include "isa/kernel_table.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 #include "support/disc_contact.hpp"
 
 #include <cstdint>

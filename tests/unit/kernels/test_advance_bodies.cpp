@@ -1,7 +1,7 @@
 // Bodies through the substeps of a step: free flight against its exact solution, velocities that contacts
 // changed against what the header promises, and rows that are lost.
 #include "isa/select_isa.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 // Normals, separations and live blocks of pairs against the flights of two discs in long double.
 #include "isa/select_isa.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 #include "support/disc_contact.hpp"
 
 #include <doctest/doctest.h>

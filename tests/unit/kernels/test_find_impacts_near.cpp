@@ -8,7 +8,7 @@
 
 #include "broadphase/uniform_grid.hpp"
 #include "isa/select_isa.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 using namespace carom;
 

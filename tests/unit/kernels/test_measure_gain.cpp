@@ -1,6 +1,6 @@
 // What impulses add to the energy of bodies in a substep, against sums over bodies by the books' formulas.
 #include "isa/select_isa.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,7 @@
 // Contacts that share bodies: sweeps over the colours of a chain, against the exact solution of all its
 // contacts.
 #include "isa/select_isa.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 #include "support/complementarity.hpp"
 #include "support/disc_contact.hpp"
 

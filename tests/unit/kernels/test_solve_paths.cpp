@@ -3,7 +3,7 @@
 #include "kernels/manifolds/manifold_arguments.hpp"
 #include "kernels/paths/path_arguments.hpp"
 #include "math/random.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 #include "support/equal_bits.hpp"
 
 #include <doctest/doctest.h>

@@ -1,6 +1,6 @@
 #include "isa/select_isa.hpp"
 #include "lane_probe.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 #include <doctest/doctest.h>
 #include <algorithm>

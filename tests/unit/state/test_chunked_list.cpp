@@ -1,4 +1,4 @@
-#include "state/chunked_list.hpp"
+#include "state/columns/chunked_list.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 #include <doctest/doctest.h>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "state/column_memory.hpp"
+#include "state/columns/column_memory.hpp"
 
 #include <cstdint>
 #include <cstring>

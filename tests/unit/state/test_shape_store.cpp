@@ -1,6 +1,6 @@
 #include "state/shapes.hpp"
 
-#include "state/archive.hpp"
+#include "state/columns/archive.hpp"
 
 #include <doctest/doctest.h>
 

@@ -7,7 +7,7 @@
 #include "solvers/manifolds/manifolds.hpp"
 #include "solvers/substeps/body_records.hpp"
 #include "solvers/substeps/step_terms.hpp"
-#include "state/chunked_list.hpp"
+#include "state/columns/chunked_list.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {

@@ -6,7 +6,7 @@
 #include "constraints/contact_rows.hpp"
 #include "parallel/executor.hpp"
 #include "solvers/substeps/step_terms.hpp"
-#include "state/chunked_list.hpp"
+#include "state/columns/chunked_list.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {

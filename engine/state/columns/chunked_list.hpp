@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "parallel/executor.hpp"
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 namespace carom {
 

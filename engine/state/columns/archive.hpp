@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "state/column.hpp"
+#include "state/columns/column.hpp"
 
 // State as bytes. A class that has state lists its members once,
 //

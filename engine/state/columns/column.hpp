@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "state/column_memory.hpp"
+#include "state/columns/column_memory.hpp"
 
 namespace carom {
 
