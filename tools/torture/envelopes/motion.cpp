@@ -104,7 +104,7 @@ Envelopes step_lengths() {
                  },
              .run =
                  [](HardRun& run, double dt) {
-                     return stack_after(run, std::vector<double>(std::size_t(steps_of(10, dt)), dt), 1e-3);
+                     return stack_after(run, std::vector<double>(std::size_t(steps_of(10, dt)), dt));
                  }},
             {.name = "step-tower",
              .title = "seconds a step, a tower of ten boxes",

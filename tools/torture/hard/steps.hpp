@@ -12,7 +12,6 @@ namespace carom::torture {
 Scene stack_between_walls(double restitution, double slack);
 /// The discs stay where they were put, but for the slop of ten contacts on top of each other, at rest, in
 /// their order, and energy does not grow.
-/// @param still  m/s: the largest speed at the end
-Measures stack_after(HardRun& run, const std::vector<double>& steps, double still);
+Measures stack_after(HardRun& run, const std::vector<double>& steps);
 
 }  // namespace carom::torture
