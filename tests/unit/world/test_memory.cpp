@@ -190,6 +190,18 @@ TEST_SUITE("world/memory") {
         }
     }
 
+    TEST_CASE("a small world is made of little memory, and has little when it has run") {
+        Scene scene = discs_in_a_container(8, 0);
+        scene.bodies.resize(31);  // thirty discs in their container
+        World world(scene, {.solver = Solver::soft, .threads = 1});
+        const auto made = world.profile().bytes;
+        for (int i = 0; i < 300; ++i) world.step(kStep);
+        const auto run = world.profile().bytes;
+        test::report("memory of thirty discs: ", made, " bytes when made, ", run, " bytes when run");
+        CHECK(made <= 40 * 1024);
+        CHECK(run <= 100 * 1024);
+    }
+
     TEST_CASE("one body flying off to the limit costs no memory") {
         Scene scene = box_of_discs(2000, {0.5, 0.5});
         scene.walls.reset();
