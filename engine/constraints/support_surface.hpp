@@ -24,7 +24,7 @@ struct SupportSurface {
     bool is_contact = true;   // false: another edge of the same chain touches there
 };
 
-/// Of a wall (WallSide) or a static or kinematic disc.
+/// The surface of a wall (WallSide), or of a static or kinematic disc.
 template <class Real>
 SupportSurface surface_of(const WorldState<Real>& world, std::size_t row, Partner support) {
     const Bodies<Real>& bodies = world.bodies;

@@ -48,7 +48,7 @@ struct TaskGroups {
     // Groups of supports: one a chunk, and one for those that found no colour.
     std::size_t support_count() const { return chunks + 1; }
 
-    /// Of each part; the first or the last of them can be empty in one.
+    /// Tasks of each part; the first or the last of them can be empty in one.
     std::size_t tasks() const { return chunks / 2 + 1; }
 
   private:

@@ -27,7 +27,8 @@ struct PickNear {
     const SortedBodies<Real>& bodies;
     Probe<L> probe;
 
-    /// Of `count` <= L::size places; returns how many it wrote, with room for a batch.
+    /// Writes the rows of those that are near of `count` <= L::size places; `out` has room for a batch.
+    /// @return how many it wrote
     std::size_t operator()(std::size_t place, std::size_t count, std::int32_t* out) const {
         const unsigned near = near_lanes<L>(bodies, place, probe) & ((1u << count) - 1u);
         return L::compress_store(out, L::load_rows(bodies.row + place), near);

@@ -60,7 +60,7 @@ struct SolveContacts {
     Real recovery;   // share of an overlap that one sweep takes away, by displacement
     Real push;       // largest displacement of that kind: m, or of contacts.smaller
     Real slop;       // overlap that is left, without friction alone: m, or of contacts.smaller
-    // Of pairs, in the first sweep.
+    // The next members are read for pairs alone, in the first sweep.
     Real calm;  // m/s: a contact that changes by no more needs no second sweep; below zero: all need one
     Real over_relaxation;           // of normal impulses, 1 ... 2
     Real calm_over_relaxation;      // of those of calm contacts
@@ -75,7 +75,7 @@ struct SolveContacts {
     Real kept = 0;                // share
 };
 
-/// Of a block that has a contact of bodies which are deep in each other.
+/// The mark of a block that has a contact of bodies which are deep in each other.
 inline constexpr std::uint8_t kDeepBlock = 2;
 
 /// What changes from step to step in the contacts of a group. They stay where they are; blocks of them

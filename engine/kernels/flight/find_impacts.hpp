@@ -84,7 +84,8 @@ struct PickMet {
         own_reach = L::broadcast(kUniformRadius ? k.uniform_radius + k.uniform_radius : k.radius[k.row]);
     }
 
-    /// Of `count` <= L::size places; returns how many it wrote, with room for a batch.
+    /// Writes the rows of those that are met of `count` <= L::size places; `out` has room for a batch.
+    /// @return how many it wrote
     std::size_t operator()(std::size_t place, std::size_t count, std::int32_t* out) const {
         const auto other = L::load_rows4(motion, bodies.row + place);
         const auto rows = L::load_rows(bodies.row + place);
@@ -99,8 +100,8 @@ struct PickMet {
     }
 };
 
-/// Who was near when the grid was built is not asked first: nearly all bodies of the cells were, and reading
-/// where they were costs as many cache lines as reading where they are.
+/// Tests the bodies in the cells where they are now, without asking first which were near when the grid was
+/// built: nearly all were, and reading where they were costs as many cache lines.
 /// @return how many rows were found, or kNoRoom
 template <bool kUniformRadius, class Real, class Isa>
 std::size_t find_impacts_near(const GridLevel<Real>& level, const FindImpactsNear<Real>& k) {

@@ -58,8 +58,8 @@ struct FindImpacts {
     std::int32_t* found;  // out: pair numbers, ascending; room for last - first + a batch
 };
 
-/// Of the bodies in the cells around a place, those that body `row` may meet between clock `from` and the end
-/// of the substep.
+/// Lists the bodies in the cells around a place that body `row` may meet between clock `from` and the end of
+/// the substep.
 template <class Real>
 struct FindImpactsNear {
     Real x, y, reach;    // m, where to look: cells that hold a body with distance below reach + its own reach

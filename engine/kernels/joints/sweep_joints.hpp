@@ -199,7 +199,7 @@ template <class Lanes, bool kArms, class Real>
     return d;
 }
 
-/// Of what joins two anchors.
+/// Direction and length of what joins two anchors.
 template <class F>
 struct Direction {
     F x, y, length, per_length;  ///< no unit; m; 1/m. (1, 0) and zero per length where there is no length
@@ -214,7 +214,7 @@ template <class Lanes, class F = typename Lanes::Batch>
     return {simd::select(has_length, d.x * per_length, one), d.y * per_length, length, per_length};
 }
 
-/// Of both bodies, for an impulse along (nx, ny) [1/kg].
+/// The inverse mass of both bodies for an impulse along (nx, ny) [1/kg].
 template <class Lanes, bool kArms, class F = typename Lanes::Batch>
 [[gnu::always_inline]] inline F inverse_mass_along(const JointSide<Lanes, kArms>& a,
                                                    const JointSide<Lanes, kArms>& b, F nx, F ny) {

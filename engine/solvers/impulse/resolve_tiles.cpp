@@ -63,7 +63,7 @@ void ImpulseSolver<Real>::work_on_tile(std::size_t phase, std::size_t number) {
     });
 }
 
-/// What came of a tile, in the order of tiles: whoever was first.
+/// Puts together what the tiles found and left, in the order of tiles, whichever was done first.
 template <class Real>
 void ImpulseSolver<Real>::collect(ImpactOutcome& outcome) {
     add_books(*flights.books, outcome.books);

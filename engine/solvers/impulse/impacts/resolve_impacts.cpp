@@ -60,7 +60,7 @@ void ImpactResolver<Real>::prefetch_tile(std::size_t tile) const {
     }
 }
 
-/// Whether this resolver may change what the bodies of a meeting do; what nothing moves nobody changes.
+/// Whether this resolver may change what the bodies of a meeting do; what nothing moves is never changed.
 template <class Real>
 bool ImpactResolver<Real>::may_move_all_of(Meeting m) const {
     const auto may_move = [&](std::int32_t row) {

@@ -114,7 +114,7 @@ class SoftJoints {
     std::vector<std::size_t> breakable_;  // slots of joints that can break
     Column<Real> joined_;
     std::vector<std::int32_t> first_of_group_;  // [rows]
-    // Of groups that are solved exactly, in the order of direct_.
+    // The next members are of groups that are solved exactly, in the order of direct_.
     std::vector<std::int32_t> group_of_;  // by row; -1: none
     std::vector<std::uint8_t> group_touches_, is_pressed_;
     ForeseenBlows<Real> blows_;
