@@ -15,7 +15,6 @@
 #include "solvers/soft/contacts/residual.hpp"
 #include "solvers/soft/contacts/warm_start.hpp"
 #include "solvers/soft/impacts/impacts.hpp"
-#include "solvers/soft/impacts/shape_impacts.hpp"
 #include "solvers/soft/joints/heavy_loads.hpp"
 #include "solvers/soft/joints/soft_joints.hpp"
 #include "solvers/soft/passive_substeps.hpp"
