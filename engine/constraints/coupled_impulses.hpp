@@ -29,8 +29,8 @@ class CoupledImpulses {
     }
     std::size_t count() const { return given.size(); }
     /// 1/kg, what an impulse of row k gives to row i.
-    double& inverse_mass(std::size_t i, std::size_t k) { return masses_[i * count() + k]; }
-    double inverse_mass(std::size_t i, std::size_t k) const { return masses_[i * count() + k]; }
+    double& inverse_mass(std::size_t i, std::size_t k) { return masses_[k * count() + i]; }
+    double inverse_mass(std::size_t i, std::size_t k) const { return masses_[k * count() + i]; }
 
     /// Finds impulses with which no row lacks anything, as far as bounds allow.
     /// @param bound  bound(i, wanted): the impulse that row i may have
@@ -73,9 +73,8 @@ class CoupledImpulses {
                 given[i] = clamped(i, wanted);
                 if (given[i] != wanted) is_free_[i - first] = 0, any = true;
             }
-            for (std::size_t i = 0; i < count(); ++i)
-                for (std::size_t k = 0; k < count(); ++k)
-                    lack[i] -= inverse_mass(i, k) * (given[k] - before_[k]);
+            for (std::size_t k = 0; k < count(); ++k)
+                if (given[k] != before_[k]) take(&masses_[k * count()], given[k] - before_[k], lack.data());
             for (std::size_t i = first; i < count(); ++i) {
                 const auto [low, high] = motors[i - first];
                 if (is_free_[i - first] || !(low < high)) continue;
@@ -91,7 +90,8 @@ class CoupledImpulses {
 
     std::size_t bytes() const {
         return (given.capacity() + lack.capacity() + masses_.capacity() + reduced_.capacity() +
-                reduced_lack_.capacity() + before_.capacity() + least_inverse_mass.capacity()) *
+                reduced_lack_.capacity() + before_.capacity() + shares_.capacity() +
+                least_inverse_mass.capacity()) *
                    sizeof(double) +
                is_free_.capacity();
     }
@@ -110,7 +110,7 @@ class CoupledImpulses {
                 const double change = bound(i, given[i] + lacks[i] / mass) - given[i];
                 if (change == 0) continue;
                 given[i] += change;
-                for (std::size_t k = 0; k < count(); ++k) lacks[k] -= masses[k * count() + i] * change;
+                take(&masses[i * count()], change, lacks.data());
                 largest = std::fmax(largest, mass * std::fabs(change));
             }
             if (!(largest > least)) return;
@@ -124,18 +124,26 @@ class CoupledImpulses {
         for (std::size_t f = first; f < n; ++f) {
             const double own = reduced_[f * n + f];
             if (!is_free_[f - first] || !(own > least_inverse_mass[f])) continue;
-            for (std::size_t i = 0; i < n; ++i) {
-                const double share = reduced_[i * n + f] / own;
-                if (i == f || share == 0) continue;
-                for (std::size_t k = 0; k < n; ++k) reduced_[i * n + k] -= share * reduced_[f * n + k];
-                reduced_lack_[i] -= share * reduced_lack_[f];
-            }
+            shares_.assign(&reduced_[f * n], &reduced_[f * n] + n);
+            for (double& share : shares_) share /= own;
+            shares_[f] = 0;
+            for (std::size_t k = 0; k < n; ++k)
+                if (const double of_motor = reduced_[k * n + f]; of_motor != 0)
+                    take(shares_.data(), of_motor, &reduced_[k * n]);
+            take(shares_.data(), reduced_lack_[f], reduced_lack_.data());
         }
     }
 
-    std::vector<double> masses_;                           // [count][count]
-    std::vector<double> reduced_, reduced_lack_, before_;  // where motors are eliminated
-    std::vector<std::uint8_t> is_free_;                    // by motor
+    /// Takes `times` a column from another.
+    void take(const double* column, double times, double* from) const {
+        for (std::size_t i = 0; i < count(); ++i) from[i] -= column[i] * times;
+    }
+
+    // What one impulse gives to all rows lies side by side, as sweeps take it: rows there would be as many
+    // lines of the cache.
+    std::vector<double> masses_;                                    // [count of impulses][count of rows]
+    std::vector<double> reduced_, reduced_lack_, before_, shares_;  // where motors are eliminated
+    std::vector<std::uint8_t> is_free_;                             // by motor
 };
 
 }  // namespace carom

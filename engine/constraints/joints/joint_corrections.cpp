@@ -73,29 +73,43 @@ void JointSystem::press_loads() {
         is_pushed = is_pushed || pushes_.lack[i] > 0;
     }
     if (!is_pushed) return;
-    if (pushed_by_.size() < count) pushed_by_.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        const Blow push{static_cast<std::size_t>(loads[i].body), loads[i].along};
-        answer({&push, 1}, Drives::as_solved);
-        pushed_by_[i] = change_;
+    loaded_.clear();
+    for (const Load& load : loads) {
+        const auto body = static_cast<std::size_t>(load.body);
+        if (std::find(loaded_.begin(), loaded_.end(), body) == loaded_.end()) loaded_.push_back(body);
     }
-    for (std::size_t i = 0; i < count; ++i)
-        for (std::size_t k = 0; k < count; ++k) {
-            const Load &a = loads[i], &b = loads[k];
-            double& inverse = pushes_.inverse_mass(i, k);
-            inverse = change_at(a, pushed_by_[k]);
+    find_answers(loaded_, Drives::as_solved);
+    const auto first_side_of = [&](const Load& load) {
+        return static_cast<std::size_t>(
+            3 * (std::find(loaded_.begin(), loaded_.end(), static_cast<std::size_t>(load.body)) -
+                 loaded_.begin()));
+    };
+    for (std::size_t k = 0; k < count; ++k) {
+        const Load& b = loads[k];
+        const std::size_t side = first_side_of(b);
+        for (std::size_t i = 0; i < count; ++i) {
+            const Load& a = loads[i];
+            double inverse = 0;
+            for (std::size_t c = 0; c < 3; ++c)
+                inverse += b.along[c] * dot3(a.along, answer_to(side + c, static_cast<std::size_t>(a.body)));
             if (a.other == b.other)
                 inverse += a.inverse_mass *
                                (a.other_along[0] * b.other_along[0] + a.other_along[1] * b.other_along[1]) +
                            a.inverse_inertia * a.other_along[2] * b.other_along[2];
+            pushes_.inverse_mass(i, k) = inverse;
         }
+    }
     pushes_.solve([](std::size_t, double wanted) { return std::fmax(wanted, 0); }, 0);
-    change_ = alone_displacements_;
+    blows_.clear();
     for (std::size_t i = 0; i < count; ++i) {
         loads[i].push = pushes_.given[i];
-        for (std::size_t body = 0; loads[i].push > 0 && body < change_.size(); ++body)
-            for (std::size_t c = 0; c < 3; ++c) change_[body][c] += loads[i].push * pushed_by_[i][body][c];
+        const auto [x, y, spin] = loads[i].along;
+        if (const double push = loads[i].push; push > 0)
+            blows_.push_back({static_cast<std::size_t>(loads[i].body), {push * x, push * y, push * spin}});
     }
+    answer(blows_, Drives::as_solved);
+    for (std::size_t body = 0; body < change_.size(); ++body)
+        for (std::size_t c = 0; c < 3; ++c) change_[body][c] += alone_displacements_[body][c];
 }
 
 /// How far a body is displaced [m]; a turn counts as the way of a point at a distance of `length`.

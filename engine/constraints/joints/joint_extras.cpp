@@ -10,11 +10,10 @@ namespace {
 
 /// Share of the diagonal that keeps the complement of loops regular where their rows say the same twice.
 constexpr double kLoopSoftness = 1e-9;
-/// Rows may say what others say if softness may be more than this share of a pivot. What bends of a substep
-/// make of the difference then becomes large impulses against each other, which move nothing but count as a
-/// pull (decision 0026, geometric stiffness):
-constexpr double kSoft = 1. / 3;
-/// they are replaced by those that move the rows alike by way of this softness, which has none of them.
+/// Rows may say what others say if softness may be more than FreeRows::kLittle of a pivot. What bends of a
+/// substep make of the difference then becomes large impulses against each other, which move nothing but
+/// count as a pull (decision 0026, geometric stiffness): they are replaced by those that move the rows alike
+/// by way of this softness, which has none of them.
 constexpr double kFilter = 1e-5;
 /// A loop is taut if a push of its last joint along some direction moves that by less than this share of what
 /// it would if the joint's two bodies were alone: a chain between two points as far apart as it is long.
@@ -52,16 +51,22 @@ void JointSystem::list_extras() {
 void JointSystem::couple_extras() {
     const std::size_t count = extras_.size();
     taut_.clear();
+    for (Factors& factors : factors_) factors.are_known = false;
     if (count == 0) return;
     extra_rhs_.assign(count, 0), low_.assign(count, 0), high_.assign(count, 0);
     state_.assign(count, End::none);
     matrix_.assign(count * count, 0), alone_.assign(count, 1);
-    if (columns_.size() < count) columns_.resize(count);
-    for (Vector& rhs : rhs_) rhs = {};
-    for (std::size_t i = 0; i < count; ++i) add_column(i);
-    for (std::size_t i = 0; i < count; ++i)
-        for (std::size_t k = 0; k < count; ++k)
-            matrix_[i * count + k] = change_of_row(extras_[i], columns_[k]);
+    list_parts();
+    find_columns();
+    // Row i of it is what columns change row i by; what is before the diagonal is after it, too.
+    for (std::size_t i = 0; i < count; ++i) {
+        double* row = &matrix_[i * count];
+        for (const RowPart& part : parts_of(i)) {
+            const double *x = columns_.of(part.body), *y = x + count, *spin = y + count;
+            for (std::size_t k = 0; k <= i; ++k) row[k] += dot3(part.row, {x[k], y[k], spin[k]});
+        }
+        for (std::size_t k = 0; k < i; ++k) matrix_[k * count + i] = row[k];
+    }
     for (std::size_t i = 0; i < count; ++i) {
         const Extra& extra = extras_[i];
         const auto j = static_cast<std::size_t>(extra.joint);
@@ -119,27 +124,34 @@ void JointSystem::soften_taut_loops() {
     }
 }
 
-void JointSystem::push_row(const Extra& extra, double impulse) {
-    for_each_part(static_cast<std::size_t>(extra.joint), extra.row,
-                  [&](std::size_t body, const Vector& part) {
-                      for (std::size_t c = 0; c < 3; ++c) pushed_[body][c] += impulse * part[c];
-                  });
+void JointSystem::list_parts() {
+    parts_.clear(), first_part_.assign(1, 0);
+    for (const Extra& extra : extras_) {
+        for_each_part(static_cast<std::size_t>(extra.joint), extra.row,
+                      [&](std::size_t body, const Vector& row) {
+                          if (bodies[body].inverse_mass > 0) parts_.push_back({body, row});
+                      });
+        first_part_.push_back(parts_.size());
+    }
 }
 
-void JointSystem::add_column(std::size_t extra) {
-    std::fill(pushed_.begin(), pushed_.end(), Vector{});
-    push_row(extras_[extra], 1);
-    solve_tree();
-    columns_[extra] = change_;
+/// To columns_ comes what an impulse of 1 of each extra row changes.
+void JointSystem::find_columns() {
+    columns_.reset(bodies.size(), extras_.size());
+    for (std::size_t e = 0; e < extras_.size(); ++e)
+        for (const RowPart& part : parts_of(e)) columns_.add(part.body, e, part.row);
+    solve_tree_of(columns_);
 }
 
-/// change holds nothing for bodies that do not move.
-double JointSystem::change_of_row(const Extra& extra, const std::vector<Vector>& change) const {
+void JointSystem::push_row(std::size_t extra, double impulse) {
+    for (const RowPart& part : parts_of(extra))
+        for (std::size_t c = 0; c < 3; ++c) pushed_[part.body][c] += impulse * part.row[c];
+}
+
+/// What change_ changes the velocity of an extra row by.
+double JointSystem::change_of_row(std::size_t extra) const {
     double sum = 0;
-    for_each_part(static_cast<std::size_t>(extra.joint), extra.row,
-                  [&](std::size_t body, const Vector& part) {
-                      if (bodies[body].inverse_mass > 0) sum += dot3(part, change[body]);
-                  });
+    for (const RowPart& part : parts_of(extra)) sum += dot3(part.row, change_[part.body]);
     return sum;
 }
 
@@ -166,13 +178,13 @@ void JointSystem::part_motors_from_limits() {
 /// The impulses x of the extra rows, low <= x <= high, where their residual A x - b is zero between the ends,
 /// >= 0 at the low and <= 0 at the high one: block principal pivoting (Júdice & Pires 1994), one row at a
 /// time once blocks have not come to an end. Projected sweeps over this matrix do not converge.
-void JointSystem::solve_bounded() {
+void JointSystem::solve_bounded(Use use) {
     constexpr int kMostRounds = 64, kBlockRounds = 12;
     const std::size_t count = extras_.size();
     solution_.assign(count, 0);
     for (int round = 0; round < kMostRounds; ++round) {
         part_motors_from_limits();
-        solve_free();
+        solve_free(use);
         bool any = false;
         for (std::size_t i = 0; i < count && !(any && round >= kBlockRounds); ++i) {
             End next = state_[i];
@@ -194,12 +206,12 @@ void JointSystem::solve_bounded() {
     for (std::size_t i = 0; i < count; ++i)
         if (solution_[i] < low_[i] || solution_[i] > high_[i])
             state_[i] = solution_[i] < low_[i] ? End::low : End::high;
-    solve_free();
+    solve_free(use);
     for (std::size_t i = 0; i < count; ++i) solution_[i] = std::clamp(solution_[i], low_[i], high_[i]);
 }
 
 /// Those that are at no end.
-void JointSystem::solve_free() {
+void JointSystem::solve_free(Use use) {
     const std::size_t count = extras_.size();
     free_.clear();
     for (std::size_t i = 0; i < count; ++i) {
@@ -210,58 +222,44 @@ void JointSystem::solve_free() {
     }
     const std::size_t m = free_.size();
     residual_.resize(m);
-    for (std::size_t i = 0; i < m; ++i) {
-        double rest = extra_rhs_[free_[i]];
-        for (std::size_t k = 0; k < count; ++k)
-            if (state_[k] != End::none) rest -= matrix_[free_[i] * count + k] * solution_[k];
-        residual_[i] = rest;
+    for (std::size_t i = 0; i < m; ++i) residual_[i] = extra_rhs_[free_[i]];
+    for (std::size_t k = 0; k < count && m < count; ++k) {
+        if (state_[k] == End::none || solution_[k] == 0) continue;
+        for (std::size_t i = 0; i < m; ++i) residual_[i] -= matrix_[free_[i] * count + k] * solution_[k];
     }
-    const bool are_independent = factor_free(kLoopSoftness);
-    substitute_free();
-    if (are_independent) return;
-    for (std::size_t i = 0; i < m; ++i) {
-        residual_[i] = 0;
-        for (std::size_t k = 0; k < m; ++k)
-            residual_[i] += matrix_[free_[i] * count + free_[k]] * solution_[free_[k]];
-    }
-    factor_free(kFilter);
-    substitute_free();
+    const Factors& factors = factor_free(use);
+    factors.softened.solve(residual_, 1);
+    if (!factors.softened.are_independent()) filter(factors, residual_, 1);
+    for (std::size_t i = 0; i < m; ++i) solution_[free_[i]] = residual_[i];
 }
 
-/// L below the diagonal, D on it, of the rows of free_.
-/// @param softness  of loops, in shares of each row's own diagonal
-/// @return whether it has little part in all pivots
-bool JointSystem::factor_free(double softness) {
+/// The factors of the rows of free_. Those of the solve before are these where the matrix and the free rows
+/// are the same: mostly in all solves of a substep.
+const JointSystem::Factors& JointSystem::factor_free(Use use) {
+    Factors& factors = factors_[static_cast<std::size_t>(use)];
+    if (factors.are_known && std::ranges::equal(factors.softened.rows(), free_)) return factors;
+    factors.are_known = true;
+    factors.softened.factor(matrix_, extras_.size(), free_, alone_, kLoopSoftness);
+    if (!factors.softened.are_independent())
+        factors.filtered.factor(matrix_, extras_.size(), free_, alone_, kFilter);
+    return factors;
+}
+
+/// Solutions of rows that are not independent become those that move the rows alike without large impulses
+/// against each other.
+/// @param x  [free rows][sides]
+void JointSystem::filter(const Factors& factors, std::vector<double>& x, std::size_t sides) {
     const std::size_t count = extras_.size(), m = free_.size();
-    factor_.resize(m * m), by_softness_.resize(m);
+    unfiltered_.assign(x.begin(), x.end());
     for (std::size_t i = 0; i < m; ++i) {
-        for (std::size_t k = 0; k < m; ++k) factor_[i * m + k] = matrix_[free_[i] * count + free_[k]];
-        factor_[i * m + i] += softness * alone_[free_[i]];
-    }
-    bool is_little = true;
-    for (std::size_t c = 0; c < m; ++c) {
-        by_softness_[c] = softness * alone_[free_[c]];
-        for (std::size_t k = 0; k < c; ++k) {
-            const double f = factor_[c * m + k] * factor_[k * m + k];
-            by_softness_[c] += factor_[c * m + k] * factor_[c * m + k] * by_softness_[k];
-            for (std::size_t r = c; r < m; ++r) factor_[r * m + c] -= factor_[r * m + k] * f;
+        double* row = &x[i * sides];
+        std::fill(row, row + sides, 0);
+        for (std::size_t k = 0; k < m; ++k) {
+            const double by = matrix_[free_[i] * count + free_[k]];
+            for (std::size_t s = 0; s < sides; ++s) row[s] += by * unfiltered_[k * sides + s];
         }
-        is_little = is_little && by_softness_[c] < kSoft * factor_[c * m + c];
-        for (std::size_t r = c + 1; r < m; ++r) factor_[r * m + c] /= factor_[c * m + c];
     }
-    return is_little;
-}
-
-/// The solution of the factored rows from residual_.
-void JointSystem::substitute_free() {
-    const std::size_t m = free_.size();
-    for (std::size_t i = 0; i < m; ++i)
-        for (std::size_t k = 0; k < i; ++k) residual_[i] -= factor_[i * m + k] * residual_[k];
-    for (std::size_t i = 0; i < m; ++i) residual_[i] /= factor_[i * m + i];
-    for (std::size_t i = m; i-- > 0;) {
-        for (std::size_t k = i + 1; k < m; ++k) residual_[i] -= factor_[k * m + i] * residual_[k];
-        solution_[free_[i]] = residual_[i];
-    }
+    factors.filtered.solve(x, sides);
 }
 
 /// change_, answer_ and solution_ of the whole system from rhs_, extra_rhs_, low_ and high_: of the tree
@@ -270,57 +268,11 @@ void JointSystem::solve_all() {
     std::fill(pushed_.begin(), pushed_.end(), Vector{});
     solve_tree();
     if (extras_.empty()) return;
-    for (std::size_t i = 0; i < extras_.size(); ++i) extra_rhs_[i] -= change_of_row(extras_[i], change_);
-    solve_bounded();
+    for (std::size_t i = 0; i < extras_.size(); ++i) extra_rhs_[i] -= change_of_row(i);
+    solve_bounded(Use::solve);
     std::fill(pushed_.begin(), pushed_.end(), Vector{});
-    for (std::size_t i = 0; i < extras_.size(); ++i) push_row(extras_[i], solution_[i]);
+    for (std::size_t i = 0; i < extras_.size(); ++i) push_row(i, solution_[i]);
     solve_tree();
-}
-
-void JointSystem::list_motors(std::vector<Motor>& motors) const {
-    motors.clear();
-    for (std::size_t e = 0; e < extras_.size(); ++e) {
-        const Extra& extra = extras_[e];
-        if (row_of(extra).law != RowLaw::motor) continue;
-        const auto joint = static_cast<std::size_t>(extra.joint);
-        motors.push_back({e, extra.impulse, extra.low, extra.high,
-                          joints[joint].joint->motor_speed - row_velocity(joint, extra.row), alone_[e]});
-    }
-}
-
-void JointSystem::push_motor(const Motor& motor, double impulse, std::vector<Blow>& blows) const {
-    const Extra& extra = extras_[motor.extra];
-    for_each_part(static_cast<std::size_t>(extra.joint), extra.row,
-                  [&](std::size_t body, const Vector& part) {
-                      blows.push_back({body, {impulse * part[0], impulse * part[1], impulse * part[2]}});
-                  });
-}
-
-void JointSystem::answer(std::span<const Blow> blows, Drives drives) {
-    for (Vector& rhs : rhs_) rhs = {};
-    const auto solve = [&](bool with_extras) {
-        std::fill(pushed_.begin(), pushed_.end(), Vector{});
-        for (const Blow& blow : blows)
-            for (std::size_t c = 0; c < 3; ++c) pushed_[blow.body][c] += blow.impulse[c];
-        for (std::size_t i = 0; with_extras && i < extras_.size(); ++i) push_row(extras_[i], solution_[i]);
-        solve_tree();
-    };
-    solve(false);
-    if (extras_.empty()) return;
-    kept_state_ = state_;
-    for (std::size_t i = 0; i < extras_.size(); ++i) {
-        const RowLaw law = row_of(extras_[i]).law;
-        const bool holds = law == RowLaw::hold || law == RowLaw::spring ||
-                           (state_[i] == End::none && (drives == Drives::as_solved ||
-                                                       (drives == Drives::no_motors && law == RowLaw::stop)));
-        const bool stops = law == RowLaw::stop && state_[i] == End::none;
-        low_[i] = holds ? -kUnbounded : 0, high_[i] = holds || stops ? kUnbounded : 0;
-        state_[i] = holds || stops ? End::none : End::low;
-        extra_rhs_[i] = -change_of_row(extras_[i], change_);
-    }
-    solve_bounded();
-    solve(true);
-    state_ = kept_state_;
 }
 
 }  // namespace carom

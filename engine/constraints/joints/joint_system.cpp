@@ -302,11 +302,12 @@ std::size_t JointSystem::bytes() const {
         rows_.capacity() * (sizeof(JointRows) + 2 * sizeof(softness_[0]) + 3 * sizeof(Vector)) +
         bodies.capacity() * (sizeof(SystemBody) + sizeof(JointPose) + sizeof(Symmetric) + 2 * sizeof(Vector) +
                              2 * sizeof(double));
-    for (const std::vector<Vector>& column : columns_) bytes += column.capacity() * sizeof(Vector);
-    return bytes +
-           (matrix_.capacity() + factor_.capacity() + alone_.capacity() + by_softness_.capacity()) *
-               sizeof(double) +
-           taut_.capacity() * sizeof(TautLoop);
+    for (const std::vector<double>* values :
+         {&columns_.values, &answers_.values, &half_way_, &held_back_, &unfiltered_, &matrix_, &alone_})
+        bytes += values->capacity() * sizeof(double);
+    for (const Factors& factors : factors_) bytes += factors.softened.bytes() + factors.filtered.bytes();
+    return bytes + asked_.capacity() * sizeof(std::size_t) + parts_.capacity() * sizeof(RowPart) +
+           first_part_.capacity() * sizeof(std::size_t) + taut_.capacity() * sizeof(TautLoop);
 }
 
 }  // namespace carom

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "constraints/coupled_impulses.hpp"
+#include "constraints/free_rows.hpp"
 #include "constraints/joints/joint_rows.hpp"
 #include "constraints/joints/spring_law.hpp"
 
@@ -154,8 +155,14 @@ class JointSystem {
     void list_motors(std::vector<Motor>& motors) const;
     /// Adds what an impulse of a motor gives bodies.
     void push_motor(const Motor& motor, double impulse, std::vector<Blow>& blows) const;
-    /// What the last blows change the velocity of a motor by [m/s].
-    double answer_of(const Motor& motor) const { return change_of_row(extras_[motor.extra], change_); }
+    /// What unit impulses change velocities by, all at once, where that is linear: as_solved or no_motors.
+    /// Sides 3 i, 3 i + 1 and 3 i + 2 push the body asked[i] along x, along y and about its centre; behind
+    /// them is one for each motor, in their order, if motors give what they are told to. Cost: O(joints) a
+    /// side, in lanes; O(rows²) of loops.
+    void find_answers(std::span<const std::size_t> asked, Drives drives);
+    /// m/s, m/s, rad/s: of a body that was asked for.
+    Vector answer_to(std::size_t side, std::size_t body) const { return answers_.at(body, side); }
+    double answer_to(std::size_t side, const Motor& motor) const;  ///< m/s, of the motor's row
     void add_to_motor(const Motor& motor, double impulse) { extras_[motor.extra].impulse += impulse; }
     /// Moves bodies through h; for tests and for systems that nothing else moves.
     void advance();
@@ -206,6 +213,32 @@ class JointSystem {
         std::int32_t joint;  // its own number
         std::array<Coordinate, 2> coordinates;
     };
+    /// The part of an extra row that is a body's, if that can move.
+    struct RowPart {
+        std::size_t body;
+        Vector row;
+    };
+    /// Pushes on all bodies, or what they change, for several right sides at once.
+    struct Sides {
+        std::size_t count = 0;
+        std::vector<double> values;  // [bodies][3][count]
+        double* of(std::size_t body) { return &values[body * 3 * count]; }
+        Vector at(std::size_t body, std::size_t side) const {
+            const double* x = &values[body * 3 * count + side];
+            return {x[0], x[count], x[2 * count]};
+        }
+        void reset(std::size_t bodies, std::size_t sides) {
+            count = sides, values.assign(bodies * 3 * sides, 0);
+        }
+        void add(std::size_t body, std::size_t side, const Vector& push) {
+            for (std::size_t c = 0; c < 3; ++c) of(body)[c * count + side] += push[c];
+        }
+    };
+    /// Factors of free rows.
+    struct Factors {
+        FreeRows softened, filtered;
+        bool are_known = false;  // of matrix_ as it is
+    };
     enum class End : std::uint8_t { none, low, high };  // where the impulse of an extra row is
 
     /// What taut joints add to the inertia that a substep sees.
@@ -232,6 +265,11 @@ class JointSystem {
     void go_in(Link& link);
     template <int kRows>
     void go_out(Link& link);
+    template <int kRows>
+    void go_in_sides(const Link& link, double* half_way, Sides& sides);
+    template <int kRows>
+    void go_out_sides(const Link& link, double* half_way, Sides& sides);
+    void solve_tree_of(Sides& sides);
     double row_velocity(std::size_t joint, int row) const;
     Vector row_of_body(std::size_t joint, int row, bool of_b) const;
 
@@ -278,16 +316,23 @@ class JointSystem {
 
     void list_extras();
     void couple_extras();
-    void add_column(std::size_t extra);
-    void push_row(const Extra& extra, double impulse);
+    void list_parts();
+    void find_columns();
+    void push_row(std::size_t extra, double impulse);
     /// Calls fn(body, its part of a row): for both bodies of a joint, up to four of a gear.
     template <class Fn>
     void for_each_part(std::size_t joint, int row, const Fn& fn) const;
     void measure_gear(Gear& gear);
     template <class PoseOf>
     double value_of_gear(const Gear& gear, const PoseOf& pose_of) const;
-    double change_of_row(const Extra& extra, const std::vector<Vector>& change) const;
-    void solve_bounded();
+    /// The parts of an extra row.
+    std::span<const RowPart> parts_of(std::size_t extra) const {
+        return std::span(parts_).subspan(first_part_[extra], first_part_[extra + 1] - first_part_[extra]);
+    }
+    double change_of_row(std::size_t extra) const;
+    /// What for: which rows are free differs.
+    enum class Use : std::uint8_t { solve, answer };
+    void solve_bounded(Use use);
     bool follow_curves(int rounds, double least);
     void follow_tangents();
     void take_back_gain(double before);
@@ -299,9 +344,10 @@ class JointSystem {
     double energy_of_taut_loops(const Fn& pull_of) const;
     void limit_pulls();
     void hold_what_was_taken(double before);
-    void solve_free();
-    bool factor_free(double softness);
-    void substitute_free();
+    void solve_free(Use use);
+    const Factors& factor_free(Use use);
+    void filter(const Factors& factors, std::vector<double>& x, std::size_t sides);
+    bool holds(std::size_t extra, Drives drives) const;
     void find_right_sides(bool is_curved);
     void move_poses();
     void take_velocities();
@@ -338,19 +384,28 @@ class JointSystem {
     std::vector<std::array<double, 2>> driven_, driven_before_;
     std::vector<Extra> extras_;
     std::vector<double> extra_rhs_, low_, high_;  // by extra row
-    std::vector<std::vector<Vector>> columns_;    // by extra row: changes of velocities by an impulse of 1
+    std::vector<RowPart> parts_;                  // of extra rows
+    std::vector<std::size_t> first_part_;         // by extra row, and the end
+    Sides columns_;                               // by extra row: changes of velocities by an impulse of 1
+    Sides answers_;                               // find_answers
+    std::vector<std::size_t> asked_;              // bodies for which they hold
+    std::vector<double> held_back_;               // [free rows][sides]
+    std::vector<double> half_way_;                // [links][3][sides]
     std::vector<double> alone_;                   // by extra row: its diagonal, were it the only one
-    std::vector<double> matrix_, factor_, solution_, residual_, by_softness_;
-    std::vector<End> state_;         // by extra row
-    std::vector<double> stiffness_;  // by body: sum of arm · impulse, m N s
-    std::vector<double> weight_;     // by body: how many times as heavy it counts; 1 but in corrections
-    bool is_weighted_ = false;       // whether it is factored so
+    std::vector<double> matrix_, solution_, residual_;
+    std::vector<double> unfiltered_;
+    std::array<Factors, 2> factors_;  // by use
+    std::vector<End> state_;          // by extra row
+    std::vector<double> stiffness_;   // by body: sum of arm · impulse, m N s
+    std::vector<double> weight_;      // by body: how many times as heavy it counts; 1 but in corrections
+    bool is_weighted_ = false;        // whether it is factored so
     std::vector<std::size_t> free_;
-    std::vector<JointPose> kept_poses_;           // by body: before a correction
-    CoupledImpulses pushes_;                      // of loads
-    std::vector<Vector> alone_displacements_;     // by body: without them
-    std::vector<std::vector<Vector>> pushed_by_;  // by load: displacements by a push of 1
-    std::vector<End> kept_state_;                 // by extra row: before a blow is answered
+    std::vector<JointPose> kept_poses_;        // by body: before a correction
+    CoupledImpulses pushes_;                   // of loads
+    std::vector<Vector> alone_displacements_;  // by body: without them
+    std::vector<Blow> blows_;                  // of all of them
+    std::vector<std::size_t> loaded_;          // bodies that they press on
+    std::vector<End> kept_state_;              // by extra row: before a blow is answered
 };
 
 template <class Fn>

@@ -11,6 +11,10 @@ namespace {
 /// A pivot below this share of its diagonal is that of a row which says what others say.
 constexpr double kRedundant = 1e-12;
 
+std::size_t index_of(std::int32_t body) {
+    return static_cast<std::size_t>(body);
+}
+
 }  // namespace
 
 /// By elimination, xx first; a body that nothing turns has an infinite zz.
@@ -142,6 +146,80 @@ void JointSystem::solve_tree() {
             go_out<2>(link);
         else
             go_out<3>(link);
+    }
+}
+
+/// What one body hands on to its parent, for all sides. Its half way is kept by row and side.
+template <int kRows>
+void JointSystem::go_in_sides(const Link& link, double* half_way, Sides& sides) {
+    const Link at = link;  // a copy, so that what is written is no part of it
+    const std::size_t n = sides.count;
+    const double *x = sides.of(index_of(at.body)), *y = x + n, *spin = y + n;
+    for (std::size_t s = 0; s < n; ++s) {
+        Vector e{};
+        for (std::size_t i = 0; i < kRows; ++i) e[i] = -dot3(at.reach[i], {x[s], y[s], spin[s]});
+        solve_block<kRows>(at, e);
+        for (std::size_t i = 0; i < kRows; ++i) half_way[i * n + s] = e[i];
+    }
+    if (!at.parent_moves) return;
+    double *to_x = sides.of(index_of(at.parent)), *to_y = to_x + n, *to_spin = to_y + n;
+    for (std::size_t s = 0; s < n; ++s)
+        for (std::size_t i = 0; i < kRows; ++i) {
+            const double e = half_way[i * n + s];
+            to_x[s] += at.others[i][0] * e, to_y[s] += at.others[i][1] * e, to_spin[s] += at.others[i][2] * e;
+        }
+}
+
+/// What it answers when the parent has moved.
+template <int kRows>
+void JointSystem::go_out_sides(const Link& link, double* half_way, Sides& sides) {
+    const Link at = link;
+    const std::size_t n = sides.count;
+    if (at.parent_moves) {
+        const double *x = sides.of(index_of(at.parent)), *y = x + n, *spin = y + n;
+        for (std::size_t s = 0; s < n; ++s) {
+            Vector e{};
+            for (std::size_t i = 0; i < kRows; ++i) e[i] = dot3(at.others[i], {x[s], y[s], spin[s]});
+            solve_block<kRows>(at, e);
+            for (std::size_t i = 0; i < kRows; ++i) half_way[i * n + s] -= e[i];
+        }
+    }
+    double *x = sides.of(index_of(at.body)), *y = x + n, *spin = y + n;
+    for (std::size_t s = 0; s < n; ++s) {
+        Vector total{x[s], y[s], spin[s]};
+        for (std::size_t i = 0; i < kRows; ++i) {
+            const double answer = half_way[i * n + s];
+            for (std::size_t c = 0; c < 3; ++c) total[c] += at.own[i][c] * answer;
+        }
+        const Vector change = times(at.inverse, total);
+        x[s] = change[0], y[s] = change[1], spin[s] = change[2];
+    }
+}
+
+/// solve_tree for all sides at once, of which rows lack nothing: what pushes bodies becomes what changes
+/// their velocities. Loops run over sides, which lie side by side.
+void JointSystem::solve_tree_of(Sides& sides) {
+    const std::size_t n = sides.count;
+    half_way_.resize(links_.size() * 3 * n);
+    for (std::size_t q = links_.size(); q-- > 0;) {
+        const Link& link = links_[q];
+        double* half_way = &half_way_[q * 3 * n];
+        if (link.joint < 0) continue;
+        if (link.rows == 1) go_in_sides<1>(link, half_way, sides);
+        if (link.rows == 2) go_in_sides<2>(link, half_way, sides);
+        if (link.rows == 3) go_in_sides<3>(link, half_way, sides);
+    }
+    for (std::size_t q = 0; q < links_.size(); ++q) {
+        const Link& link = links_[q];
+        double* half_way = &half_way_[q * 3 * n];
+        if (link.joint < 0)
+            go_out_sides<0>(link, half_way, sides);
+        else if (link.rows == 1)
+            go_out_sides<1>(link, half_way, sides);
+        else if (link.rows == 2)
+            go_out_sides<2>(link, half_way, sides);
+        else
+            go_out_sides<3>(link, half_way, sides);
     }
 }
 

@@ -245,6 +245,13 @@ void DirectJoints<Real>::solve_again(const JointStep<Real>& step) {
 }
 
 template <class Real>
+void DirectJoints<Real>::find_answers(std::span<const std::int32_t> rows) {
+    asked_.clear();
+    for (const std::int32_t row : rows) asked_.push_back(number_of(row));
+    system_.find_answers(asked_, JointSystem::Drives::no_motors);
+}
+
+template <class Real>
 void DirectJoints<Real>::take_blows(const JointStep<Real>& step, std::span<const JointBlow> blows,
                                     std::span<const double> of_motors) {
     read_velocities(step);
@@ -334,7 +341,7 @@ void DirectJoints<Real>::store(JointStore& joints, double dt) const {
 
 template <class Real>
 std::size_t DirectJoints<Real>::bytes() const {
-    return system_.bytes() + slots_.capacity() * sizeof(std::size_t) +
+    return system_.bytes() + (slots_.capacity() + asked_.capacity()) * sizeof(std::size_t) +
            rows_.capacity() * (sizeof(std::int32_t) + sizeof(double) + sizeof(Change) + sizeof(SystemBody));
 }
 

@@ -56,17 +56,26 @@ class DirectJoints {
     template <class Fn>
     void answer(const JointBlow& blow, JointSystem::Drives drives, const Fn& fn) {
         blows_.assign(1, blow_of(blow));
-        answer_blows(drives, fn);
+        system_.answer(blows_, drives);
+        for (std::size_t i = 1; i < rows_.size(); ++i) {
+            const SystemBody& body = system_.bodies[i];
+            if (!(body.inverse_mass > 0)) continue;
+            const JointSystem::Vector& by = system_.answer_of(i);
+            fn(rows_[i], std::array<double, 3>{by[0], by[1], body.inverse_inertia > 0 ? rim_[i] * by[2] : 0});
+        }
     }
-    /// The same of a unit impulse of a motor.
-    template <class Fn>
-    void answer(const JointSystem::Motor& motor, const Fn& fn) {
-        blows_.clear();
-        system_.push_motor(motor, 1, blows_);
-        answer_blows(JointSystem::Drives::no_motors, fn);
+    /// What unit impulses on bodies, by their rows, and of all motors change these by while joints hold and
+    /// motors give what they are told to: JointSystem::find_answers.
+    void find_answers(std::span<const std::int32_t> rows);
+    /// m/s, m/s, rad/s: of one of these bodies, by its place among them.
+    JointSystem::Vector answer_to(std::size_t side, std::size_t place) const {
+        return system_.answer_to(side, asked_[place]);
     }
-    /// What the last impulse that was answered changes the velocity of a motor by [m/s].
-    double answer_of(const JointSystem::Motor& motor) const { return system_.answer_of(motor); }
+    double answer_to(std::size_t side, const JointSystem::Motor& motor) const {
+        return system_.answer_to(side, motor);
+    }
+    /// What an impulse gives its body [N s, N s, N m s].
+    JointSystem::Vector push_of(const JointBlow& blow) const { return blow_of(blow).impulse; }
     /// Its motors, with what they lack as velocities are now.
     const std::vector<JointSystem::Motor>& motors(const JointStep<Real>& step) {
         read_velocities(step);
@@ -120,11 +129,11 @@ class DirectJoints {
     void correct(const JointStep<Real>& step);
     void half_kick(const JointStep<Real>& step, double sign);
     void read_velocities(const JointStep<Real>& step);
-    template <class Fn>
-    void answer_blows(JointSystem::Drives drives, const Fn& fn);
+    std::size_t number_of(std::int32_t row) const {
+        return static_cast<std::size_t>(std::find(rows_.begin(), rows_.end(), row) - rows_.begin());
+    }
     JointSystem::Blow blow_of(const JointBlow& blow) const {
-        const auto body =
-            static_cast<std::size_t>(std::find(rows_.begin(), rows_.end(), blow.row) - rows_.begin());
+        const std::size_t body = number_of(blow.row);
         return {body, {blow.impulse.x, blow.impulse.y, rim_[body] * blow.at_rim}};
     }
 
@@ -143,6 +152,7 @@ class DirectJoints {
     std::vector<SystemBody> before_;                   // that were read
     std::vector<std::array<double, 3>> last_impulse_;  // N s, by joint: of the last substep of a step
     std::vector<JointSystem::Blow> blows_;
+    std::vector<std::size_t> asked_;
     std::vector<JointSystem::Motor> motors_;
     std::size_t motor_count_ = 0;
     double mass_ = 0, heaviest_ = 0;          // kg
@@ -150,18 +160,6 @@ class DirectJoints {
     bool touches_ = false, was_free_ = true;  // in this step; in the last one
     bool is_beside_ = false, converges_ = false, may_drive_ = false, limits_move_ = false;
 };
-
-template <class Real>
-template <class Fn>
-void DirectJoints<Real>::answer_blows(JointSystem::Drives drives, const Fn& fn) {
-    system_.answer(blows_, drives);
-    for (std::size_t i = 1; i < rows_.size(); ++i) {
-        const SystemBody& body = system_.bodies[i];
-        if (!(body.inverse_mass > 0)) continue;
-        const JointSystem::Vector& by = system_.answer_of(i);
-        fn(rows_[i], std::array<double, 3>{by[0], by[1], body.inverse_inertia > 0 ? rim_[i] * by[2] : 0});
-    }
-}
 
 /// What an impulse changes the velocity of a body by that no joint holds: vx, vy, rim speed [m/s].
 /// @param velocity  records

@@ -172,42 +172,93 @@ void HeavyLoads<Real>::add_answer(std::size_t by, std::int32_t row, const std::a
         }
 }
 
+/// The ends of contacts that joints hold: by group, which bodies they are on, and what unit impulses give
+/// them.
+template <class Real>
+void HeavyLoads<Real>::list_held_ends(SoftJoints<Real>& joints) {
+    for (HeldGroup& group : held_) group.rows.clear(), group.ends.clear();
+    if (held_.size() < groups_.size()) held_.resize(groups_.size());
+    for (std::size_t i = 0; i < kDirections * contacts_.size(); ++i) {
+        const HeldContact& contact = contacts_[i / kDirections];
+        for (std::size_t side = 0; side < 2 && contact.acts[i % kDirections]; ++side) {
+            const JointBlow blow = unit_blow(contact, side, i % kDirections);
+            const std::int32_t number =
+                blow.row == HeldContact::kNothing ? -1 : joints.exact_group_of(blow.row);
+            if (number < 0) continue;
+            HeldGroup& group = held_[number_of(number)];
+            const auto place = std::find(group.rows.begin(), group.rows.end(), blow.row);
+            const auto body = static_cast<std::size_t>(place - group.rows.begin());
+            if (place == group.rows.end()) group.rows.push_back(blow.row);
+            group.ends.push_back({i, body, group.rows.size() - 1, joints.exact_group(number).push_of(blow)});
+        }
+    }
+}
+
 template <class Real>
 void HeavyLoads<Real>::find_masses(const JointStep<Real>& step, SoftJoints<Real>& joints) {
     first_motor_.assign(1, 0);
     for (const std::int32_t group : groups_)
         first_motor_.push_back(first_motor_.back() + joints.exact_group(group).motors(step).size());
     impulses_.reset(kDirections * contacts_.size() + first_motor_.back());
-    const auto add_to_motors = [&](std::size_t by, std::int32_t group) {
-        for_each_motor(number_of(group), joints, [&](std::size_t row, const JointSystem::Motor& motor) {
-            impulses_.inverse_mass(row, by) += joints.exact_group(group).answer_of(motor);
-        });
-    };
+    list_held_ends(joints);
+    for (std::size_t g = 0; g < groups_.size(); ++g) add_answers(g, joints);
+    // What no joint holds answers alone.
     for (std::size_t i = 0; i < kDirections * contacts_.size(); ++i) {
         const HeldContact& contact = contacts_[i / kDirections];
         for (std::size_t side = 0; side < 2 && contact.acts[i % kDirections]; ++side) {
             const JointBlow blow = unit_blow(contact, side, i % kDirections);
-            if (blow.row == HeldContact::kNothing) continue;
-            const auto add = [&](std::int32_t row, const std::array<double, 3>& change) {
-                add_answer(i, row, change);
-            };
-            if (const std::int32_t group = joints.exact_group_of(blow.row); group >= 0) {
-                joints.exact_group(group).answer(blow, JointSystem::Drives::no_motors, add);
-                add_to_motors(i, group);
-            } else {
-                add(blow.row, change_of_free(step.records.velocity, blow));
-            }
+            if (blow.row == HeldContact::kNothing || joints.exact_group_of(blow.row) >= 0) continue;
+            add_answer(i, blow.row, change_of_free(step.records.velocity, blow));
         }
     }
-    for (std::size_t g = 0; g < groups_.size(); ++g)
+}
+
+/// What a group answers to the impulses of contacts on it, and of its motors.
+template <class Real>
+void HeavyLoads<Real>::add_answers(std::size_t g, SoftJoints<Real>& joints) {
+    const HeldGroup& held = held_[g];
+    DirectJoints<Real>& group = joints.exact_group(groups_[g]);
+    group.find_answers(held.rows);
+    changes_.resize(held.rows.size());
+    const auto add = [&](std::size_t by, const HeldEnd& end) {
+        double& inverse = impulses_.inverse_mass(end.direction, by);
+        for (std::size_t c = 0; c < 3; ++c) inverse += end.push[c] * changes_[end.body][c];
+    };
+    // What one impulse does to another is what that does to it, so half of them are found.
+    for (std::size_t e = 0; e < held.ends.size(); ++e) {
+        const HeldEnd& end = held.ends[e];
+        for (std::size_t body = 0; body <= held.ends[e].last_body; ++body) {
+            const JointSystem::Vector x = group.answer_to(3 * end.body, body),
+                                      y = group.answer_to(3 * end.body + 1, body),
+                                      spin = group.answer_to(3 * end.body + 2, body);
+            for (std::size_t k = 0; k < 3; ++k)
+                changes_[body][k] = end.push[0] * x[k] + end.push[1] * y[k] + end.push[2] * spin[k];
+        }
+        for (std::size_t other = 0; other < e; ++other) {
+            const HeldEnd& before = held.ends[other];
+            double inverse = 0;
+            for (std::size_t c = 0; c < 3; ++c) inverse += before.push[c] * changes_[before.body][c];
+            impulses_.inverse_mass(before.direction, end.direction) += inverse;
+            impulses_.inverse_mass(end.direction, before.direction) += inverse;
+        }
+        add(end.direction, end);
         for_each_motor(g, joints, [&](std::size_t row, const JointSystem::Motor& motor) {
-            joints.exact_group(groups_[g])
-                .answer(motor, [&](std::int32_t body, const std::array<double, 3>& change) {
-                    add_answer(row, body, change);
-                });
-            add_to_motors(row, groups_[g]);
-            impulses_.least_inverse_mass[row] = kLeastOfAlone * motor.alone;
+            for (std::size_t c = 0; c < 3; ++c)
+                impulses_.inverse_mass(row, end.direction) +=
+                    end.push[c] * group.answer_to(3 * end.body + c, motor);
         });
+    }
+    std::size_t side = 3 * held.rows.size();
+    for_each_motor(g, joints, [&](std::size_t by, const JointSystem::Motor& motor) {
+        for (std::size_t body = 0; body < held.rows.size(); ++body)
+            changes_[body] = group.answer_to(side, body);
+        for (const HeldEnd& end : held.ends) add(by, end);
+        for_each_motor(g, joints, [&](std::size_t row, const JointSystem::Motor& other) {
+            impulses_.inverse_mass(row, by) += group.answer_to(side, other);
+        });
+        impulses_.least_inverse_mass[by] = kLeastOfAlone * motor.alone;
+        ++side;
+    });
 }
 
 template <class Real>
@@ -263,7 +314,12 @@ void HeavyLoads<Real>::solve(const HeldContacts<Real>& contacts, const JointStep
         return std::clamp(wanted, -limit, limit);
     };
     impulses_.solve(motors_, bound, kTolerance * step.terms.fall_speed());
-    for (std::size_t i = 0; i < more_.size(); ++i) more_[i] = impulses_.given[i] - more_[i];
+    bool any = false;
+    for (std::size_t i = 0; i < more_.size(); ++i) {
+        more_[i] = impulses_.given[i] - more_[i];
+        any = any || more_[i] != 0;
+    }
+    if (!any) return;
 
     if (blows_.size() < groups_.size()) blows_.resize(groups_.size());
     for (std::vector<JointBlow>& blows : blows_) blows.clear();
@@ -298,8 +354,9 @@ template <class Real>
 std::size_t HeavyLoads<Real>::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
     std::size_t bytes = of(contacts_) + of(groups_) + of(weight_) + of(told_) + of(first_motor_) +
-                        of(motors_) + impulses_.bytes() + of(more_) + of(blows_);
+                        of(motors_) + impulses_.bytes() + of(more_) + of(blows_) + of(held_) + of(changes_);
     for (const std::vector<JointBlow>& blows : blows_) bytes += of(blows);
+    for (const HeldGroup& group : held_) bytes += of(group.rows) + of(group.ends);
     return bytes;
 }
 

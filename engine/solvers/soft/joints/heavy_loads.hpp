@@ -25,8 +25,8 @@ namespace carom {
 ///
 /// Where joints are corrected by displacements, what presses is displaced with them (JointSystem::Load).
 ///
-/// Cost: about .3 us a joint and direction in each substep, and as much a joint and turn; O(directions²) for
-/// the problem. docs/decisions/0069-loads-on-light-mechanisms.md.
+/// Cost: about .1 us a joint and body with such contacts in each substep, .3 us a joint and turn;
+/// O(directions²) for the problem. docs/decisions/0069-loads-on-light-mechanisms.md.
 template <class Real>
 class HeavyLoads {
   public:
@@ -46,6 +46,17 @@ class HeavyLoads {
   private:
     static constexpr std::size_t kDirections = HeldContact::kDirections;
 
+    /// A direction of a contact on a body that joints hold.
+    struct HeldEnd {
+        std::size_t direction;     // of impulses_
+        std::size_t body;          // of the group's rows
+        std::size_t last_body;     // the last of those of this end and the ones before
+        JointSystem::Vector push;  // what a unit impulse gives it [N s, N s, N m s]
+    };
+    struct HeldGroup {
+        std::vector<std::int32_t> rows;  // of bodies with such contacts
+        std::vector<HeldEnd> ends;
+    };
     /// Where a load of a group is, in the order in which they were told.
     struct Told {
         std::int32_t group;
@@ -58,6 +69,8 @@ class HeavyLoads {
     bool is_heavy(const HeldContact& contact, const Bodies<Real>& bodies,
                   const SoftJoints<Real>& joints) const;
     void displace_loads(const JointStep<Real>& step, SoftJoints<Real>& joints) const;
+    void list_held_ends(SoftJoints<Real>& joints);
+    void add_answers(std::size_t g, SoftJoints<Real>& joints);
     void find_masses(const JointStep<Real>& step, SoftJoints<Real>& joints);
     void add_answer(std::size_t by, std::int32_t row, const std::array<double, 3>& change);
     void leave_held_directions(const Bodies<Real>& bodies, SoftJoints<Real>& joints);
@@ -77,6 +90,8 @@ class HeavyLoads {
     std::vector<std::int32_t> groups_;  // of their bodies, ascending
     std::vector<double> weight_;        // kg, by group: the heaviest of its bodies and of what touches them
     std::vector<Told> told_;
+    std::vector<HeldGroup> held_;                // as groups_
+    std::vector<JointSystem::Vector> changes_;   // of bodies of one of them, by an impulse
     std::vector<std::size_t> first_motor_;       // as groups_, and the end: of motors_
     std::vector<CoupledImpulses::Ends> motors_;  // by group
     CoupledImpulses impulses_;                   // by contact and direction, then by motor
