@@ -64,14 +64,22 @@ SupportSurface surface_of(const WorldState<Real>& world, std::size_t row, Partne
             false};
 }
 
+/// How an edge, or another one, has held a disc up to now.
+enum class EdgeHold : std::uint8_t {
+    none,
+    pressed,  // the disc pressed on it in the step before
+    led,      // it holds the disc on a curve, which leads it through this step
+};
+
 /// A disc and an edge in the frame of the edge's body: where the disc is and its way in a step.
+/// @param v  m/s, of the disc
 struct RelativeWay {
     Vec2 from, way;  // m
 };
 template <class Real>
-RelativeWay relative_way(const Bodies<Real>& bodies, const EdgePose& pose, std::size_t row, double dt) {
+RelativeWay relative_way(const Bodies<Real>& bodies, const EdgePose& pose, std::size_t row, Vec2 v,
+                         double dt) {
     const Vec2 x{bodies.position_x[row], bodies.position_y[row]};
-    const Vec2 v{bodies.velocity_x[row], bodies.velocity_y[row]};
     const Vec2 from = rotate_back(pose.turn, x - pose.position);
     return {from, rotate_back(pose.end_turn, x + dt * v - pose.end_position) - from};
 }
@@ -86,13 +94,13 @@ EdgeClearance clearance_of_edge(const WorldState<Real>& world, const EdgeCandida
                                 std::size_t row, std::int32_t number, double dt) {
     const Edge& edge = world.edges[number];
     const EdgePose& pose = edges.pose_of(edge);
-    const RelativeWay relative = relative_way(world.bodies, pose, row, dt);
+    const Vec2 v{world.bodies.velocity_x[row], world.bodies.velocity_y[row]};
+    const RelativeWay relative = relative_way(world.bodies, pose, row, v, dt);
     const double distance = std::sqrt(distance_squared(relative.from, edge.a, edge.b));
     double way = std::sqrt(length_squared(relative.way));
     // Points of a body that turns differ in their ways by the turn times their distance, and a chord is
     // shorter than its arc by less than the turn times the arc.
     if (const double turn = std::fabs(pose.end_angle - pose.angle); turn > 0) {
-        const Vec2 v{world.bodies.velocity_x[row], world.bodies.velocity_y[row]};
         way += turn * (distance + way + dt * std::sqrt(length_squared(v)) +
                        std::sqrt(length_squared(pose.end_position - pose.position)) +
                        turn * std::sqrt(length_squared(relative.from)));
@@ -106,25 +114,25 @@ EdgeClearance clearance_of_edge(const WorldState<Real>& world, const EdgeCandida
 ///
 /// What presses already is found in the middle of the step: a disc that rolls to and fro in a bowl of many
 /// edges would gain energy from contacts that lag behind it (solvers/manifolds/poses_ahead.hpp).
-/// @param presses  whether the disc pressed on this edge or another one in the step before
+/// @param v  m/s, of the disc  @param hold  by this edge or another one
 template <class Real>
 SupportSurface surface_of_edge(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
-                               std::size_t row, std::int32_t number, double dt, bool presses) {
+                               std::size_t row, std::int32_t number, Vec2 v, double dt, EdgeHold hold) {
     const Bodies<Real>& bodies = world.bodies;
     const Edge& edge = world.edges[number];
     const EdgePose& pose = edges.pose_of(edge);
     const double radius = bodies.radius[row];
-    const Vec2 v{bodies.velocity_x[row], bodies.velocity_y[row]};
-    const auto [p, way] = relative_way(bodies, pose, row, dt);
+    const auto [p, way] = relative_way(bodies, pose, row, v, dt);
 
     const double met = time_of_meeting(p, way, edge.a, edge.b, radius);
     // Edges that turn take what they press along: nothing swings on them.
-    const bool rolls_on = presses && !pose.turns() && length_squared(way) < radius * radius;
+    const bool rolls_on = hold == EdgeHold::led || (hold == EdgeHold::pressed && !pose.turns() &&
+                                                    length_squared(way) < radius * radius);
     double time = rolls_on ? 0.5 : met;
     Vec2 there = p + time * way;
     double share = nearest_share(there, edge.a, edge.b);
     // What rolls over the corner rests on one edge after the other.
-    if (!presses && passes_inner_corner(p, share, world.edges, edge))
+    if (hold == EdgeHold::none && passes_inner_corner(p, share, world.edges, edge))
         time = 0, there = p, share = nearest_share(p, edge.a, edge.b);
     const Vec2 point = point_at(edge.a, edge.b, share), d = point - there;
     const double distance = std::sqrt(length_squared(d));

@@ -100,7 +100,8 @@ class SoftStep final : public SoftSimulation<Real> {
              sim.soft.find_contacts(sim.world, sim.edge_candidates, sim.motion,
                                     sim.candidates.flies_together());
          },
-         can_meet, KernelChoice::contacts, "motion, coloured candidates, impulses", "contacts"},
+         can_meet, KernelChoice::contacts, "motion, coloured candidates, impulses",
+         "contacts, velocity records, books"},
         {"find_manifolds",
          [](Sim& sim) {
              if (!sim.can_meet()) return sim.soft.paths.manifolds.clear();  // pairs are not kept up to date

@@ -56,7 +56,7 @@ void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Colum
 }
 
 template <class Real>
-void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,
+void SoftSolver<Real>::find_contacts(WorldState<Real>& world, const EdgeCandidates<Real>& edges,
                                      Column<Real>& motion, bool flies_together) {
     motion.resize(4 * padded(records_.count() + ContactGraph<Real>::padding_rows(graph.groups)));
     settings_.set_lengths(terms_);
@@ -65,7 +65,8 @@ void SoftSolver<Real>::find_contacts(const WorldState<Real>& world, const EdgeCa
         finder_.pairs.find(view(), world.bodies, masses_, motion,
                            flies_together && !world.bodies.has_shapes && world.joints.empty());
     if (is_new) corrections_.uneven.find(graph.pairs, masses_, records_.count());
-    finder_.supports.find(view(), world, edges);
+    finder_.supports.find(view(), world, edges, world.joints.empty() ? nullptr : joints.joined(),
+                          world.books);
     settings_.has_uneven_sweeps = corrections_.uneven.are_swept();
     corrections_.uneven.begin_step(view(), world, masses_.are_mixed());
     corrections_.chains.begin_step(view());
@@ -204,6 +205,7 @@ void SoftSolver<Real>::end_contacts() {
         if (settings_.effects.rolling)
             graph.supports.rolling_impulse[candidate] = supports_.rolling_impulse[i];
     });
+    finder_.supports.remember_led(graph.supports, supports_);
     warm_start_.end_step(graph);
 }
 

@@ -74,7 +74,7 @@ class SoftSolver {
     /// Contacts that can touch in this step, by colour.
     /// @param motion  [rows][4] at the start of the step; gets rows for the padding of groups
     /// @param flies_together  whether a good part of the bodies are fast together
-    void find_contacts(const WorldState<Real>& world, const EdgeCandidates<Real>& edges, Column<Real>& motion,
+    void find_contacts(WorldState<Real>& world, const EdgeCandidates<Real>& edges, Column<Real>& motion,
                        bool flies_together);
     /// Finds the contacts of shapes and lays them out along paths.
     void find_manifolds(const WorldState<Real>& world, const EdgeCandidates<Real>& edges);

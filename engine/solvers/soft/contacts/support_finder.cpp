@@ -4,23 +4,35 @@
 #include <cmath>
 #include <tuple>
 
+#include "constraints/contact_law.hpp"
 #include "constraints/support_surface.hpp"
 #include "effects/friction.hpp"
 #include "effects/rolling_resistance.hpp"
+#include "narrowphase/smooth_track.hpp"
 
 namespace carom {
 namespace {
 
 /// A flat support as near as this, in radii of the body, is kept however slowly the body nears it.
 constexpr double kCrowdedRadii = 1;
+/// A disc that a curve leads comes by less than this in a step, in radii.
+constexpr double kLongestLed = 2;
+/// N s, that a contact keeps which pressed by turning a disc and carries nothing else: it moves nothing.
+template <class Real>
+constexpr Real kHeldByTurn = Real(1e-30);
 /// |x| + |y| of a vector, in lengths of it, at most.
 constexpr double kBothAxes = 1.415;
 constexpr double kNanosecondsToFind = 10;  // a support on one thread, for the executor
 
+/// What gravity adds to velocities in a step [m/s].
+Vec2 fall_of(const SubstepTerms& terms) {
+    return (terms.dt / terms.substep_dt) * terms.gravity_change;
+}
+
 /// Writes a support that can touch.
-/// @param candidate, at  its places in the graph and in the supports of the step
+/// @param v  m/s, of the body  @param candidate, at  its places in the graph and in the supports of the step
 template <class Real>
-void add_support(const SupportSurface& surface, std::size_t candidate, std::size_t at,
+void add_support(const SupportSurface& surface, Vec2 v, std::size_t candidate, std::size_t at,
                  const StepView<Real>& step, const WorldState<Real>& world) {
     const ContactRows<Real>& candidates = step.graph.supports;
     ContactRows<Real>& supports = step.supports;
@@ -48,7 +60,6 @@ void add_support(const SupportSurface& surface, std::size_t candidate, std::size
         supports.rolling_share[at] = real(surface.rolling_share);
         supports.surface_rolling[at] = real(surface.rolling_velocity);
     }
-    const Vec2 v{bodies.velocity_x[row], bodies.velocity_y[row]};
     if (effects.restitution) supports.approach[at] = real(dot(surface.velocity - v, n));
     if (effects.restitution) supports.clearance[at] = supports.separation[at];
     supports.candidate[at] = static_cast<std::int32_t>(candidate);
@@ -58,13 +69,14 @@ void add_support(const SupportSurface& surface, std::size_t candidate, std::size
 
 template <class Real>
 void SupportFinder<Real>::find(const StepView<Real>& step, const WorldState<Real>& world,
-                               const EdgeCandidates<Real>& edges) {
+                               const EdgeCandidates<Real>& edges, const Real* joined, Books& books) {
     const ContactRows<Real>& candidates = step.graph.supports;
     step.supports.resize_for_some_of(candidates, step.settings.effects.of_supports());
     const std::size_t groups = candidates.groups();
     left_edges_of_.resize(std::max(left_edges_of_.size(), groups));
     const Search search{step, world, edges};
     note_pressing(search);
+    lead_discs(search, joined, books);
     const double work = kNanosecondsToFind * static_cast<double>(candidates.a.size());
     step.loops.executor->for_each_task(groups, work,
                                        [&](std::size_t group) { find_in_group(group, search); });
@@ -77,12 +89,136 @@ void SupportFinder<Real>::find(const StepView<Real>& step, const WorldState<Real
 /// Notes which bodies pressed on an edge in the step before.
 template <class Real>
 void SupportFinder<Real>::note_pressing(const Search& search) {
+    hold_.clear();
     if (search.world.edges.empty()) return;
-    presses_on_edges_.assign(search.world.bodies.rows(), 0);
+    hold_.resize(search.world.bodies.rows(), EdgeHold::none);
     const ContactRows<Real>& candidates = search.step.graph.supports;
     candidates.for_each([&](std::size_t i) {
         if (candidates.normal_impulse[i] > 0 && candidates.partner(i).is_edge())
-            presses_on_edges_[static_cast<std::size_t>(candidates.a[i])] = 1;
+            hold_[static_cast<std::size_t>(candidates.a[i])] = EdgeHold::pressed;
+    });
+}
+
+/// Turns the velocities of discs that curves hold (narrowphase/smooth_track.hpp). What turns them presses
+/// them on the curve, so friction may act up to that, and rolling resistance.
+///
+/// Where nothing has pressed, a disc that a curve holds is one that touches it and has no restitution. A disc
+/// that has joints turns with the others of its mechanism, and edges that move do work.
+template <class Real>
+void SupportFinder<Real>::lead_discs(const Search& search, const Real* joined, Books& books) {
+    const auto& [step, world, edges] = search;
+    const auto may_lead = [&](const EdgeBody& body) { return is_curve_at_rest(search, body.first); };
+    const std::vector<EdgeBody>& bodies = world.edges.bodies;
+    if (std::none_of(bodies.begin(), bodies.end(), may_lead)) return;
+    velocity_.resize(hold_.size());
+    const ContactRows<Real>& candidates = step.graph.supports;
+    candidates.for_each([&](std::size_t i) {
+        const auto row = static_cast<std::size_t>(candidates.a[i]);
+        if (!candidates.partner(i).is_edge() || hold_[row] == EdgeHold::led ||
+            (joined && joined[row] > Real(0)))
+            return;
+        const std::int32_t edge = candidates.partner(i).edge_number();
+        const std::optional<Vec2> led = velocity_along_curve(search, row, edge);
+        if (!led) return;
+        hold_[row] = EdgeHold::led;
+        velocity_[row] = *led;
+        give_turn(search, row, edges.pose_of(world.edges[edge]).row, books);
+    });
+}
+
+/// Whether an edge has others that go on where it ends, and stands still.
+template <class Real>
+bool SupportFinder<Real>::is_curve_at_rest(const Search& search, std::int32_t number) {
+    const Edge& edge = search.world.edges[number];
+    const EdgePose& pose = search.edges.pose_of(edge);
+    return (edge.previous >= 0 || edge.next >= 0) && !pose.turns() &&
+           pose.position.x == pose.end_position.x && pose.position.y == pose.end_position.y;
+}
+
+/// What a curve makes of a disc's velocity [m/s], if it holds the disc.
+template <class Real>
+std::optional<Vec2> SupportFinder<Real>::velocity_along_curve(const Search& search, std::size_t row,
+                                                              std::int32_t number) const {
+    const auto& [step, world, edges] = search;
+    const Bodies<Real>& bodies = world.bodies;
+    const Edge& edge = world.edges[number];
+    const EdgePose& pose = edges.pose_of(edge);
+    const bool may_bounce = step.settings.effects.restitution && hold_[row] == EdgeHold::none &&
+                            (bodies.restitution[row] > 0 || bodies.restitution[pose.row] > 0);
+    if (may_bounce || !is_curve_at_rest(search, number)) return {};
+    const Vec2 v{bodies.velocity_x[row], bodies.velocity_y[row]};
+    const double dt = step.terms.dt, radius = bodies.radius[row],
+                 touching = radius + step.settings.contact_distance(radius), longest = kLongestLed * radius;
+    const auto [p, way] = relative_way(bodies, pose, row, v, dt);
+    const double share = nearest_share(p, edge.a, edge.b),
+                 distance = length_squared(p - point_at(edge.a, edge.b, share));
+    if (!(distance > 0) || !(distance <= touching * touching) || !(length_squared(way) < longest * longest) ||
+        !is_touched_here(p, share, world.edges, edge))
+        return {};
+    const Vec2 fall = fall_of(step.terms);
+    const auto led = lead_along_curve(
+        world.edges,
+        {number, radius, p, rotate_back(pose.turn, v), rotate_back(pose.turn, fall), step.terms.substep_dt},
+        dt);
+    if (!led) return {};
+    return rotate(pose.turn, *led);
+}
+
+/// Gives a disc the impulse that turns its velocity, with friction and rolling resistance.
+template <class Real>
+void SupportFinder<Real>::give_turn(const Search& search, std::size_t row, std::size_t of_edge,
+                                    Books& books) {
+    const StepView<Real>& step = search.step;
+    const Bodies<Real>& bodies = search.world.bodies;
+    const ContactEffects& effects = step.settings.effects;
+    const Vec2 v{bodies.velocity_x[row], bodies.velocity_y[row]}, led = velocity_[row], change = led - v;
+    const Vec2 fall = fall_of(step.terms);
+    const double mass = bodies.mass[row], turn = mass * std::sqrt(length_squared(change));  // N s
+    const auto number = static_cast<std::int32_t>(row);
+    DoubleBody disc = body_at(step.records.velocity, number);
+    const double rim = step.records.start_of_substep(number)[2];
+    disc.record[0] = led.x, disc.record[1] = led.y, disc.record[2] = rim;
+    const DoubleSurface surface{0, 0, 0};
+    const double sense = cross(led, change) > 0 ? 1 : -1, speed = std::sqrt(length_squared(led));
+    ContactTerms<double> terms{};
+    terms.nx = sense / speed * led.y, terms.ny = -sense / speed * led.x;  // into the curve
+    terms.of_a = 1;
+    if (effects.friction) {
+        double slip = tangent_velocity(disc, surface, terms.nx, terms.ny);
+        if (effects.rolling) {
+            terms.rolling =
+                pair_rolling_resistance(bodies.rolling_resistance[row], bodies.rolling_resistance[of_edge]);
+            const double rolls = rolling_velocity(disc, surface, terms.of_a);
+            const double roll = solve_rolling(disc, surface, terms, 0.0, turn, slip).added;
+            if (books.is_open)
+                books.friction += 0.5 * roll * (rolls + rolling_velocity(disc, surface, terms.of_a));
+        }
+        // What rolls has no slip in the middle of the step. To be free of it at its start only would take
+        // from each step what gravity makes in it; never more is left than there was.
+        const double most = std::fabs(slip), by_gravity = 0.5 * (fall.y * terms.nx - fall.x * terms.ny),
+                     left = std::clamp(by_gravity, -most, most);
+        const double limit = pair_friction(bodies.friction[row], bodies.friction[of_edge]) * turn;
+        const double drag =
+            hold_within(0.0, (left - slip) / inverse_tangent_mass(disc, surface), limit).added;
+        disc.apply_impulse(0, drag, terms.nx, terms.ny, -1);
+        if (books.is_open)
+            books.friction += 0.5 * drag * (slip + tangent_velocity(disc, surface, terms.nx, terms.ny));
+    }
+    velocity_[row] = {disc.record[0], disc.record[1]};
+    step.records.add_velocity(number, velocity_[row] - v, disc.record[2] - rim, step.terms);
+    if (books.is_open) books.immovable_momentum += mass * (velocity_[row] - v);
+}
+
+template <class Real>
+void SupportFinder<Real>::remember_led(ContactRows<Real>& candidates,
+                                       const ContactRows<Real>& supports) const {
+    if (hold_.empty()) return;
+    supports.for_each([&](std::size_t i) {
+        const auto candidate = static_cast<std::size_t>(supports.candidate[i]);
+        Real& impulse = candidates.normal_impulse[candidate];
+        if (hold_[static_cast<std::size_t>(supports.a[i])] == EdgeHold::led &&
+            candidates.partner(candidate).is_edge() && !(impulse > 0))
+            impulse = kHeldByTurn<Real>;
     });
 }
 
@@ -117,11 +253,12 @@ void SupportFinder<Real>::find_in_group(std::size_t group, const Search& search)
                     continue;
                 }
             }
-            const SupportSurface s = support.is_edge()
-                                         ? surface_of_edge(world, edges, row, support.edge_number(), dt,
-                                                           presses_on_edges_[row] != 0)
-                                         : surface_of(world, row, support);
-            const Vec2 dv = s.velocity - Vec2{bodies.velocity_x[row], bodies.velocity_y[row]};
+            const Vec2 v = velocity_of(bodies, row);
+            const SupportSurface s =
+                support.is_edge()
+                    ? surface_of_edge(world, edges, row, support.edge_number(), v, dt, hold_[row])
+                    : surface_of(world, row, support);
+            const Vec2 dv = s.velocity - v;
             // A wall is a wall everywhere, so it is kept however slowly a body nears it: in a crowd another
             // one may yet throw it there within this step. What is round only holds where it is met.
             const double crowd = s.is_flat ? kCrowdedRadii * radius : 0;
@@ -132,7 +269,7 @@ void SupportFinder<Real>::find_in_group(std::size_t group, const Search& search)
                 let_go(i);
                 continue;
             }
-            add_support(s, i, at, step, world);
+            add_support(s, v, i, at, step, world);
             ++at;
         }
         place = step.supports.close_colour(c, place, at - place, padding_row);
