@@ -24,6 +24,13 @@ BodyId add_driven(Scene& scene, Body body, double speed, double torque) {
     return id;
 }
 
+/// What the spinner stirs, a third each.
+Shape grain(std::int64_t number) {
+    if (number % 3 == 0) return Capsule{.length = 0.5, .radius = 0.25};
+    if (number % 3 == 1) return Disc{0.35};
+    return Box{0.7, 0.7};
+}
+
 }  // namespace
 
 BenchScene driven_drum(std::int64_t bodies) {
@@ -69,10 +76,7 @@ BenchScene spinner(std::int64_t bodies) {
     add_driven(scene, {.shape = Box{width, length}, .position = {0, low}}, 5, torque);
     const auto half_row = static_cast<std::int64_t>(0.6 * radius);  // bodies, on either side of the bar
     for (std::int64_t i = 0; i < bodies - 2; ++i) {
-        Body body;
-        if (i % 3 == 0) body.shape = Capsule{.length = 0.5, .radius = 0.25};
-        if (i % 3 == 1) body.shape = Disc{0.35};
-        if (i % 3 == 2) body.shape = Box{0.7, 0.7};
+        Body body{.shape = grain(i)};
         body.material = {.density = kDensity, .friction = kFriction, .restitution = kRestitution};
         const std::int64_t row = i / (2 * half_row), column = i % (2 * half_row);
         const double side = column < half_row ? -1 : 1;

@@ -23,7 +23,7 @@ constexpr int kFewTurns = 7;
 /// one that touches light ones, they do not: their light bodies would be swallowed. Without gravity nothing
 /// lies on anything. docs/decisions/0079-struck-bodies.md has what more would do.
 constexpr double kStruck = 2;
-constexpr int kTurnsOfStruck = 3;
+constexpr int kTurnsOfStruck = 3, kTurnsWithoutGravity = 1;
 constexpr std::size_t kMixed = 64;
 /// Light bodies that change the velocity of each heavy one by less than this share of what gravity adds in a
 /// substep are no load to it: it is to them as what nothing moves.
@@ -73,7 +73,8 @@ void ShapeTurns<Real>::begin_step(const WorldState<Real>& world, const PathSolve
     most_ = static_cast<int>(
         std::min(kTurnsOfRatio * static_cast<double>(most), static_cast<double>(kMostTurns)));
     const bool are_mixed = kMixed * count_heavy(world.bodies.count) >= world.bodies.moving();
-    most_of_struck_ = are_mixed && length_squared(world.gravity) > 0 ? most_ : kTurnsOfStruck;
+    const bool can_lie = length_squared(world.gravity) > 0;
+    most_of_struck_ = !can_lie ? kTurnsWithoutGravity : are_mixed ? most_ : kTurnsOfStruck;
 }
 
 /// @return how many heavy bodies touch light ones

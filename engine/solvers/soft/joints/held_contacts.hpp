@@ -43,20 +43,25 @@ class HeldContacts {
   public:
     HeldContacts(const StepView<Real>& step, PathSolver<Real>& paths) : step_(step), paths_(paths) {}
 
-    /// Calls fn(contact) for all that can touch in the step, in an order that rows alone decide.
-    template <class Fn>
-    void for_each(const Bodies<Real>& bodies, const Fn& fn) const {
+    /// Calls fn(contact) for all that can touch in the step and have a body with is_theirs(row), in an order
+    /// that rows alone decide.
+    template <class IsTheirs, class Fn>
+    void for_each_of(const Bodies<Real>& bodies, const IsTheirs& is_theirs, const Fn& fn) const {
         if (bodies.has_shapes) {
             std::size_t number = 0;
-            paths_.for_each(
-                [&](const PathContact<Real>& contact) { fn(of_path(contact, number++, bodies)); });
+            paths_.for_each([&](const PathContact<Real>& contact) {
+                if (is_theirs(contact.near) || is_theirs(contact.far)) fn(of_path(contact, number, bodies));
+                ++number;
+            });
         }
         const ContactRows<Real>& pairs = step_.graph.pairs;
         pairs.for_each([&](std::size_t i) {
-            if (pairs.is_live[i / kContactBlock]) fn(of_discs(pairs, i, HeldContact::Store::pair));
+            if (pairs.is_live[i / kContactBlock] && (is_theirs(pairs.a[i]) || is_theirs(pairs.b[i])))
+                fn(of_discs(pairs, i, HeldContact::Store::pair));
         });
-        step_.supports.for_each(
-            [&](std::size_t i) { fn(of_discs(step_.supports, i, HeldContact::Store::support)); });
+        step_.supports.for_each([&](std::size_t i) {
+            if (is_theirs(step_.supports.a[i])) fn(of_discs(step_.supports, i, HeldContact::Store::support));
+        });
     }
     /// Separation of a point by what the bodies have come in this step [m].
     double separation(const HeldContact& contact, std::size_t point) const;
