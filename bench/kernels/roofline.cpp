@@ -37,6 +37,9 @@ constexpr std::array kReasons{
     Reason{"next_pairs", "gathers and scatters two records a lane, turned in registers"},
     Reason{"begin_substeps", "turns records in registers, and writes as much again as it reads"},
     Reason{"advance_bodies", "turns five records in registers for each batch"},
+    Reason{"find_box_manifolds", "loads two poses and two sizes a lane; selections are not counted"},
+    Reason{"find_manifolds",
+           "loads vertices and normals a lane and turns them in registers; selections are not counted"},
     Reason{"end_substeps", "turns records into columns in registers; divides by radii"},
     Reason{"advance_rotation", "as many loads and stores as operations: one store a cycle"},
 };

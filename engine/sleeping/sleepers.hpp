@@ -39,8 +39,8 @@ class Sleepers {
                      std::span<const std::int32_t> rows);
     /// To be called before rows get another order: contacts with sleepers keep no impulses.
     static void forget_contacts(ContactGraph<Real>& graph, const WorldState<Real>& world);
-    /// Marks the islands that something is about to hit in this step, and those that are hit in turn by what
-    /// they hold. @return whether there are any.
+    /// Marks the islands that something is about to hit in this step, and those that these hit in turn.
+    /// @return whether there are any.
     bool mark_hit(const WorldState<Real>& world, double dt, double substep);
     /// Gives contacts that have woken the impulses of a substep of length `substep`.
     void restore_impulses(ContactGraph<Real>& graph, const WorldState<Real>& world, double substep);

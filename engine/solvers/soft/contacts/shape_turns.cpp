@@ -11,7 +11,7 @@ namespace carom {
 namespace {
 
 /// Turns over contacts of shapes in a substep, at most: a share of the largest ratio of masses of two that
-/// touch, and whatever that is. The same decision has what fewer leave.
+/// touch, and whatever that is. docs/decisions/0064-uneven-masses-in-sweeps.md has what fewer leave.
 constexpr double kTurnsOfRatio = 0.05;
 constexpr int kMostTurns = 31;
 /// They end when a sweep changes no velocity by more than this share of what gravity adds in a substep, and
@@ -23,7 +23,8 @@ constexpr int kFewTurns = 7;
 /// one that touches light ones, they do not: their light bodies would be swallowed. Without gravity nothing
 /// lies on anything. docs/decisions/0079-struck-bodies.md has what more would do.
 constexpr double kStruck = 2;
-constexpr int kTurnsOfStruck = 3, kTurnsWithoutGravity = 1;
+constexpr int kTurnsOfStruck = 3;
+constexpr int kTurnsWithoutGravity = 1;
 constexpr std::size_t kMixed = 64;
 /// Light bodies that change the velocity of each heavy one by less than this share of what gravity adds in a
 /// substep are no load to it: it is to them as what nothing moves.
