@@ -6,6 +6,21 @@
 namespace carom {
 namespace {
 
+/// Ends of a chain that are nearer than this share of the shorter of their edges are one point: a circle that
+/// is drawn from 0 to 2 pi ends a rounding away from where it began.
+constexpr double kSamePoint = 1e-6;
+/// Fewest points of a chain that comes back to its first one: fewer lead there along the same line.
+constexpr std::size_t kFewestOfClosed = 4;
+
+bool is_closed(const Chain& chain) {
+    if (chain.loop || chain.points.size() < kFewestOfClosed) return chain.loop;
+    const auto& points = chain.points;
+    const Vec2 gap = points.back() - points.front(), first = points[1] - points.front(),
+               last = points.back() - points[points.size() - 2];
+    const double shorter = std::fmin(length_squared(first), length_squared(last));
+    return length_squared(gap) <= kSamePoint * kSamePoint * shorter;
+}
+
 void link(EdgeStore& store, const EdgeBody& body, bool is_loop) {
     for (std::int32_t n = 0; n < body.count; ++n) {
         Edge& edge = store.edges[static_cast<std::size_t>(body.first + n)];
@@ -28,10 +43,10 @@ void EdgeStore::append(BodyId id, const Shape& shape) {
     if (const auto* segment = std::get_if<Segment>(&shape)) {
         add(segment->a, segment->b);
     } else if (const auto* chain = std::get_if<Chain>(&shape)) {
-        is_loop = chain->loop;
+        is_loop = is_closed(*chain);
         for (std::size_t i = 0; i + 1 < chain->points.size(); ++i)
             add(chain->points[i], chain->points[i + 1]);
-        if (is_loop) add(chain->points.back(), chain->points.front());
+        if (chain->loop) add(chain->points.back(), chain->points.front());
     } else {
         return;
     }

@@ -23,7 +23,8 @@ struct Segment {
 };
 
 /// Lines from point to point of the body's frame. A disc that rolls over a point where two of them meet feels
-/// one surface, not two edges. For static and kinematic bodies.
+/// one surface, not two edges. For static and kinematic bodies. A chain that comes back to its first point is
+/// a loop as well: its last point and the first are one.
 struct Chain {
     std::vector<Vec2> points{};  ///< m; 2 (of a loop 3) ... kLargestChainPoints, each unlike the one before
     bool loop = false;           ///< a last line leads back to the first point
