@@ -70,10 +70,11 @@ struct DiscOnCurve {
 inline std::optional<Vec2> lead_along_curve(const EdgeStore& edges, const DiscOnCurve& disc, double dt) {
     constexpr int kTurns = 4;          // each leaves about the square of what was lacking
     constexpr double kLeastFalls = 8;  // speed, in what gravity adds in a step
-    const auto& [edge, radius, p, velocity, fall, substep] = disc;
+    const Vec2 p = disc.position, velocity = disc.velocity, fall = disc.fall;
+    const double radius = disc.radius, substep = disc.substep;
     const double speed = std::sqrt(length_squared(velocity)), falls = std::sqrt(length_squared(fall));
     if (!(speed > kLeastFalls * falls)) return {};
-    const std::int32_t here = edge_of_curve(edges, edge, p);
+    const std::int32_t here = edge_of_curve(edges, disc.edge, p);
     if (here < 0) return {};
     const auto edge_at_end = [&](Vec2 v) { return edge_of_curve(edges, here, p + dt * (v + 0.5 * fall)); };
     // Two steps are what the last chord and the next lie on.

@@ -227,8 +227,8 @@ class JointSystem {
             const double* x = &values[body * 3 * count + side];
             return {x[0], x[count], x[2 * count]};
         }
-        void reset(std::size_t bodies, std::size_t sides) {
-            count = sides, values.assign(bodies * 3 * sides, 0);
+        void reset(std::size_t body_count, std::size_t sides) {
+            count = sides, values.assign(body_count * 3 * sides, 0);
         }
         void add(std::size_t body, std::size_t side, const Vector& push) {
             for (std::size_t c = 0; c < 3; ++c) of(body)[c * count + side] += push[c];

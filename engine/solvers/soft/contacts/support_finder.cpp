@@ -106,12 +106,13 @@ void SupportFinder<Real>::note_pressing(const Search& search) {
 /// that has joints turns with the others of its mechanism, and edges that move do work.
 template <class Real>
 void SupportFinder<Real>::lead_discs(const Search& search, const Real* joined, Books& books) {
-    const auto& [step, world, edges] = search;
+    const WorldState<Real>& world = search.world;
+    const EdgeCandidates<Real>& edges = search.edges;
     const auto may_lead = [&](const EdgeBody& body) { return is_curve_at_rest(search, body.first); };
     const std::vector<EdgeBody>& bodies = world.edges.bodies;
     if (std::none_of(bodies.begin(), bodies.end(), may_lead)) return;
     velocity_.resize(hold_.size());
-    const ContactRows<Real>& candidates = step.graph.supports;
+    const ContactRows<Real>& candidates = search.step.graph.supports;
     candidates.for_each([&](std::size_t i) {
         const auto row = static_cast<std::size_t>(candidates.a[i]);
         if (!candidates.partner(i).is_edge() || hold_[row] == EdgeHold::led ||
