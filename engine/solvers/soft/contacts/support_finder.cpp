@@ -75,8 +75,8 @@ void SupportFinder<Real>::find(const StepView<Real>& step, const WorldState<Real
     const std::size_t groups = candidates.groups();
     left_edges_of_.resize(std::max(left_edges_of_.size(), groups));
     const Search search{step, world, edges};
-    note_pressing(search);
-    lead_discs(search, joined, books);
+    hold_.clear();
+    if (!world.edges.empty()) note_pressing(search), lead_discs(search, joined, books);
     const double work = kNanosecondsToFind * static_cast<double>(candidates.a.size());
     step.loops.executor->for_each_task(groups, work,
                                        [&](std::size_t group) { find_in_group(group, search); });
@@ -89,8 +89,6 @@ void SupportFinder<Real>::find(const StepView<Real>& step, const WorldState<Real
 /// Notes which bodies pressed on an edge in the step before.
 template <class Real>
 void SupportFinder<Real>::note_pressing(const Search& search) {
-    hold_.clear();
-    if (search.world.edges.empty()) return;
     hold_.resize(search.world.bodies.rows(), EdgeHold::none);
     const ContactRows<Real>& candidates = search.step.graph.supports;
     candidates.for_each([&](std::size_t i) {
