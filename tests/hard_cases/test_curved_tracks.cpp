@@ -21,7 +21,7 @@ constexpr double kPi = std::numbers::pi;
 struct Loop {
     int edges = 1000;
     double speed = 10;  // m/s
-    Material material;
+    Material material{};
     double gravity = 0;          // m/s², downwards
     bool repeats_first = false;  // its last point is the first one, in place of a last line that leads there
 };
