@@ -160,7 +160,8 @@ TEST_SUITE("hard cases/curved tracks") {
             }
     }
 
-    // That is no curve: what has no restitution keeps what it has along the second edge.
+    // A bend of more than kSmoothBend is no curve: what has no restitution keeps what it has along the second
+    // edge.
     TEST_CASE_TEMPLATE("a corner takes from a disc what its edge faces", Real, float, double) {
         for (const double bend : {0.3, 0.6, 1.0}) {
             CAPTURE(bend);

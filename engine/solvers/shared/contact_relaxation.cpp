@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "state/columns/index.hpp"
+
 namespace carom {
 namespace {
 
@@ -30,10 +32,6 @@ constexpr double kSlack = 10;
 /// Largest load of a contact, in what stops all bodies that touch each other within a substep: arches and
 /// wedges carry some times what they hold up.
 constexpr double kMostLoad = 1000;
-
-std::size_t index(std::int32_t body) {
-    return static_cast<std::size_t>(body);
-}
 
 /// Adds k (x, y)ᵀ (x, y) to the first rows of a matrix.
 template <std::size_t kNumbers>

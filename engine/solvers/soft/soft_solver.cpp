@@ -122,7 +122,7 @@ void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
 }
 
 /// Joints, then all contacts. @return whether contacts are left as they are, since joints have changed no
-/// velocity by more than `settled` [m/s].
+/// velocity by more than `settled` [m/s]; below zero: never.
 template <class Real>
 bool SoftSolver<Real>::solve_turn(WorldState<Real>& world, double settled) {
     const auto next = Sweeps::next(view(), Sweeps::Blocks::all, 1);

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "state/columns/index.hpp"
+
 namespace carom {
 namespace {
 
@@ -25,10 +27,6 @@ constexpr double kTolerance = 1e-3;
 constexpr double kLeastOfAlone = 1e-6;
 
 constexpr std::size_t kTangent = HeldContact::kPoints;
-
-std::size_t index(std::int32_t row) {
-    return static_cast<std::size_t>(row);
-}
 
 JointBlow unit_blow(const HeldContact& contact, std::size_t side, std::size_t direction) {
     return {contact.row[side], contact.impulse_on(side, direction), contact.at_rim[side][direction]};

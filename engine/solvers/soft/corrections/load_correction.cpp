@@ -1,4 +1,4 @@
-#include "solvers/soft/contacts/load_correction.hpp"
+#include "solvers/soft/corrections/load_correction.hpp"
 
 namespace carom {
 

@@ -1,4 +1,4 @@
-#include "solvers/soft/contacts/wedged_bodies.hpp"
+#include "solvers/soft/corrections/wedged_bodies.hpp"
 
 #include <algorithm>
 #include <cmath>

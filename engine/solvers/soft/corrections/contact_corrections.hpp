@@ -1,10 +1,10 @@
 #pragma once
 
-#include "solvers/soft/contacts/contact_chains.hpp"
-#include "solvers/soft/contacts/load_correction.hpp"
-#include "solvers/soft/contacts/shape_turns.hpp"
-#include "solvers/soft/contacts/uneven_contacts.hpp"
-#include "solvers/soft/contacts/wedged_bodies.hpp"
+#include "solvers/soft/corrections/contact_chains.hpp"
+#include "solvers/soft/corrections/load_correction.hpp"
+#include "solvers/soft/corrections/shape_turns.hpp"
+#include "solvers/soft/corrections/uneven_contacts.hpp"
+#include "solvers/soft/corrections/wedged_bodies.hpp"
 
 namespace carom {
 

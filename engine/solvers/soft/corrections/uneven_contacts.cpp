@@ -1,10 +1,11 @@
-#include "solvers/soft/contacts/uneven_contacts.hpp"
+#include "solvers/soft/corrections/uneven_contacts.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "constraints/contact_law.hpp"
+#include "state/columns/index.hpp"
 
 namespace carom {
 namespace {
@@ -22,10 +23,6 @@ constexpr int kPatience = 60;
 // last ones that are not. docs/decisions/0064-uneven-masses-in-sweeps.md has what else was tried.
 constexpr int kRelaxedSweeps = 9;
 constexpr int kLastSweeps = 2;
-
-std::size_t index(std::int32_t row) {
-    return static_cast<std::size_t>(row);
-}
 
 template <class Real>
 void store_impulses(ContactRows<Real>& rows, std::size_t i, const ContactImpulses<double>& impulses) {

@@ -1,4 +1,4 @@
-#include "solvers/soft/contacts/contact_chains.hpp"
+#include "solvers/soft/corrections/contact_chains.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "constraints/contact_law.hpp"
+#include "state/columns/index.hpp"
 
 namespace carom {
 namespace {
@@ -26,10 +27,6 @@ constexpr int kStepsOfList = 16;
 constexpr int kFewestSteps = 4;
 /// By which a contact may miss its law, in shares of what gravity adds to a speed in a substep.
 constexpr double kTolerance = 2e-4;
-
-std::size_t index(std::int32_t row) {
-    return static_cast<std::size_t>(row);
-}
 
 }  // namespace
 

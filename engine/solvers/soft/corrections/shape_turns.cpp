@@ -1,4 +1,4 @@
-#include "solvers/soft/contacts/shape_turns.hpp"
+#include "solvers/soft/corrections/shape_turns.hpp"
 
 #include <cmath>
 #include <utility>
@@ -6,6 +6,7 @@
 #include "constraints/partner.hpp"
 #include "math/vec2_math.hpp"
 #include "solvers/shared/local_solve.hpp"
+#include "state/columns/index.hpp"
 
 namespace carom {
 namespace {
@@ -33,10 +34,6 @@ constexpr double kLoaded = 0.1;
 /// turns, too, and until less is left: docs/decisions/0067-weights-taken-off-heaps.md.
 constexpr double kHeavyLost = 10;
 constexpr double kSettledOfLost = 0.05;
-
-std::size_t index(std::int32_t row) {
-    return static_cast<std::size_t>(row);
-}
 
 }  // namespace
 
