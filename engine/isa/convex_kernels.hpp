@@ -11,7 +11,7 @@ template <class Real>
 struct PathKernels {
     using Pass = PathCounts (*)(const SolvePaths<Real>&, std::size_t first, std::size_t last);
     Pass carry, warm_start, solve, sweep;
-    Pass watch, settle;  // of contacts beside the paths
+    Pass watch, watch_again, settle;  // of contacts beside the paths; watch_again has the floors of watch
     Pass sum_loads, scale_loads, retain_loads;
 };
 

@@ -17,15 +17,15 @@ namespace {
 
 template <class Real, class Isa>
 constexpr ConvexKernels<Real> make_convex_kernels() {
-    return {
-        .find_manifolds = &find_manifolds<Real, Isa>,
-        .find_box_manifolds = &find_box_manifolds<Real, Isa>,
-        .turn_angles = &turn_angles<Isa>,
-        .find_approached = &find_approached<Real, Isa>,
-        .drop_parted = &drop_parted<Real, Isa>,
-        .paths = {&carry_paths<Real, Isa>, &warm_start_paths<Real, Isa>, &solve_paths<Real, Isa>,
-                  &sweep_all_paths<Real, Isa>, &watch_paths<Real, Isa>, &settle_watched<Real>,
-                  &sum_path_loads<Real, Isa>, &scale_path_loads<Real, Isa>, &retain_path_loads<Real, Isa>}};
+    return {.find_manifolds = &find_manifolds<Real, Isa>,
+            .find_box_manifolds = &find_box_manifolds<Real, Isa>,
+            .turn_angles = &turn_angles<Isa>,
+            .find_approached = &find_approached<Real, Isa>,
+            .drop_parted = &drop_parted<Real, Isa>,
+            .paths = {&carry_paths<Real, Isa>, &warm_start_paths<Real, Isa>, &solve_paths<Real, Isa>,
+                      &sweep_all_paths<Real, Isa>, &watch_paths<Real, Isa, true>,
+                      &watch_paths<Real, Isa, false>, &settle_watched<Real>, &sum_path_loads<Real, Isa>,
+                      &scale_path_loads<Real, Isa>, &retain_path_loads<Real, Isa>}};
 }
 
 /// The kernels of convex shapes, instantiated for each instruction set by its file.

@@ -82,4 +82,20 @@ TEST_SUITE("hard cases/large heaps") {
             CHECK(world.overlaps().max < 0.03);
         }
     }
+
+    // Each contact of thousands that came or went had all of them cut into paths anew, in nearly every step
+    // of a heap that settles: docs/decisions/0083-cuts-that-are-kept.md.
+    TEST_CASE("a heap of many boxes that settles keeps its paths while few contacts come and go") {
+        constexpr int kFalls = 450, kSettles = 150;  // steps
+        World world(falling_boxes(1600, 0.7, 0.5, 12), {.threads = 1});
+        for (int step = 0; step < kFalls; ++step) world.step(kStep);
+        const std::int64_t before = world.profile().path_cuts;
+        double slowest = 1e30;  // m/s
+        for (int step = 0; step < kSettles; ++step) {
+            world.step(kStep);
+            slowest = std::min(slowest, rms_speed(world));
+        }
+        CHECK(slowest > 1e-5);  // it does not lie still yet
+        CHECK(world.profile().path_cuts - before < kSettles / 4);
+    }
 }

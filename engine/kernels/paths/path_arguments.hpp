@@ -97,6 +97,7 @@ inline constexpr std::size_t path_scratch_bytes(std::size_t longest) {
 /// What the kernel met.
 struct PathCounts {
     std::size_t unsettled = 0;  // lanes
+    std::size_t closing = 0;    // contacts beside the paths
 };
 
 }  // namespace carom

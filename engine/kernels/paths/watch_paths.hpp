@@ -11,9 +11,10 @@
 namespace carom {
 namespace {
 
-/// Floors of a substep, and which contacts come in faster than these or carry an impulse:
-/// SolvePaths::closing.
-template <class Real, class Isa>
+/// Which contacts come in faster than their floors or carry an impulse: SolvePaths::closing.
+/// @tparam kFindsFloors  whether to find the floors of the substep first; they change with displacements
+/// alone
+template <class Real, class Isa, bool kFindsFloors>
 PathCounts watch_paths(const SolvePaths<Real>& arguments, std::size_t first, std::size_t last) {
     using Lanes = simd::Lanes<Real, Isa>;
     using F = typename Lanes::Batch;
@@ -24,18 +25,22 @@ PathCounts watch_paths(const SolvePaths<Real>& arguments, std::size_t first, std
         PathLink<Real>& link = *p.link;
         const std::int32_t *near_rows = p.near_rows(0), *far_rows = p.far_rows(0);
         const LinkLanes<Lanes, Real> l(link, p.lane);
-        const PathPlace<Lanes> near(k.displacement, k.turn, near_rows), far(k.displacement, k.turn, far_rows);
+        if constexpr (kFindsFloors) {
+            const PathPlace<Lanes> near(k.displacement, k.turn, near_rows),
+                far(k.displacement, k.turn, far_rows);
+            F s1, s2, along;
+            l.relative(far.at[0] - near.at[0], far.at[1] - near.at[1], near.turn, far.turn, s1, s2, along);
+            s1 += Lanes::load(link.separation1 + p.lane), s2 += Lanes::load(link.separation2 + p.lane);
+            Lanes::store(link.floor1 + p.lane, simd::min(-s1 * F(k.inverse_h), zero));
+            Lanes::store(link.floor2 + p.lane, simd::min(-s2 * F(k.inverse_h), zero));
+        }
         const PathBody<Lanes> a{Lanes::load_rows4(k.velocity, near_rows)},
             b{Lanes::load_rows4(k.velocity, far_rows)};
-        F s1, s2, along, v1, v2, vt;
-        l.relative(far.at[0] - near.at[0], far.at[1] - near.at[1], near.turn, far.turn, s1, s2, along);
+        F v1, v2, vt;
         l.relative(b.record[0] - a.record[0], b.record[1] - a.record[1], a.record[2], b.record[2], v1, v2,
                    vt);
-        s1 += Lanes::load(link.separation1 + p.lane), s2 += Lanes::load(link.separation2 + p.lane);
-        const F floor1 = simd::min(-s1 * F(k.inverse_h), zero),
-                floor2 = simd::min(-s2 * F(k.inverse_h), zero);
-        Lanes::store(link.floor1 + p.lane, floor1), Lanes::store(link.floor2 + p.lane, floor2);
-        const F pressed = Lanes::load(link.normal1 + p.lane) + Lanes::load(link.normal2 + p.lane);
+        const F floor1 = Lanes::load(link.floor1 + p.lane), floor2 = Lanes::load(link.floor2 + p.lane),
+                pressed = Lanes::load(link.normal1 + p.lane) + Lanes::load(link.normal2 + p.lane);
         const auto closes = (v1 < floor1 - tolerance) | (v2 < floor2 - tolerance) | (pressed > zero);
         const auto bundle = static_cast<std::size_t>(p.head - k.heads) / kPathLanes;
         k.closing[bundle] |= static_cast<std::uint32_t>(simd::bitmask(closes)) << p.lane;
@@ -47,14 +52,17 @@ PathCounts watch_paths(const SolvePaths<Real>& arguments, std::size_t first, std
 template <class Real>
 PathCounts settle_watched(const SolvePaths<Real>& arguments, std::size_t first, std::size_t last) {
     const SolvePaths<Real> k = arguments;  // a copy: no store can change it
-    for (std::size_t bundle = first; bundle < last; ++bundle)
+    PathCounts counts;
+    for (std::size_t bundle = first; bundle < last; ++bundle) {
+        counts.closing += static_cast<std::size_t>(__builtin_popcount(k.closing[bundle]));
         for (std::uint32_t left = k.closing[bundle]; left != 0; left &= left - 1) {
             const auto lane = static_cast<std::size_t>(__builtin_ctz(left));
             const PathBatch<Real> one{k, k.links + k.first_link[bundle], 1, lane,
                                       k.heads + bundle * kPathLanes + lane};
             sweep_paths<simd::Lanes<Real, simd::Scalar>>(one, true, true);
         }
-    return {};
+    }
+    return counts;
 }
 
 }  // namespace

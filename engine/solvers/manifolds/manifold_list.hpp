@@ -24,7 +24,7 @@ struct ManifoldMemory {
     Real normal_x = 0, normal_y = 0;             // of the step that the impulses are of
     Real normal1 = 0, normal2 = 0, tangent = 0;  // N s, of a substep
     Real separation1 = 0, separation2 = 0;       // m, at the start of the step, of a contact carried on
-    // Where the last cut has put the contact, while paths are wild: PathCut::Slot.
+    // Where the last cut has put the contact, in crowds: PathCut::Slot.
     std::int32_t slot = -1, slot_kind = 0;
 
     bool is_loaded() const { return normal1 + normal2 > 0; }

@@ -173,43 +173,20 @@ void Manifolds<Real>::add(const WorldState<Real>& world, const Candidates<Real>&
         if (can_touch(world, pair.a, pair.b)) list_pair(world, pair.a, pair.b);
 }
 
-/// Files the contacts that carry something, or have a place along a path, by their body a.
-template <class Real>
-void Manifolds<Real>::file_by_slot(const ManifoldList<Real>& old) {
-    std::uint32_t slots = 0;
-    for (const auto& name : old.names) slots = std::max(slots, name.a.index + 1);
-    first_of_slot_.assign(slots, -1);
-    next_of_slot_.resize(old.count());
-    for (std::size_t i = 0; i < old.count(); ++i) {
-        if (!old.memory[i].is_loaded() && old.memory[i].slot < 0) continue;
-        std::int32_t& first = first_of_slot_[old.names[i].a.index];
-        next_of_slot_[i] = first, first = static_cast<std::int32_t>(i);
-    }
-}
-
 /// Gives the contacts of a list what those of the same name had in the old one.
 template <class Real>
 void Manifolds<Real>::recall(ManifoldList<Real>& list, const ManifoldList<Real>& old,
                              const Executor& executor) {
     list.fit();
-    file_by_slot(old);
-    const std::size_t slots = first_of_slot_.size();
+    index_.file(old);
     is_recalled_.assign(old.count(), 0);
-    const auto find = [&](const ManifoldName& name) -> const ManifoldMemory<Real>* {
-        if (name.a.index >= slots) return nullptr;
-        for (std::int32_t n = first_of_slot_[name.a.index]; n >= 0;
-             n = next_of_slot_[static_cast<std::size_t>(n)]) {
-            const auto i = static_cast<std::size_t>(n);
-            if (old.names[i] == name) return is_recalled_[i] = 1, &old.memory[i];
-        }
-        return nullptr;
-    };
     const auto recall_one = [&](std::size_t i) {
-        const ManifoldName& name = list.names[i];
-        if (const auto* memory = find(name))
-            list.memory[i] = *memory;
-        else if (const auto* other = find(name.reversed()))
-            list.memory[i] = other->reversed();
+        const ManifoldName &name = list.names[i], reversed = name.reversed();
+        index_.for_each_like(name, [&](std::size_t n) {
+            const bool is_same = old.names[n] == name;
+            if (!is_same && !(old.names[n] == reversed)) return;
+            list.memory[i] = is_same ? old.memory[n] : old.memory[n].reversed(), is_recalled_[n] = 1;
+        });
     };
     executor.for_each_chunk(list.count(), kContactsPerTask, kNanosecondsToRecall,
                             [&](std::size_t, std::size_t first, std::size_t last) {
@@ -220,25 +197,21 @@ void Manifolds<Real>::recall(ManifoldList<Real>& list, const ManifoldList<Real>&
 /// A body may touch a chain in several places: each takes what the one before it had that faced the same way.
 template <class Real>
 void Manifolds<Real>::recall_surfaces() {
-    file_by_slot(old_surfaces_);
+    index_.file(old_surfaces_);
     is_recalled_.assign(old_surfaces_.count(), 0);
     for (std::size_t i = 0; i < surfaces_.count(); ++i) {
         const ManifoldName& name = surfaces_.names[i];
-        if (name.a.index >= first_of_slot_.size()) continue;
-        std::int32_t best = -1;
+        std::size_t best = old_surfaces_.count();
         Real most = static_cast<Real>(kSameNormal);
-        for (std::int32_t n = first_of_slot_[name.a.index]; n >= 0;
-             n = next_of_slot_[static_cast<std::size_t>(n)]) {
-            const auto k = static_cast<std::size_t>(n);
-            if (is_recalled_[k] || !(old_surfaces_.names[k] == name)) continue;
+        index_.for_each_like(name, [&](std::size_t k) {
+            if (is_recalled_[k] || !(old_surfaces_.names[k] == name)) return;
             const ManifoldMemory<Real>& memory = old_surfaces_.memory[k];
             const Real alike =
                 memory.normal_x * surfaces_.normal_x[i] + memory.normal_y * surfaces_.normal_y[i];
-            if (alike > most) best = n, most = alike;
-        }
-        if (best < 0) continue;
-        is_recalled_[static_cast<std::size_t>(best)] = 1;
-        surfaces_.memory[i] = old_surfaces_.memory[static_cast<std::size_t>(best)];
+            if (alike > most) best = k, most = alike;
+        });
+        if (best == old_surfaces_.count()) continue;
+        is_recalled_[best] = 1, surfaces_.memory[i] = old_surfaces_.memory[best];
     }
 }
 
@@ -480,9 +453,9 @@ std::size_t Manifolds<Real>::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
     return bodies_.bytes() + surfaces_.bytes() + old_.bytes() + old_surfaces_.bytes() +
            surface_finder_.bytes() + items_.bytes() + distant_.bytes() + of(asleep_) + of(is_recalled_) +
-           of(loaded_) + of(is_box_of_) + of(blocks_are_boxes_) + of(first_of_slot_) + of(next_of_slot_) +
-           poses_.bytes() + ahead_.bytes() + flights_.bytes() + of(block_is_found_) + of(live_) +
-           of(was_live_) + live_of_bodies_.bytes() + chosen_pairs_.bytes();
+           of(loaded_) + of(is_box_of_) + of(blocks_are_boxes_) + index_.bytes() + poses_.bytes() +
+           ahead_.bytes() + flights_.bytes() + of(block_is_found_) + of(live_) + of(was_live_) +
+           live_of_bodies_.bytes() + chosen_pairs_.bytes();
 }
 
 template class Manifolds<float>;

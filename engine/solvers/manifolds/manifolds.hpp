@@ -11,6 +11,7 @@
 #include "solvers/manifolds/distant_pairs.hpp"
 #include "solvers/manifolds/gaps.hpp"
 #include "solvers/manifolds/held_flights.hpp"
+#include "solvers/manifolds/manifold_index.hpp"
 #include "solvers/manifolds/manifold_list.hpp"
 #include "solvers/manifolds/piece_items.hpp"
 #include "solvers/manifolds/pose_watch.hpp"
@@ -118,7 +119,6 @@ class Manifolds {
     bool are_boxes(const Bodies<Real>& bodies, std::int32_t a, std::int32_t b) const;
     void list_boxes(const ShapeStore<Real>& shapes);
     void find_box_blocks(const Bodies<Real>& bodies, std::size_t first);
-    void file_by_slot(const ManifoldList<Real>& old);
     void recall(ManifoldList<Real>& list, const ManifoldList<Real>& old, const Executor& executor);
     void recall_surfaces();
     /// Finds the contacts of a chunk of pairs that must be found in this step.
@@ -168,8 +168,8 @@ class Manifolds {
     std::size_t first_new_block_ = 0;  // blocks from here on are to be found, whatever their bodies do
     std::vector<std::uint8_t> block_is_found_;
     bool some_are_carried_ = false;
-    // Old contacts by the slot of their body a: the first of each slot, the one that follows each.
-    std::vector<std::int32_t> first_of_slot_, next_of_slot_;
+    // Scratch of `recall`.
+    ManifoldIndex index_;                    // of old contacts
     std::vector<std::uint8_t> is_recalled_;  // by old contact
 };
 

@@ -18,6 +18,9 @@ constexpr int kStepsOfCut = 30;
 /// Wild ones of many contacts are kept for so many, whatever contacts come and go: what comes stands beside
 /// them. docs/decisions/0043-contacts-beside-paths.md has the measurements.
 constexpr int kStepsOfWildCut = 4;
+/// Others of many contacts are kept for kStepsOfCut, too, while no larger share of the contacts than this
+/// stands beside them. docs/decisions/0083-cuts-that-are-kept.md.
+constexpr double kMostBeside = 0.003;
 
 template <class Real>
 bool is_nothing(const Bodies<Real>& bodies, std::int32_t b) {
@@ -62,11 +65,12 @@ typename PathChoice<Real>::Change PathChoice<Real>::choose(const WorldState<Real
     judge_mood(manifolds, unsettled);
     ++since_cut_;
     const bool is_wild = is_wild_crowd(manifolds);
-    if (is_wild && mood_of_cut_ == mood_ && since_cut_ < kStepsOfWildCut && !is_cut_forgotten_) {
-        keep_paths(world, manifolds);
-        return Change::contacts;
+    if (mood_of_cut_ == mood_ && since_cut_ < (is_wild ? kStepsOfWildCut : kStepsOfCut)) {
+        if (is_same && !is_wild) return Change::none;
+        if (manifolds.is_crowd() && !is_cut_forgotten_ &&
+            keep_paths(world, manifolds, is_wild ? 1 : kMostBeside))
+            return Change::contacts;
     }
-    if (is_same && !is_wild && since_cut_ < kStepsOfCut && mood_of_cut_ == mood_) return Change::none;
     cut_paths(world, manifolds, dt, executor);
     return Change::paths;
 }
@@ -120,8 +124,8 @@ void PathChoice<Real>::cut_paths(const WorldState<Real>& world, Manifolds<Real>&
     mood_of_cut_ = mood_;
     cut_.cut(contact_links_, bodies.moving(), kLongest[static_cast<std::size_t>(mood_)], executor);
     since_cut_ = 0;
-    is_cut_forgotten_ = !is_wild;  // no contact knows its place
-    if (!is_wild) return;
+    is_cut_forgotten_ = !manifolds.is_crowd();  // then no contact knows its place
+    if (is_cut_forgotten_) return;
     for (std::size_t n = 0; n < contact_links_.size(); ++n) {
         const PathCut::Slot slot = cut_.slot_of(n);
         ManifoldMemory<Real>& memory = manifolds.memory_of(manifolds.live()[n]);
@@ -133,16 +137,22 @@ void PathChoice<Real>::cut_paths(const WorldState<Real>& world, Manifolds<Real>&
 
 /// Contacts stay where the last cut has put them. Those that have come, and those with a body that has begun
 /// to move or to stand since, so that it may be in two paths of a colour, stand beside the paths.
+/// @param most  share of the contacts that may stand beside
+/// @return whether no more do; if not, the cut is that of another step
 template <class Real>
-void PathChoice<Real>::keep_paths(const WorldState<Real>& world, Manifolds<Real>& manifolds) {
+bool PathChoice<Real>::keep_paths(const WorldState<Real>& world, Manifolds<Real>& manifolds, double most) {
     slots_.clear();
+    std::size_t beside = 0;
     for (const std::int32_t contact : manifolds.live()) {
         ManifoldMemory<Real>& memory = manifolds.memory_of(contact);
         const std::int32_t b = manifolds.list_of(contact).b[Manifolds<Real>::place_of(contact)];
         if (is_nothing(world.bodies, b) != ((memory.slot_kind & kStillSlot) != 0)) memory.slot = -1;
         slots_.push_back({memory.slot, (memory.slot_kind & kTurnedSlot) != 0});
+        beside += memory.slot < 0 ? 1 : 0;
     }
+    if (static_cast<double>(beside) > most * static_cast<double>(slots_.size())) return false;
     cut_.keep(slots_);
+    return true;
 }
 
 template <class Real>

@@ -47,7 +47,7 @@ class PathChoice {
     bool is_wild_crowd(const Manifolds<Real>& manifolds) const;
     void cut_paths(const WorldState<Real>& world, Manifolds<Real>& manifolds, double dt,
                    const Executor& executor);
-    void keep_paths(const WorldState<Real>& world, Manifolds<Real>& manifolds);
+    bool keep_paths(const WorldState<Real>& world, Manifolds<Real>& manifolds, double most);
 
     PathCut cut_;
     int since_cut_ = 0;              // steps

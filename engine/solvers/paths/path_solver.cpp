@@ -286,16 +286,19 @@ void PathSolver<Real>::run(Pass pass, SolvePaths<Real> arguments, const StepLoop
 }
 
 /// Contacts beside the paths: all are looked at, those that close are solved one by one.
+/// @param has_floors  whether they have the floors of the substep
 template <class Real>
-void PathSolver<Real>::solve_watched(const SolvePaths<Real>& arguments, const StepLoops<Real>& loops) {
+void PathSolver<Real>::solve_watched(const SolvePaths<Real>& arguments, const StepLoops<Real>& loops,
+                                     bool has_floors) {
     const std::size_t begin = cut().first_watched(), end = cut().bundles();
     const PathKernels<Real>& kernels = loops.kernels->convex->paths;
     for (int sweep = 0; sweep < kSweepsOfWatched && begin < end; ++sweep) {
+        const Pass watch = has_floors || sweep > 0 ? kernels.watch_again : kernels.watch;
         loops.executor->for_each_chunk(end - begin, kWatchedPerTask, kNanosecondsToSolve * kPathLanes,
                                        [&](std::size_t, std::size_t first, std::size_t last) {
-                                           kernels.watch(arguments, begin + first, begin + last);
+                                           watch(arguments, begin + first, begin + last);
                                        });
-        kernels.settle(arguments, begin, end);
+        if (kernels.settle(arguments, begin, end).closing == 0) return;
     }
 }
 
@@ -327,7 +330,7 @@ void PathSolver<Real>::solve(const SubstepTerms& terms, BodyRecords<Real>& recor
     for (const Hidden& h : hidden_)
         links_[h.link].separation1[h.lane] = links_[h.link].separation2[h.lane] = none;
     for (int pass = 0; pass < passes; ++pass) run(kernels.solve, k, loops);
-    solve_watched(k, loops);
+    solve_watched(k, loops, false);
     choice_.note_solved(static_cast<std::int64_t>(cut().paths()) * passes);
     for (int turn = 0; turn < kTurnsOfRolling && !rolling_.empty(); ++turn) {
         rolling_.solve(records, [&](std::size_t n) {
@@ -341,7 +344,7 @@ void PathSolver<Real>::solve(const SubstepTerms& terms, BodyRecords<Real>& recor
     if (sweeps || (manifolds.is_crowd() && rolling_.empty())) {
         k.resting_speed = sweeps ? Real(0) : static_cast<Real>(kRestingSpeed * terms.fall_speed());
         run(kernels.sweep, k, loops);
-        solve_watched(k, loops);
+        solve_watched(k, loops, rolling_.empty());  // else displacements have changed
     }
     for (const Hidden& h : hidden_) {
         links_[h.link].separation1[h.lane] = h.separation1;

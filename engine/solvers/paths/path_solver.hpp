@@ -157,7 +157,7 @@ class PathSolver {
     }
     static void give(const PathLink<Real>& link, std::size_t lane, std::size_t near, std::size_t far,
                      Real sign, Column<Real>& velocity);
-    void solve_watched(const SolvePaths<Real>& arguments, const StepLoops<Real>& loops);
+    void solve_watched(const SolvePaths<Real>& arguments, const StepLoops<Real>& loops, bool has_floors);
     void lay_out(const WorldState<Real>& world, const EdgeCandidates<Real>& edges, const SubstepTerms& terms,
                  BodyRecords<Real>& records, const StepLoops<Real>& loops);
     void name_rows(const WorldState<Real>& world, const BodyRecords<Real>& records);
