@@ -21,6 +21,8 @@ struct ContactKernels {
     Solve sum_loads_pairs, sum_loads_supports;
     Solve scale_loads_pairs, scale_loads_supports;
     Solve keep_loads_pairs, keep_loads_supports;
+    using SumWork = void (*)(const SolveContacts<Real>&, std::size_t first, std::size_t last, WorkSums&);
+    SumWork sum_work_pairs, sum_work_supports;
 };
 
 /// The sweeps over one kind of joints: one that gives impulses at the start of a step, the first of a
@@ -62,6 +64,9 @@ struct KernelTable {
     std::array<void (*)(const BeginSubsteps<Real>&, std::size_t first, std::size_t last), 2> begin_substeps;
     std::array<void (*)(const AdvanceBodies<Real>&, std::size_t first, std::size_t last), 4> advance_bodies;
     std::array<EnergyGain (*)(const MeasureGain<Real>&, std::size_t first, std::size_t last), 2> measure_gain;
+    // These four: without and with rotation; then the same with drag.
+    std::array<void (*)(const TakeMeans<Real>&, std::size_t first, std::size_t last, FlightSums&), 4>
+        take_means;
     std::array<std::size_t (*)(const EndSubsteps<Real>&, std::size_t first, std::size_t last), 2>
         end_substeps;
     void (*advance_rotation)(const AdvanceRotation<Real>&, std::size_t first, std::size_t last);

@@ -10,6 +10,8 @@
 #include "kernels/contacts/find_contacts.hpp"
 #include "kernels/contacts/measure_gain.hpp"
 #include "kernels/contacts/solve_contacts.hpp"
+#include "kernels/contacts/sum_work.hpp"
+#include "kernels/contacts/take_means.hpp"
 #include "kernels/flight/begin_flight.hpp"
 #include "kernels/flight/end_flight.hpp"
 #include "kernels/flight/find_impacts.hpp"
@@ -35,6 +37,9 @@ constexpr ContactKernels<Real> make_contact_kernels() {
         .scale_loads_supports = &scale_loads<kVariant, false, Real, Isa>,
         .keep_loads_pairs = &retain_correction<kVariant, true, Real, Isa>,
         .keep_loads_supports = &retain_correction<kVariant, false, Real, Isa>,
+        // (Work asks for no masses.)
+        .sum_work_pairs = &sum_work<kVariant & ~kFixedAngles, true, Real, Isa>,
+        .sum_work_supports = &sum_work<kVariant & ~kFixedAngles, false, Real, Isa>,
     };
 }
 
@@ -73,6 +78,8 @@ constexpr KernelTable<Real> make_table(std::string_view isa, const ConvexKernels
         .advance_bodies = {&advance_bodies<false, false, Real, Isa>, &advance_bodies<true, false, Real, Isa>,
                            &advance_bodies<false, true, Real, Isa>, &advance_bodies<true, true, Real, Isa>},
         .measure_gain = {&measure_gain<false, Real, Isa>, &measure_gain<true, Real, Isa>},
+        .take_means = {&take_means<false, false, Real, Isa>, &take_means<true, false, Real, Isa>,
+                       &take_means<false, true, Real, Isa>, &take_means<true, true, Real, Isa>},
         .end_substeps = {&end_substeps<false, Real, Isa>, &end_substeps<true, Real, Isa>},
         .advance_rotation = &advance_rotation<Real, Isa>,
         .convex = convex,

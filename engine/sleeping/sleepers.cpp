@@ -12,7 +12,11 @@ namespace carom {
 namespace {
 
 /// Islands are looked for at this interval while any body has been still for long enough.
-constexpr double kLookInterval = kTimeToSleep / 8;  // s
+constexpr double kLookInterval = kTimeToSleep / 4;  // s
+/// Who falls asleep makes all pairs be found anew, which takes as long as some nine steps of those awake
+/// (docs/decisions/0080-price-of-the-ledger.md): islands wait until, of one look after the other, so many
+/// have waited as this share of the bodies awake.
+constexpr double kShareToSleep = 0.5;
 
 template <class Real>
 Vec2 position_of(const Bodies<Real>& bodies, std::size_t row) {
@@ -178,18 +182,40 @@ bool Sleepers<Real>::note_still(WorldState<Real>& world, double dt, double subst
     Bodies<Real>& bodies = world.bodies;
     const double gravity = std::sqrt(length_squared(world.gravity));
     const auto counted = static_cast<float>(std::fmin(dt, kTimeToSleep / kFewestStepsToSleep));  // s
-    bool any = false;
-    for (std::size_t row = 0; row < bodies.moving(); ++row) {
-        const double vx = bodies.velocity_x[row], vy = bodies.velocity_y[row];
-        const double rim = bodies.has_rotation ? static_cast<double>(bodies.rim(row)) *
-                                                     static_cast<double>(bodies.angular_velocity[row])
-                                               : 0;
-        const double speed = still_speed(gravity, substep, bodies.inradius(row));
-        const bool is_still = vx * vx + vy * vy <= speed * speed && rim * rim <= speed * speed;
-        bodies.still[row] = is_still ? bodies.still[row] + counted : 0.0f;
-        any = any || bodies.still[row] >= static_cast<float>(kTimeToSleep);
-    }
-    return any;
+    unsigned any = 0;
+    // (By value: what is noted could be a number that a reference leads to.)
+    const auto note = [&bodies, &any, counted](auto speed_of, auto rim_of) {
+        unsigned found = 0;
+        const Real *vx = bodies.velocity_x.data(), *vy = bodies.velocity_y.data();
+        float* still = bodies.still.data();
+        for (std::size_t row = 0, rows = bodies.moving(); row < rows; ++row) {
+            // Compilers make lanes of what neither branches nor selects.
+            const Real rim = rim_of(row), speed = speed_of(row);
+            const int is_still =
+                (vx[row] * vx[row] + vy[row] * vy[row] <= speed * speed) & (rim * rim <= speed * speed);
+            const float now = (still[row] + counted) * static_cast<float>(is_still);
+            still[row] = now;
+            found |= static_cast<unsigned>(now >= static_cast<float>(kTimeToSleep));
+        }
+        any = found;
+    };
+    const auto note_at = [&](auto speed_of) {
+        const Real *spin = bodies.angular_velocity.data(), *rim = bodies.rim().data();
+        if (!bodies.has_rotation)
+            note(speed_of, [](std::size_t) { return Real(0); });
+        else if (rim)
+            note(speed_of, [=](std::size_t row) { return rim[row] * spin[row]; });
+        else
+            note(speed_of,
+                 [=, all = bodies.rim().uniform_value()](std::size_t row) { return all * spin[row]; });
+    };
+    if (gravity > 0)  // then it is one for all
+        note_at([speed = static_cast<Real>(still_speed(gravity, substep, 0))](std::size_t) { return speed; });
+    else
+        note_at([&](std::size_t row) {
+            return static_cast<Real>(still_speed(gravity, substep, bodies.inradius(row)));
+        });
+    return any != 0;
 }
 
 /// Finds the islands of the contacts that carry an impulse, which of them stay awake and which lean on
@@ -306,14 +332,17 @@ bool Sleepers<Real>::put_to_sleep(WorldState<Real>& world, ContactGraph<Real>& g
     if (!note_still(world, dt, substep) || since_look_ < kLookInterval) return false;
     since_look_ = 0;
     connect(world, graph, others);
+    const auto smallest_of = [&](std::size_t row) {
+        return static_cast<std::size_t>(islands_.island_of(static_cast<std::int32_t>(row)));
+    };
+    std::size_t tired = 0;
+    for (std::size_t row = 0; row < bodies.moving(); ++row) tired += stays_awake_[smallest_of(row)] ? 0 : 1;
+    waiting_ += static_cast<double>(tired);
+    if (tired == 0 || waiting_ < kShareToSleep * static_cast<double>(bodies.moving())) return false;
+    waiting_ = 0;
     label_.assign(bodies.moving(), -1);
-    bool any = false;
-    for (std::size_t row = 0; row < bodies.moving(); ++row) {
-        if (islands_.island_of(static_cast<std::int32_t>(row)) != static_cast<std::int32_t>(row)) continue;
-        if (stays_awake_[row]) continue;
-        label_[row] = next_island_++, any = true, ++island_count_;
-    }
-    if (!any) return false;
+    for (std::size_t row = 0; row < bodies.moving(); ++row)
+        if (smallest_of(row) == row && !stays_awake_[row]) label_[row] = next_island_++, ++island_count_;
     for (const Held& held : leaning_) {
         const auto smallest = static_cast<std::size_t>(islands_.island_of(held.row));
         if (label_[smallest] < 0) continue;
@@ -325,10 +354,8 @@ bool Sleepers<Real>::put_to_sleep(WorldState<Real>& world, ContactGraph<Real>& g
     keep_contacts(world, graph.pairs, substep), keep_contacts(world, graph.supports, substep);
     order_.resize(bodies.count);
     std::iota(order_.begin(), order_.end(), 0);
-    for (std::size_t row = bodies.moving(); row-- > 0;) {
-        const auto smallest = static_cast<std::size_t>(islands_.island_of(static_cast<std::int32_t>(row)));
-        if (label_[smallest] >= 0) lay_down(world, row);
-    }
+    for (std::size_t row = bodies.moving(); row-- > 0;)
+        if (label_[smallest_of(row)] >= 0) lay_down(world, row);
     graph.trail.follow_sorted(order_.data(), bodies.count);
     world.list_immovable_rows();
     grid_.forget(), pairs_of_rebuild_ = -1;

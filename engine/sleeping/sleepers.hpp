@@ -89,7 +89,7 @@ class Sleepers {
     static void visit_state(Self& self, Archive& archive) {
         archive(self.kept_, self.woken_, self.marked_, self.pairs_, self.pairs_of_rebuild_,
                 self.next_island_);
-        archive(self.island_count_, self.woken_count_, self.since_look_, self.grid_);
+        archive(self.island_count_, self.woken_count_, self.since_look_, self.waiting_, self.grid_);
     }
     /// To be called after the state was read.
     void use(const KernelTable<Real>& kernels) { grid_.use(kernels); }
@@ -142,6 +142,7 @@ class Sleepers {
     std::int32_t next_island_ = 0;
     std::int64_t island_count_ = 0, woken_count_ = 0;
     double since_look_ = 0;  // s
+    double waiting_ = 0;  // bodies that could sleep, added up over the looks since the last that fell asleep
     SleeperGrid<Real> grid_;
 
     // Scratch of `mark_hit`.

@@ -288,6 +288,30 @@ TEST_SUITE("hard cases/sleeping") {
         check_books_close(world, dynamic_mass(scene));
     }
 
+    // Each that fell asleep made the pairs of all be found anew, which takes as long as some nine steps.
+    TEST_CASE_TEMPLATE("discs that come to rest one after the other fall asleep by groups", Real, float,
+                       double) {
+        Scene scene;
+        scene.gravity = {0, -10};
+        scene.walls = Walls{.min = {0, 0}, .max = {200, 1000}, .material = {.friction = 0.5}};
+        constexpr int kDiscs = 40;
+        for (int i = 0; i < kDiscs; ++i) {  // each lands an eighth of a second after the one before
+            const double time = 0.125 * (1 + i);
+            scene.add(rough_disc(0.5, {2.0 + 4 * i, 0.5 + 5 * time * time}));
+        }
+        scene.effects.sleep = true;
+        BasicWorld<Real> world(scene);
+        int steps = 0, times = 0;
+        for (std::int64_t asleep = 0; asleep < kDiscs && steps < 500; ++steps) {
+            world.step(kStep);
+            if (world.profile().asleep > asleep) ++times;
+            asleep = world.profile().asleep;
+        }
+        report("asleep after ", steps, " steps, in ", times, " of them");
+        CHECK(steps < 500);
+        CHECK(times <= kDiscs / 2);
+    }
+
     TEST_CASE_TEMPLATE("B24: a thousand bodies come and go in every step while part of a pile sleeps", Real,
                        float, double) {
         Scene scene = box(110);

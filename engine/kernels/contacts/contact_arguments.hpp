@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -137,6 +138,41 @@ struct MeasureGain {
     Real gain_x, gain_y;  // m/s, what gravity adds in a substep
     Real decay;           // velocity kept under drag in a substep
     Real spin_decay;      // rim speed kept under angular drag
+};
+
+/// Partial sums, whose sum is what is asked for: kernels/contacts/ordered_sum.hpp.
+struct alignas(64) BlockOfSums : std::array<double, kContactBlock> {
+    double sum() const {
+        double all = 0;
+        for (const double part : *this) all += part;
+        return all;
+    }
+};
+
+/// Work of impulses of contacts [J].
+struct WorkSums {
+    BlockOfSums normal{};
+    BlockOfSums tangent{};  // that of rolling impulses as well
+};
+
+/// Sums over bodies that something moves, of a substep: m mass, v0 and v velocity at its start and on the
+/// mean.
+struct FlightSums {
+    BlockOfSums mean_x{}, mean_y{};  // m v [kg m/s]
+    // The next members are summed with drag alone.
+    BlockOfSums start_x{}, start_y{};  // m v0 [kg m/s]
+    BlockOfSums path{};                // m v0·v [J]
+    BlockOfSums turn{};                // the same of rims [J]
+};
+
+/// The means of velocities before and after a substep.
+template <class Real>
+struct TakeMeans {
+    const Real* velocity;      // [rows][4], at the end
+    StartColumns<Real> start;  // at the start
+    const Real* mass;          // kg, or null: uniform_mass serves all
+    Real uniform_mass;         // kg
+    Real* mean;                // out, [rows][4]: vx, vy, rim speed [m/s]; what is in a record besides
 };
 
 /// Velocity and displacement records at the start of a step.

@@ -1,133 +1,137 @@
 #include "solvers/soft/books.hpp"
 
-#include "effects/flight.hpp"
+#include <algorithm>
+
 #include "math/vec2_math.hpp"
 #include "solvers/soft/contacts/stored_contact.hpp"
 
 namespace carom {
 namespace {
 
+// Bodies of a chunk: sums have the same bits on any number of threads. ns a body and a contact on one thread,
+// for the executor: docs/decisions/0080-price-of-the-ledger.md.
+constexpr std::size_t kRowsToAverage = 2048;
+constexpr double kNanosecondsToAverage = 1, kNanosecondsToBook = 1.5;
+
+/// What supports give to bodies, and what they drive them with by their own motion; the impulses of walls
+/// alone if the ledger is closed.
 template <class Real>
-DoubleBody mean_of(const DoubleBody& before, const Column<Real>& to, std::int32_t row) {
-    DoubleBody mean = body_at(to, row);
-    for (std::size_t k = 0; k < 3; ++k) mean.record[k] = 0.5 * (before.record[k] + mean.record[k]);
-    return mean;
-}
-
-Vec2 velocity_of(const DoubleBody& body) {
-    return {body.record[0], body.record[1]};
-}
-
-/// The impulses of the contacts of one kind, pairs or supports, by contact [N s].
-template <class Real>
-struct Impulses {
-    const Column<Real>&normal, &friction, &rolling;
-
-    ContactImpulses<double> operator[](std::size_t i) const {
-        const auto value = [i](const Column<Real>& column) {
-            return column.empty() ? 0 : static_cast<double>(column[i]);
-        };
-        return {value(normal), value(friction), value(rolling)};
-    }
-};
-
-/// What a contact takes: the work of its impulses on both sides, by mean velocities.
-/// @param from  velocities before the impulses acted, by row
-/// @param to  velocity records after them
-template <class Real, class From>
-void book_contacts(const ContactRows<Real>& contacts, const Impulses<Real>& impulses, const From& from,
-                   const Column<Real>& to, Books& books) {
-    const auto mean_at = [&](std::int32_t row) { return mean_of(from(row), to, row); };
-    const auto book = [&](std::size_t i, const auto& other) {
-        const DoubleBody body = mean_at(contacts.a[i]);
-        const double nx = contacts.normal_x[i], ny = contacts.normal_y[i];
-        const double of_a =
-            contacts.rolling_share.empty() ? 0.5 : static_cast<double>(contacts.rolling_share[i]);
-        const ContactImpulses<double> j = impulses[i];
-        books.restitution += j.normal * normal_velocity(body, other, nx, ny);
-        if (!impulses.friction.empty()) books.friction += j.tangent * tangent_velocity(body, other, nx, ny);
-        if (!impulses.rolling.empty()) books.friction += j.rolling * rolling_velocity(body, other, of_a);
-    };
-    contacts.for_each([&](std::size_t i) {
-        if (contacts.b.empty())
-            book(i, surface_at(contacts, i));
-        else
-            book(i, mean_at(contacts.b[i]));
-    });
-}
-
-/// What supports give to bodies, and what they drive them with by their own motion.
-template <class Real>
-void book_supports(const StepView<Real>& step, const Impulses<Real>& impulses, Books& books) {
+void book_supports(const StepView<Real>& step, Books& books) {
     const ContactRows<Real>& supports = step.supports;
     const auto is_wall = [&](std::size_t i) {
         return step.graph.supports.partner(static_cast<std::size_t>(supports.candidate[i])).is_wall();
     };
     double wall_impulse = books.wall_impulse;
-    supports.for_each([&](std::size_t i) { wall_impulse += is_wall(i) ? impulses[i].normal : 0; });
-    books.wall_impulse = wall_impulse;
-    if (!books.is_open) return;
+    if (!books.is_open) {
+        supports.for_each([&](std::size_t i) {
+            wall_impulse += is_wall(i) ? static_cast<double>(supports.normal_impulse[i]) : 0;
+        });
+        books.wall_impulse = wall_impulse;
+        return;
+    }
+    Vec2 of_walls = books.wall_momentum, of_immovable = books.immovable_momentum;
+    double drive = books.drive;
     supports.for_each([&](std::size_t i) {
-        const Vec2 n{supports.normal_x[i], supports.normal_y[i]}, t{-n.y, n.x};
-        const ContactImpulses<double> j = impulses[i];
-        (is_wall(i) ? books.wall_momentum : books.immovable_momentum) -= j.normal * n + j.tangent * t;
+        const StoredContact<Real> contact(supports, i);
+        const ContactImpulses<double>& j = contact.impulses;
+        const Vec2 n{contact.nx, contact.ny}, t{-n.y, n.x}, given = j.normal * n + j.tangent * t;
+        if (is_wall(i))
+            of_walls -= given, wall_impulse += j.normal;
+        else
+            of_immovable -= given;
         const DoubleSurface surface = surface_at(supports, i);
-        books.drive -= j.normal * surface.normal + j.tangent * surface.tangent + j.rolling * surface.rolling;
+        drive -= j.normal * surface.normal + j.tangent * surface.tangent + j.rolling * surface.rolling;
     });
-}
-
-/// Books the work of both kinds of contacts; the impulses of walls alone if the ledger is closed.
-template <class Real, class From>
-void book_kinds(const StepView<Real>& step, const Impulses<Real>& of_supports, const Impulses<Real>& of_pairs,
-                const From& from, Books& books) {
-    book_supports(step, of_supports, books);
-    if (!books.is_open) return;
-    book_contacts(step.supports, of_supports, from, step.records.velocity, books);
-    book_contacts(step.graph.pairs, of_pairs, from, step.records.velocity, books);
-}
-
-/// Velocities at the start of the substep, by row.
-template <class Real>
-auto starts_of_substep(const BodyRecords<Real>& records) {
-    return [&records](std::int32_t row) {
-        const auto [x, y, rim] = records.start_of_substep(row);
-        return DoubleBody{{{x, y, rim, 0}}};  // its mass is not asked for
-    };
+    books.wall_momentum = of_walls, books.immovable_momentum = of_immovable;
+    books.drive = drive, books.wall_impulse = wall_impulse;
 }
 
 }  // namespace
 
-/// Gravity's share is booked as the work it did on velocities, to be set off against the fall of the
-/// positions at the end of the step: what is left is displacement that no velocity accounts for.
+/// Mean velocities of all bodies that something may move, for book_contacts. Gravity's share is booked as the
+/// work it did on velocities, to be set off against the fall of the positions at the end of the step: what is
+/// left is displacement that no velocity accounts for.
 template <class Real>
 void SubstepBooks<Real>::book_free_flight(const StepView<Real>& step, const WorldState<Real>& world,
                                           Books& books) {
+    BodyRecords<Real>& records = step.records;
     const SubstepTerms& terms = step.terms;
-    const double h = terms.substep_dt, spin_loss = terms.spin_decay - 1;
-    const auto from = starts_of_substep(step.records);
-    for (std::size_t row = 0; row < step.records.moving(); ++row) {
-        if (world.bodies.is_immovable(row)) continue;
-        const double mass = world.bodies.mass[row];
-        const DoubleBody start = from(static_cast<std::int32_t>(row));
-        const DoubleBody mean = mean_of(start, step.records.velocity, static_cast<std::int32_t>(row));
-        const Vec2 by_drag =
-            mass * ((terms.decay - 1) * velocity_of(start) + terms.gravity_change - h * world.gravity);
-        gravity_work += mass * h * dot(world.gravity, velocity_of(mean));
-        books.drag +=
-            dot(by_drag, velocity_of(mean)) + 0.5 * mass * spin_loss * start.record[2] * mean.record[2];
-        books.drag_momentum += by_drag;
-    }
+    mean_.resize_for_overwrite(records.velocity.size());
+    // Padding of contacts names rows beyond the bodies.
+    std::fill(mean_.data() + 4 * records.count(), mean_.data() + mean_.size(), Real(0));
+    const Property<Real>& mass = world.bodies.mass;
+    const bool has_drag = terms.decay != 1 || terms.spin_decay != 1;
+    const TakeMeans<Real> k{records.velocity.data(), records.start_columns(), mass.data(),
+                            mass.uniform_value(), mean_.data()};
+    const auto kernel = step.loops.kernels->take_means[(k.start.rim ? 1 : 0) + (has_drag ? 2 : 0)];
+    flights_.assign((records.moving() + kRowsToAverage - 1) / kRowsToAverage, {});
+    step.loops.executor->for_each_chunk(records.moving(), kRowsToAverage, kNanosecondsToAverage,
+                                        [&](std::size_t chunk, std::size_t first, std::size_t last) {
+                                            FlightSums sums;
+                                            kernel(k, first, padded(last), sums);
+                                            flights_[chunk].mean = {sums.mean_x.sum(), sums.mean_y.sum()};
+                                            if (!has_drag) return;
+                                            flights_[chunk].start = {sums.start_x.sum(), sums.start_y.sum()};
+                                            flights_[chunk].path = sums.path.sum(),
+                                            flights_[chunk].turn = sums.turn.sum();
+                                        });
+    Flights all;
+    for (const Flights& part : flights_)
+        all.mean += part.mean, all.start += part.start, all.path += part.path, all.turn += part.turn;
+    const double h = terms.substep_dt;
+    gravity_work += h * dot(world.gravity, all.mean);
     books.gravity_momentum += (world.dynamic_mass * h) * world.gravity;
+    if (!has_drag) return;
+    // What drag takes from a velocity, by the numbers that bodies flew with, and from what gravity adds.
+    const double loss = static_cast<double>(static_cast<Real>(terms.decay)) - 1,
+                 spin_loss = static_cast<double>(static_cast<Real>(terms.spin_decay)) - 1;
+    const Vec2 of_gravity = terms.gravity_change - h * world.gravity;
+    books.drag += loss * all.path + dot(of_gravity, all.mean) + 0.5 * spin_loss * all.turn;
+    books.drag_momentum += loss * all.start + world.dynamic_mass * of_gravity;
+}
+
+/// What contacts take: those of a group one behind the other, so that sums have the same bits on any number
+/// of threads.
+template <class Real>
+void SubstepBooks<Real>::book_contacts(const StepView<Real>& step, Books& books) {
+    const ContactKernels<Real>& kernels = *step.loops.contacts;
+    ContactRows<Real>&pairs = step.graph.pairs, &supports = step.supports;
+    SolveContacts<Real> on_pairs{}, on_supports{};
+    on_pairs.contacts = pairs.columns(), on_pairs.velocity = mean_.data();
+    on_supports.contacts = supports.columns(), on_supports.velocity = mean_.data();
+    const std::size_t groups = pairs.groups();
+    works_.assign(groups + supports.groups(), {});
+    const auto is_empty = [&](std::size_t group) {
+        if (group < groups) return pairs.run_count[group] == 0;
+        return supports.first_colour[group - groups] == supports.first_colour[group - groups + 1];
+    };
+    const auto book = [&](std::size_t group) {
+        if (is_empty(group)) return;  // in a world of few bodies most are, and to add up nothing takes time
+        WorkSums sums;
+        if (group < groups) {
+            const auto* run = pairs.run.data() + pairs.first_place(group) / kContactBlock;
+            for (const auto* const end = run + pairs.run_count[group]; run < end; ++run)
+                kernels.sum_work_pairs(on_pairs, kHalfBlock * run->first, kHalfBlock * run->last, sums);
+        } else {
+            const std::size_t of = group - groups;
+            for (std::size_t c = supports.first_colour[of]; c < supports.first_colour[of + 1]; ++c)
+                kernels.sum_work_supports(on_supports, supports.begin[c],
+                                          supports.begin[c] + supports.length(c), sums);
+        }
+        works_[group] = {sums.normal.sum(), sums.tangent.sum()};
+    };
+    step.loops.executor->for_each_task(
+        works_.size(), kNanosecondsToBook * static_cast<double>(pairs.a.size() + supports.a.size()), book);
+    for (const Work& work : works_) books.restitution += work.normal, books.friction += work.tangent;
 }
 
 template <class Real>
 void SubstepBooks<Real>::book_substep(const StepView<Real>& step, const WorldState<Real>& world,
                                       Books& books) {
-    const ContactRows<Real>&pairs = step.graph.pairs, &supports = step.supports;
-    book_kinds<Real>(step, {supports.normal_impulse, supports.friction_impulse, supports.rolling_impulse},
-                     {pairs.normal_impulse, pairs.friction_impulse, pairs.rolling_impulse},
-                     starts_of_substep(step.records), books);
-    if (books.is_open) book_free_flight(step, world, books);
+    book_supports(step, books);
+    if (!books.is_open) return;
+    book_free_flight(step, world, books);
+    book_contacts(step, books);
 }
 
 template <class Real>

@@ -35,9 +35,28 @@ class SubstepBooks {
     void book_displacements(std::size_t rows, const WorldState<Real>& world, const Column<Real>& motion,
                             Books& books);
 
+    std::size_t bytes() const {
+        return mean_.bytes() + flights_.capacity() * sizeof(Flights) + works_.capacity() * sizeof(Work) +
+               parts_of_paths_.capacity() * sizeof(Books);
+    }
+
   private:
     void book_free_flight(const StepView<Real>& step, const WorldState<Real>& world, Books& books);
+    void book_contacts(const StepView<Real>& step, Books& books);
 
+    /// Sums over bodies: FlightSums.
+    struct Flights {
+        Vec2 mean, start;           // kg m/s
+        double path = 0, turn = 0;  // J
+    };
+    /// WorkSums of a group of contacts.
+    struct Work {
+        double normal, tangent;  // J
+    };
+
+    Column<Real> mean_;                  // [rows][4]: velocities over the substep
+    std::vector<Flights> flights_;       // of a chunk of bodies each
+    std::vector<Work> works_;            // of the groups of pairs, then of supports
     std::vector<Books> parts_of_paths_;  // of some contacts each
 };
 

@@ -213,7 +213,7 @@ template <class Real>
 std::size_t SoftSolver<Real>::bytes() const {
     return graph.bytes() + paths.bytes() + impacts.bytes() + joints.bytes() + masses_.bytes() +
            records_.bytes() + supports_.bytes() + finder_.bytes() + warm_start_.bytes() + sweeps_.bytes() +
-           corrections_.bytes() + projection_.bytes() + passive_.bytes();
+           corrections_.bytes() + projection_.bytes() + passive_.bytes() + books_.bytes();
 }
 
 template class SoftSolver<float>;
