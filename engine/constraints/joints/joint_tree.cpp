@@ -200,7 +200,8 @@ void JointSystem::go_out_sides(const Link& link, double* half_way, Sides& sides)
 /// their velocities. Loops run over sides, which lie side by side.
 void JointSystem::solve_tree_of(Sides& sides) {
     const std::size_t n = sides.count;
-    half_way_.resize(links_.size() * 3 * n);
+    // Never less: what resize adds it clears, and sides are now more, now fewer.
+    half_way_.resize(std::max(half_way_.size(), links_.size() * 3 * n));
     for (std::size_t q = links_.size(); q-- > 0;) {
         const Link& link = links_[q];
         double* half_way = &half_way_[q * 3 * n];

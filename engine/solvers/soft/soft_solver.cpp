@@ -18,8 +18,9 @@ constexpr int kFirstPasses = 8;
 /// of crowds that are swept.
 constexpr int kTurns = 4;
 constexpr int kTurnsOfCrowd = 1;
-/// The former end when joints change no velocity by more than this share of what gravity adds in a substep:
-/// contacts hold as well then, and those of all other bodies are not solved once more for nothing.
+/// The former end when joints, and what weighs on them, change no velocity by more than this share of what
+/// gravity adds in a substep: contacts hold as well then, and those of all other bodies are not solved once
+/// more for nothing.
 constexpr double kJointsSettled = 0.001;
 /// Times at most that energy is bounded in a substep, with a turn between each two.
 constexpr int kRounds = 6;
@@ -121,14 +122,17 @@ void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
                 on_supports);
 }
 
-/// Joints, then all contacts. @return whether contacts are left as they are, since joints have changed no
-/// velocity by more than `settled` [m/s]; below zero: never.
+/// Joints, then all contacts. @return whether contacts are left as they are, since neither joints nor what
+/// weighs on them have changed a velocity by more than `settled` [m/s]; below zero: never.
 template <class Real>
 bool SoftSolver<Real>::solve_turn(WorldState<Real>& world, double settled) {
     const auto next = Sweeps::next(view(), Sweeps::Blocks::all, 1);
-    if (!world.joints.empty() && joints.solve_again(joint_step(world), loops_) <= settled && heavy_.empty())
-        return true;
-    if (!heavy_.empty()) heavy_.solve(held_contacts(), joint_step(world), joints);
+    if (!world.joints.empty()) {
+        double change = joints.solve_again(joint_step(world), loops_);
+        if (!heavy_.empty())
+            change = std::max(change, heavy_.solve(held_contacts(), joint_step(world), joints));
+        if (change <= settled) return true;
+    }
     if (world.bodies.has_shapes) paths.solve(terms_, records_, loops_, 1, true);
     sweeps_.run(view(), {next.data(), next.size()});
     return false;

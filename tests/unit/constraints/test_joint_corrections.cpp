@@ -147,6 +147,34 @@ TEST_SUITE("joint corrections") {
         }
     }
 
+    // Each sweep went over all rows: 6,000 looks here.
+    TEST_CASE("coupled impulses that do not press cost next to nothing") {
+        constexpr std::size_t kCount = 60, kPressing = 6, kPushed = 40;
+        CoupledImpulses impulses;
+        impulses.reset(kCount);
+        for (std::size_t i = 0; i < kCount; ++i) impulses.inverse_mass(i, i) = 1, impulses.lack[i] = -10;
+        for (std::size_t i = 0; i < kPressing; ++i) {
+            impulses.lack[i] = 1;
+            if (i == 0) continue;
+            impulses.inverse_mass(i, i - 1) = impulses.inverse_mass(i - 1, i) = -0.5;
+        }
+        // One that the others push into what it is near to.
+        impulses.inverse_mass(kPushed, 3) = impulses.inverse_mass(3, kPushed) = -0.25;
+        impulses.lack[kPushed] = -1;
+        std::vector<double> lack = impulses.lack;
+        std::size_t looks = 0;
+        impulses.solve([&](std::size_t, double wanted) { return ++looks, std::fmax(wanted, 0); }, 1e-9);
+        CHECK(looks < kCount * 20);
+        CHECK(impulses.given[kPushed] > 0.1);
+        for (std::size_t i = 0; i < kCount; ++i) {
+            double left = lack[i];
+            for (std::size_t k = 0; k < kCount; ++k) left -= impulses.inverse_mass(i, k) * impulses.given[k];
+            CHECK(impulses.lack[i] == doctest::Approx(left).epsilon(1e-9));
+            CHECK(left < 1e-4);
+            if (impulses.given[i] > 0) CHECK(left > -1e-4);
+        }
+    }
+
     TEST_CASE("coupled impulses are within their bounds and lack nothing between them") {
         std::mt19937 random(5);
         const auto number = [&] { return static_cast<double>(random()) / 4294967296.0 - 0.5; };

@@ -33,13 +33,15 @@ class HeavyLoads {
     /// Finds the contacts of a step. Cost: O(contacts) where a group that is solved exactly touches
     /// something.
     void find(const HeldContacts<Real>& contacts, const JointStep<Real>& step, SoftJoints<Real>& joints);
+    /// Whether none may press in this substep.
     bool empty() const { return contacts_.empty(); }
     /// Before joints are solved in a substep: tells them what presses on their bodies.
     void tell(const HeldContacts<Real>& contacts, const JointStep<Real>& step, SoftJoints<Real>& joints);
     /// After that: displaces what presses, and finds what impulses do.
     void begin_substep(const JointStep<Real>& step, SoftJoints<Real>& joints);
     /// Gives bodies, whose joints were just solved, what these contacts lack.
-    void solve(const HeldContacts<Real>& contacts, const JointStep<Real>& step, SoftJoints<Real>& joints);
+    /// @return by how much an impulse changed the velocity along its own direction, at most [m/s]
+    double solve(const HeldContacts<Real>& contacts, const JointStep<Real>& step, SoftJoints<Real>& joints);
 
     std::size_t bytes() const;
 
@@ -68,6 +70,8 @@ class HeavyLoads {
     double weight_of(std::int32_t row, const Bodies<Real>& bodies, const SoftJoints<Real>& joints) const;
     bool is_heavy(const HeldContact& contact, const Bodies<Real>& bodies,
                   const SoftJoints<Real>& joints) const;
+    static bool may_press(const HeldContact& contact, const HeldContacts<Real>& contacts,
+                          const JointStep<Real>& step);
     void displace_loads(const JointStep<Real>& step, SoftJoints<Real>& joints) const;
     void list_held_ends(SoftJoints<Real>& joints);
     void add_answers(std::size_t g, SoftJoints<Real>& joints);
@@ -86,9 +90,10 @@ class HeavyLoads {
                                         groups_.begin());
     }
 
-    std::vector<HeldContact> contacts_;
-    std::vector<std::int32_t> groups_;  // of their bodies, ascending
-    std::vector<double> weight_;        // kg, by group: the heaviest of its bodies and of what touches them
+    std::vector<HeldContact> found_;     // of the step
+    std::vector<HeldContact> contacts_;  // those of them that may press in this substep
+    std::vector<std::int32_t> groups_;   // of their bodies, ascending
+    std::vector<double> weight_;         // kg, by group: the heaviest of its bodies and of what touches them
     std::vector<Told> told_;
     std::vector<HeldGroup> held_;                // as groups_
     std::vector<JointSystem::Vector> changes_;   // of bodies of one of them, by an impulse

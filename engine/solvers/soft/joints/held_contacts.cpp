@@ -94,13 +94,21 @@ HeldContact::Values HeldContacts<Real>::lack(const HeldContact& contact) const {
                   value_at(rows.surface_normal, contact.number, 0);
         lack[kTangent] = -value_at(rows.surface_tangent, contact.number, 0);
     }
+    const HeldContact::Values parting_now = parting(contact);
+    for (std::size_t d = 0; d < HeldContact::kDirections; ++d) lack[d] -= parting_now[d];
+    return lack;
+}
+
+template <class Real>
+HeldContact::Values HeldContacts<Real>::parting(const HeldContact& contact) const {
+    HeldContact::Values parting{};
     for (std::size_t side = 0; side < 2; ++side) {
         if (contact.record[side] == HeldContact::kNothing) continue;
         const Real* record = &step_.records.velocity[4 * static_cast<std::size_t>(contact.record[side])];
         for (std::size_t d = 0; d < HeldContact::kDirections; ++d)
-            lack[d] -= contact.part_of(side, d, {record[0], record[1]}, record[2]);
+            parting[d] += contact.part_of(side, d, {record[0], record[1]}, record[2]);
     }
-    return lack;
+    return parting;
 }
 
 template <class Real>

@@ -68,6 +68,8 @@ class HeldContacts {
     /// By how much the velocity along each direction is below what it has to be [m/s]: a floor at points,
     /// zero along the tangent.
     HeldContact::Values lack(const HeldContact& contact) const;
+    /// The velocity along each direction [m/s]: of the second body less that of the first, surfaces apart.
+    HeldContact::Values parting(const HeldContact& contact) const;
     HeldContact::Values impulses(const HeldContact& contact) const;  ///< N s
     /// Adds to the impulses; velocities stay as they are.
     void add(const HeldContact& contact, const HeldContact::Values& more) const;
