@@ -61,17 +61,17 @@ template <class Real>
 typename PathChoice<Real>::Change PathChoice<Real>::choose(const WorldState<Real>& world,
                                                            Manifolds<Real>& manifolds, double dt,
                                                            bool is_same, std::int64_t unsettled,
-                                                           const Executor& executor) {
+                                                           TurnRows& turns, const Executor& executor) {
     judge_mood(manifolds, unsettled);
     ++since_cut_;
     const bool is_wild = is_wild_crowd(manifolds);
     if (mood_of_cut_ == mood_ && since_cut_ < (is_wild ? kStepsOfWildCut : kStepsOfCut)) {
         if (is_same && !is_wild) return Change::none;
         if (manifolds.is_crowd() && !is_cut_forgotten_ &&
-            keep_paths(world, manifolds, is_wild ? 1 : kMostBeside))
+            keep_paths(world, manifolds, turns, is_wild ? 1 : kMostBeside))
             return Change::contacts;
     }
-    cut_paths(world, manifolds, dt, executor);
+    cut_paths(world, manifolds, dt, turns, executor);
     return Change::paths;
 }
 
@@ -98,7 +98,7 @@ void PathChoice<Real>::judge_mood(const Manifolds<Real>& manifolds, std::int64_t
 
 template <class Real>
 void PathChoice<Real>::cut_paths(const WorldState<Real>& world, Manifolds<Real>& manifolds, double dt,
-                                 const Executor& executor) {
+                                 TurnRows& turns, const Executor& executor) {
     const bool is_wild = is_wild_crowd(manifolds);
     const Bodies<Real>& bodies = world.bodies;
     contact_links_.clear();
@@ -121,6 +121,7 @@ void PathChoice<Real>::cut_paths(const WorldState<Real>& world, Manifolds<Real>&
         link.is_watched = is_wild && stays_apart(world, manifolds, contact, dt);
         contact_links_.push_back(link);
     }
+    turns.mark(contact_links_);
     mood_of_cut_ = mood_;
     cut_.cut(contact_links_, bodies.moving(), kLongest[static_cast<std::size_t>(mood_)], executor);
     since_cut_ = 0;
@@ -140,14 +141,18 @@ void PathChoice<Real>::cut_paths(const WorldState<Real>& world, Manifolds<Real>&
 /// @param most  share of the contacts that may stand beside
 /// @return whether no more do; if not, the cut is that of another step
 template <class Real>
-bool PathChoice<Real>::keep_paths(const WorldState<Real>& world, Manifolds<Real>& manifolds, double most) {
+bool PathChoice<Real>::keep_paths(const WorldState<Real>& world, Manifolds<Real>& manifolds,
+                                  const TurnRows& turns, double most) {
     slots_.clear();
     std::size_t beside = 0;
     for (const std::int32_t contact : manifolds.live()) {
         ManifoldMemory<Real>& memory = manifolds.memory_of(contact);
-        const std::int32_t b = manifolds.list_of(contact).b[Manifolds<Real>::place_of(contact)];
+        const ManifoldList<Real>& list = manifolds.list_of(contact);
+        const std::size_t i = Manifolds<Real>::place_of(contact);
+        const std::int32_t a = list.a[i], b = list.b[i];
         if (is_nothing(world.bodies, b) != ((memory.slot_kind & kStillSlot) != 0)) memory.slot = -1;
-        slots_.push_back({memory.slot, (memory.slot_kind & kTurnedSlot) != 0});
+        slots_.push_back(
+            {memory.slot, (memory.slot_kind & kTurnedSlot) != 0, turns.is_near(a) || turns.is_near(b)});
         beside += memory.slot < 0 ? 1 : 0;
     }
     if (static_cast<double>(beside) > most * static_cast<double>(slots_.size())) return false;

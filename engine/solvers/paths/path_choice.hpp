@@ -5,6 +5,7 @@
 
 #include "solvers/manifolds/manifolds.hpp"
 #include "solvers/paths/path_cut.hpp"
+#include "solvers/paths/turn_rows.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {
@@ -23,8 +24,9 @@ class PathChoice {
     /// Chooses for a step.
     /// @param is_same    whether the contacts are those of the step before
     /// @param unsettled  paths whose active set did not settle in the step before
+    /// @param turns  bodies whose contacts are solved in turns; paths are cut for them
     Change choose(const WorldState<Real>& world, Manifolds<Real>& manifolds, double dt, bool is_same,
-                  std::int64_t unsettled, const Executor& executor);
+                  std::int64_t unsettled, TurnRows& turns, const Executor& executor);
     /// To be called with the number of paths that were solved.
     void note_solved(std::int64_t paths) { solved_ += paths; }
     /// To be called when bodies may have become others, that move or do not: paths are cut anew.
@@ -45,9 +47,10 @@ class PathChoice {
   private:
     void judge_mood(const Manifolds<Real>& manifolds, std::int64_t unsettled);
     bool is_wild_crowd(const Manifolds<Real>& manifolds) const;
-    void cut_paths(const WorldState<Real>& world, Manifolds<Real>& manifolds, double dt,
+    void cut_paths(const WorldState<Real>& world, Manifolds<Real>& manifolds, double dt, TurnRows& turns,
                    const Executor& executor);
-    bool keep_paths(const WorldState<Real>& world, Manifolds<Real>& manifolds, double most);
+    bool keep_paths(const WorldState<Real>& world, Manifolds<Real>& manifolds, const TurnRows& turns,
+                    double most);
 
     PathCut cut_;
     int since_cut_ = 0;              // steps

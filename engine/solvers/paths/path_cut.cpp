@@ -23,6 +23,7 @@ constexpr float kTiny = 1e-30f;  // m², so that a contact in the centre of mass
 /// bundle is solved again as a whole for one contact that changes. docs/decisions/0038-broad-paths.md.
 constexpr std::uint32_t kLongestBroad = 64;
 constexpr std::uint32_t kMostColours = 64;  // bits of a word
+constexpr std::uint32_t kNoLink = std::numeric_limits<std::uint32_t>::max();
 
 // For the executor: rows of a task, and ns a contact on one thread.
 constexpr std::size_t kRowsPerTask = 256;
@@ -259,7 +260,12 @@ void PathCut::colour(std::span<const ContactLink> contacts, std::size_t rows) {
                 colour = static_cast<std::uint32_t>(std::countr_zero(free & limit));
             else
                 ++next_alone, reached = first + 1;
-            coloured_.push_back({first, reached - first, colour});
+            const auto is_in_turns = [&](const Step& step) {
+                return contacts[static_cast<std::size_t>(step.contact)].is_in_turns;
+            };
+            coloured_.push_back(
+                {first, reached - first, colour,
+                 std::any_of(&sequence_[first], &sequence_[first] + (reached - first), is_in_turns)});
             if (colour < kMostColours) {
                 const std::uint64_t bit = std::uint64_t{1} << colour;
                 const auto mark = [&](std::int32_t row) {
@@ -279,28 +285,49 @@ void PathCut::lay_out(std::span<const ContactLink> contacts) {
     for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
     std::stable_sort(order_.begin(), order_.end(), [&](std::uint32_t i, std::uint32_t j) {
         const Piece &p = coloured_[i], &q = coloured_[j];
-        return p.colour != q.colour ? p.colour < q.colour : p.length > q.length;
+        if (p.colour != q.colour) return p.colour < q.colour;
+        return p.is_in_turns != q.is_in_turns ? p.is_in_turns : p.length > q.length;
     });
     places_.resize(contacts.size());
-    first_link_.assign(1, 0), first_bundle_.assign(1, 0);
+    first_link_.assign(1, 0), first_bundle_.assign(1, 0), end_of_turns_.clear();
     first_contacts_.clear(), jumps_.clear(), is_slender_.clear();
     longest_ = 0, paths_ = coloured_.size();
     for (std::size_t first = 0, last = 0; first < order_.size(); first = last) {
         const std::uint32_t colour = coloured_[order_[first]].colour;
-        while (last < order_.size() && coloured_[order_[last]].colour == colour) ++last;
-        lay_out_colour(contacts, first, last);
+        const auto lay_out_while = [&](const auto& belongs) {
+            while (last < order_.size() && coloured_[order_[last]].colour == colour &&
+                   belongs(coloured_[order_[last]]))
+                ++last;
+            if (first < last) lay_out_pieces(contacts, first, last);
+            first = last;
+        };
+        lay_out_while([](const Piece& piece) { return piece.is_in_turns; });
+        end_of_turns_.push_back(bundles());
+        lay_out_while([](const Piece&) { return true; });
         first_bundle_.push_back(bundles());
     }
-    watched_.clear();
-    for (std::uint32_t i = 0; i < contacts.size(); ++i)
-        if (contacts[i].is_watched) watched_.push_back(i);
+    list_watched(
+        contacts.size(), [&](std::size_t i) { return contacts[i].is_watched; },
+        [&](std::size_t i) { return contacts[i].is_in_turns; });
     lay_out_watched();
 }
 
-/// Bundles of one link for the contacts beside the paths, in their order.
+/// Lists the contacts beside the paths, those in turns first.
+template <class IsWatched, class IsInTurns>
+void PathCut::list_watched(std::size_t contacts, const IsWatched& is_watched, const IsInTurns& is_in_turns) {
+    watched_.clear(), others_.clear();
+    for (std::uint32_t i = 0; i < contacts; ++i)
+        if (is_watched(i)) (is_in_turns(i) ? watched_ : others_).push_back(i);
+    watched_turns_ = watched_.size();
+    watched_.insert(watched_.end(), others_.begin(), others_.end());
+}
+
+/// Bundles of one link for the contacts beside the paths, in their order; those not in turns begin a new one.
 void PathCut::lay_out_watched() {
+    end_of_watched_turns_ = bundles() + (watched_turns_ + kPathLanes - 1) / kPathLanes;
     for (std::size_t k = 0; k < watched_.size(); ++k) {
-        const auto lane = static_cast<std::uint8_t>(k % kPathLanes);
+        const auto lane =
+            static_cast<std::uint8_t>((k < watched_turns_ ? k : k - watched_turns_) % kPathLanes);
         if (lane == 0) {
             first_contacts_.resize(first_contacts_.size() + kPathLanes, -1), is_slender_.push_back(0);
             first_link_.push_back(first_link_.back() + 1);
@@ -321,13 +348,11 @@ void PathCut::keep(std::span<const Slot> slots) {
         for (std::size_t link = first_link_[bundle]; link < first_link_[bundle + 1]; ++link)
             bundle_of_link_[link] = bundle;
     contact_of_slot_.assign(kPathLanes * links(), -1);
-    places_.resize(slots.size()), watched_.clear();
+    places_.resize(slots.size());
     for (std::uint32_t i = 0; i < slots.size(); ++i) {
         const auto slot = static_cast<std::uint32_t>(slots[i].number);
-        if (slots[i].number < 0 || contact_of_slot_[slot] >= 0) {  // none, or another's
-            watched_.push_back(i);
-            continue;
-        }
+        places_[i].link = kNoLink;
+        if (slots[i].number < 0 || contact_of_slot_[slot] >= 0) continue;  // none, or another's
         const std::uint32_t link = slot / kPathLanes;
         places_[i] = {link, bundle_of_link_[link], static_cast<std::uint8_t>(slot % kPathLanes),
                       slots[i].is_reversed};
@@ -345,12 +370,15 @@ void PathCut::keep(std::span<const Slot> slots) {
                                   static_cast<std::uint8_t>(slot % kPathLanes), next});
         }
     }
+    list_watched(
+        slots.size(), [&](std::size_t i) { return places_[i].link == kNoLink; },
+        [&](std::size_t i) { return slots[i].is_in_turns; });
     lay_out_watched();
 }
 
 /// Bundles of the pieces order_[first] ... order_[last], which are in order of their length. Each begins with
 /// the kPathLanes longest that are left, and goes on in each lane with the longest that ends before it does.
-void PathCut::lay_out_colour(std::span<const ContactLink> contacts, std::size_t first, std::size_t last) {
+void PathCut::lay_out_pieces(std::span<const ContactLink> contacts, std::size_t first, std::size_t last) {
     const auto length_of = [&](std::size_t i) { return std::size_t{coloured_[order_[i]].length}; };
     next_of_length_.assign(length_of(first) + 1, 0), end_of_length_.assign(length_of(first) + 1, 0);
     for (std::size_t i = last; i-- > first;) {
@@ -418,9 +446,9 @@ std::size_t PathCut::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
     return of(first_at_) + of(contact_at_) + of(joined_) + of(is_seen_) + of(piece_of_row_) + of(sequence_) +
            of(pieces_) + of(coloured_) + of(used_) + of(loaded_count_) + of(order_) + of(count_) +
-           of(places_) + of(first_link_) + of(first_bundle_) + of(first_contacts_) + of(jumps_) +
-           of(is_slender_) + of(watched_) + of(contact_of_slot_) + of(bundle_of_link_) + of(next_of_length_) +
-           of(end_of_length_);
+           of(places_) + of(first_link_) + of(first_bundle_) + of(end_of_turns_) + of(first_contacts_) +
+           of(jumps_) + of(is_slender_) + of(watched_) + of(others_) + of(contact_of_slot_) +
+           of(bundle_of_link_) + of(next_of_length_) + of(end_of_length_);
 }
 
 }  // namespace carom

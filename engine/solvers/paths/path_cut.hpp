@@ -11,11 +11,12 @@ namespace carom {
 
 /// A contact as the cut into paths sees it: a link between two bodies.
 struct ContactLink {
-    std::int32_t a, b;        ///< rows; kNothing where nothing moves the body. Not both of them
-    float arm_a_x, arm_a_y;   ///< m, from the centre of mass of a to where the contact pushes
-    float arm_b_x, arm_b_y;   ///< m, from that of b
-    bool is_loaded;           ///< pushes at present
-    bool is_watched = false;  ///< stands beside the paths
+    std::int32_t a, b;         ///< rows; kNothing where nothing moves the body. Not both of them
+    float arm_a_x, arm_a_y;    ///< m, from the centre of mass of a to where the contact pushes
+    float arm_b_x, arm_b_y;    ///< m, from that of b
+    bool is_loaded;            ///< pushes at present
+    bool is_watched = false;   ///< stands beside the paths
+    bool is_in_turns = false;  ///< is solved more often than others
 
     static constexpr std::int32_t kNothing = -1;
 };
@@ -26,7 +27,8 @@ struct ContactLink {
 /// through. Every contact is in one path; a path names no body twice. Paths get colours, so that paths of one
 /// colour share no body that moves; kPathLanes paths of a colour, about as long as each other, are a bundle.
 /// Shorter paths stand behind those that end before their bundle does, after a link without a contact, so
-/// that few places are empty. What finds no colour is alone in a bundle of a colour of its own.
+/// that few places are empty. Paths of contacts that are solved more often are the first bundles of a colour.
+/// What finds no colour is alone in a bundle of a colour of its own.
 ///
 /// Contacts that are expected to carry nothing stand beside the paths, behind them: kPathLanes are a bundle
 /// of one link, in no colour. Where contacts come and go, a cut is kept for some steps: those that come stand
@@ -51,6 +53,7 @@ class PathCut {
     struct Slot {
         std::int32_t number;  ///< kPathLanes times the link, plus the lane; negative: none
         bool is_reversed;
+        bool is_in_turns = false;  ///< as ContactLink has it; for contacts that stand beside the paths
     };
 
     /// A link without a contact before one that has one: it leads to where that begins.
@@ -84,9 +87,13 @@ class PathCut {
     std::span<const std::size_t> first_link() const { return first_link_; }
     /// Bundles of colour c: first_bundle()[c] ... first_bundle()[c + 1].
     std::span<const std::size_t> first_bundle() const { return first_bundle_; }
+    /// Bundles of colour c that are in turns: first_bundle()[c] ... end_of_turns()[c].
+    std::span<const std::size_t> end_of_turns() const { return end_of_turns_; }
     /// The first bundle of contacts beside the paths.
     std::size_t first_watched() const { return first_bundle_.back(); }
-    /// The contacts beside the paths, in their order.
+    /// Behind the last of these that are in turns; they come first.
+    std::size_t end_of_watched_turns() const { return end_of_watched_turns_; }
+    /// The contacts beside the paths: those in turns, then the others, in their order.
     std::span<const std::uint32_t> watched() const { return watched_; }
     /// The contact in the first link of each lane of each bundle; -1: there is none.
     std::span<const std::int32_t> first_contacts() const { return first_contacts_; }
@@ -102,14 +109,16 @@ class PathCut {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.places_, self.first_link_, self.first_bundle_, self.first_contacts_, self.jumps_,
-                self.is_slender_, self.watched_, self.longest_, self.paths_);
+        archive(self.places_, self.first_link_, self.first_bundle_, self.end_of_turns_, self.first_contacts_,
+                self.jumps_, self.is_slender_, self.watched_, self.longest_, self.paths_, self.watched_turns_,
+                self.end_of_watched_turns_);
     }
 
   private:
     struct Piece {
         std::uint32_t first, length;  // in sequence_
         std::uint32_t colour;
+        bool is_in_turns = false;  // one of its contacts is
     };
     struct Step {
         std::int32_t contact;
@@ -133,7 +142,9 @@ class PathCut {
     void walk_from(std::span<const ContactLink> contacts, std::size_t contact, std::size_t longest);
     void colour(std::span<const ContactLink> contacts, std::size_t rows);
     void lay_out(std::span<const ContactLink> contacts);
-    void lay_out_colour(std::span<const ContactLink> contacts, std::size_t first, std::size_t last);
+    void lay_out_pieces(std::span<const ContactLink> contacts, std::size_t first, std::size_t last);
+    template <class IsWatched, class IsInTurns>
+    void list_watched(std::size_t contacts, const IsWatched& is_watched, const IsInTurns& is_in_turns);
     void lay_out_watched();
     void put(std::span<const ContactLink> contacts, const Piece& piece, std::uint8_t lane, std::size_t link);
     bool is_slender(std::span<const ContactLink> contacts, const Piece& piece) const;
@@ -150,15 +161,17 @@ class PathCut {
     std::vector<std::uint32_t> loaded_count_;  // by row: loaded contacts
     std::vector<std::uint32_t> order_, count_;
     std::vector<Place> places_;
-    std::vector<std::size_t> first_link_{0}, first_bundle_{0};
+    std::vector<std::size_t> first_link_{0}, first_bundle_{0}, end_of_turns_;
     std::vector<std::int32_t> first_contacts_;
     std::vector<Jump> jumps_;
     std::vector<std::uint8_t> is_slender_;
-    std::vector<std::uint32_t> watched_;         // contacts beside the paths
-    std::vector<std::int32_t> contact_of_slot_;  // -1: none
+    std::vector<std::uint32_t> watched_, others_;  // contacts beside the paths; of those, not in turns
+    std::vector<std::int32_t> contact_of_slot_;    // -1: none
     std::vector<std::uint32_t> bundle_of_link_;
     std::vector<std::size_t> next_of_length_,
-        end_of_length_;  // in order_: pieces of a colour not laid out yet
+        end_of_length_;              // in order_: pieces of a colour not laid out yet
+    std::size_t watched_turns_ = 0;  // of watched_
+    std::size_t end_of_watched_turns_ = 0;
     std::size_t longest_ = 0, paths_ = 0;
 };
 

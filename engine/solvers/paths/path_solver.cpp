@@ -73,7 +73,7 @@ void PathSolver<Real>::find(const WorldState<Real>& world, const EdgeCandidates<
     if (manifolds.live().empty()) return rolling_.clear();
     using Change = typename PathChoice<Real>::Change;
     const Change change =
-        choice_.choose(world, manifolds, terms.dt, is_same, counters.unsettled, *loops.executor);
+        choice_.choose(world, manifolds, terms.dt, is_same, counters.unsettled, turns, *loops.executor);
     if (change != Change::none) links_hold_ = false;
     if (change == Change::paths) ++counters.cuts;
     lay_out(world, edges, terms, records, loops);
@@ -257,25 +257,31 @@ void PathSolver<Real>::find_shares() {
 }
 
 template <class Real>
-typename PathSolver<Real>::BundleRange PathSolver<Real>::share_of(std::size_t colour,
-                                                                  std::size_t share) const {
+typename PathSolver<Real>::BundleRange PathSolver<Real>::share_of(std::size_t colour, std::size_t share,
+                                                                  Bundles which) const {
     const std::size_t* first = &first_of_share_[colour * (kShares + 1) + share];
-    return {first[0], first[1]};
+    if (which != Bundles::near_turns) return {first[0], first[1]};
+    const std::size_t end = cut().end_of_turns()[colour];
+    return {std::min(first[0], end), std::min(first[1], end)};
 }
 
 /// Colour after colour; the bundles of a colour side by side.
 template <class Real>
-void PathSolver<Real>::run(Pass pass, SolvePaths<Real> arguments, const StepLoops<Real>& loops) {
+void PathSolver<Real>::run(Pass pass, SolvePaths<Real> arguments, const StepLoops<Real>& loops,
+                           Bundles which) {
     const std::size_t bytes = path_scratch_bytes(cut().longest());
     for (std::size_t colour = 0; colour < cut().colours(); ++colour) {
-        const std::size_t first = cut().first_bundle()[colour], last = cut().first_bundle()[colour + 1];
+        const std::size_t first = cut().first_bundle()[colour], last = which == Bundles::near_turns
+                                                                           ? cut().end_of_turns()[colour]
+                                                                           : cut().first_bundle()[colour + 1];
+        if (first == last) continue;
         const std::size_t links = cut().first_link()[last] - cut().first_link()[first];
         const bool is_one = last - first < 2;  // bundle
         std::array<std::size_t, kShares> unsettled{};
         loops.executor->for_each_task(
             is_one ? 1 : kShares, kNanosecondsToSolve * kPathLanes * static_cast<double>(links),
             [&](std::size_t share) {
-                const BundleRange own = is_one ? BundleRange{first, last} : share_of(colour, share);
+                const BundleRange own = is_one ? BundleRange{first, last} : share_of(colour, share, which);
                 if (own.first == own.last) return;
                 SolvePaths<Real> k = arguments;
                 k.scratch = scratch_.data() + share * bytes;
@@ -289,8 +295,9 @@ void PathSolver<Real>::run(Pass pass, SolvePaths<Real> arguments, const StepLoop
 /// @param has_floors  whether they have the floors of the substep
 template <class Real>
 void PathSolver<Real>::solve_watched(const SolvePaths<Real>& arguments, const StepLoops<Real>& loops,
-                                     bool has_floors) {
-    const std::size_t begin = cut().first_watched(), end = cut().bundles();
+                                     Bundles which, bool has_floors) {
+    const std::size_t begin = cut().first_watched(),
+                      end = which == Bundles::near_turns ? cut().end_of_watched_turns() : cut().bundles();
     const PathKernels<Real>& kernels = loops.kernels->convex->paths;
     for (int sweep = 0; sweep < kSweepsOfWatched && begin < end; ++sweep) {
         const Pass watch = has_floors || sweep > 0 ? kernels.watch_again : kernels.watch;
@@ -321,30 +328,31 @@ void PathSolver<Real>::warm_start(const SubstepTerms& terms, BodyRecords<Real>& 
 
 template <class Real>
 void PathSolver<Real>::solve(const SubstepTerms& terms, BodyRecords<Real>& records,
-                             const StepLoops<Real>& loops, int passes, bool sweeps, bool may_rest) {
+                             const StepLoops<Real>& loops, int passes, bool sweeps, Bundles which) {
     if (manifolds.live().empty()) return;
     const PathKernels<Real>& kernels = loops.kernels->convex->paths;
     SolvePaths<Real> k = arguments(terms, records);
-    if (may_rest && rolling_.empty()) k.resting_speed = static_cast<Real>(kRestingSpeed * terms.fall_speed());
+    if (which == Bundles::restless && rolling_.empty())
+        k.resting_speed = static_cast<Real>(kRestingSpeed * terms.fall_speed());
     const auto none = static_cast<Real>(kNoPoint);
     for (const Hidden& h : hidden_)
         links_[h.link].separation1[h.lane] = links_[h.link].separation2[h.lane] = none;
-    for (int pass = 0; pass < passes; ++pass) run(kernels.solve, k, loops);
-    solve_watched(k, loops, false);
+    for (int pass = 0; pass < passes; ++pass) run(kernels.solve, k, loops, which);
+    solve_watched(k, loops, which, false);
     choice_.note_solved(static_cast<std::int64_t>(cut().paths()) * passes);
     for (int turn = 0; turn < kTurnsOfRolling && !rolling_.empty(); ++turn) {
         rolling_.solve(records, [&](std::size_t n) {
             const PathCut::Place place = cut().places()[n];
             return links_[place.link].normal1[place.lane] + links_[place.link].normal2[place.lane];
         });
-        run(kernels.solve, k, loops);
+        run(kernels.solve, k, loops, which);
     }
     // In a crowd paths are short, and what they hand on to each other is more than what is left in them:
     // docs/decisions/0058-large-heaps.md.
     if (sweeps || (manifolds.is_crowd() && rolling_.empty())) {
         k.resting_speed = sweeps ? Real(0) : static_cast<Real>(kRestingSpeed * terms.fall_speed());
-        run(kernels.sweep, k, loops);
-        solve_watched(k, loops, rolling_.empty());  // else displacements have changed
+        run(kernels.sweep, k, loops, which);
+        solve_watched(k, loops, which, rolling_.empty());  // else displacements have changed
     }
     for (const Hidden& h : hidden_) {
         links_[h.link].separation1[h.lane] = h.separation1;
@@ -447,7 +455,7 @@ std::size_t PathSolver<Real>::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
     return manifolds.bytes() + rolling_.bytes() + turning_edges_.bytes() + of(row_of_far_) +
            of(with_kinematic_) + closing_.bytes() + choice_.bytes() + links_.bytes() + heads_.bytes() +
-           restless_.bytes() + scratch_.bytes() + of(hidden_) + of(first_of_share_);
+           restless_.bytes() + turns.bytes() + scratch_.bytes() + of(hidden_) + of(first_of_share_);
 }
 
 template class PathSolver<float>;

@@ -10,6 +10,7 @@
 #include "solvers/manifolds/manifolds.hpp"
 #include "solvers/paths/path_choice.hpp"
 #include "solvers/paths/path_rolling.hpp"
+#include "solvers/paths/turn_rows.hpp"
 #include "solvers/paths/turning_edges.hpp"
 #include "solvers/substeps/body_records.hpp"
 #include "solvers/substeps/step_terms.hpp"
@@ -51,13 +52,18 @@ class PathSolver {
               const ContactDistance& near, BodyRecords<Real>& records, const StepLoops<Real>& loops);
     /// Gives the bodies the impulses of the step before.
     void warm_start(const SubstepTerms& terms, BodyRecords<Real>& records, const StepLoops<Real>& loops);
+    /// Bundles of paths that are solved: all; but those that hardly moved when they were solved last; those
+    /// alone that are near bodies in turns.
+    enum class Bundles : std::uint8_t { all, restless, near_turns };
     /// Solves a substep.
     /// @param passes  times that the paths are solved; more than one where there are no impulses to start
     /// from
     /// @param sweeps  whether to sweep over all contacts at the end
-    /// @param may_rest  whether to leave out bundles of paths that hardly moved when they were solved last
     void solve(const SubstepTerms& terms, BodyRecords<Real>& records, const StepLoops<Real>& loops,
-               int passes, bool sweeps, bool may_rest = false);
+               int passes, bool sweeps, Bundles which = Bundles::all);
+    TurnRows turns;  ///< whose contacts are solved in turns
+    /// The bundles of a turn.
+    Bundles near_turns() const { return turns.are_known() ? Bundles::near_turns : Bundles::all; }
     /// Hides a contact from `solve` until `unhide`: it is to have an impact in a later substep.
     void hide(const PathContact<Real>& contact) {
         hidden_.push_back({static_cast<std::size_t>(&contact.link - links_.data()), contact.lane,
@@ -69,7 +75,7 @@ class PathSolver {
     void run_loads(LoadPass pass, const PathLoads<Real>& loads, const SubstepTerms& terms,
                    BodyRecords<Real>& records, const StepLoops<Real>& loops);
     /// To be called when bodies may have become others, that move or do not: paths are cut anew.
-    void forget_cut() { choice_.forget_cut(); }
+    void forget_cut() { choice_.forget_cut(), turns.forget(); }
     /// Moves the surfaces of kinematic bodies on by a substep.
     void advance(const SubstepTerms& terms, BodyRecords<Real>& records);
     const PathRolling<Real>& rolling() const { return rolling_; }
@@ -128,7 +134,7 @@ class PathSolver {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.counters, self.manifolds, self.rolling_, self.choice_);
+        archive(self.counters, self.manifolds, self.rolling_, self.choice_, self.turns);
         if constexpr (!std::is_const_v<Self>) self.links_hold_ = false;
     }
 
@@ -145,9 +151,10 @@ class PathSolver {
     struct BundleRange {
         std::size_t first, last;
     };
-    BundleRange share_of(std::size_t colour, std::size_t share) const;
+    BundleRange share_of(std::size_t colour, std::size_t share, Bundles which) const;
     void find_shares();
-    void run(Pass pass, SolvePaths<Real> arguments, const StepLoops<Real>& loops);
+    void run(Pass pass, SolvePaths<Real> arguments, const StepLoops<Real>& loops,
+             Bundles which = Bundles::all);
     const PathCut& cut() const { return choice_.cut(); }
     /// Row of the body where a link begins.
     std::int32_t near_row(PathCut::Place place) const {
@@ -157,7 +164,8 @@ class PathSolver {
     }
     static void give(const PathLink<Real>& link, std::size_t lane, std::size_t near, std::size_t far,
                      Real sign, Column<Real>& velocity);
-    void solve_watched(const SolvePaths<Real>& arguments, const StepLoops<Real>& loops, bool has_floors);
+    void solve_watched(const SolvePaths<Real>& arguments, const StepLoops<Real>& loops, Bundles which,
+                       bool has_floors);
     void lay_out(const WorldState<Real>& world, const EdgeCandidates<Real>& edges, const SubstepTerms& terms,
                  BodyRecords<Real>& records, const StepLoops<Real>& loops);
     void name_rows(const WorldState<Real>& world, const BodyRecords<Real>& records);

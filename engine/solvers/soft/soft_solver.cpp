@@ -91,8 +91,10 @@ template <class Real>
 void SoftSolver<Real>::solve_paths(int number, bool is_last) {
     const bool starts_anew = number == 0 && warm_start_.starts_anew();
     // What is at rest is solved in every second substep; not where a scene asks for contacts solved better.
+    using Bundles = typename PathSolver<Real>::Bundles;
     const bool may_rest = number % 2 == 1 && settings_.iterations == kDefaultIterations;
-    paths.solve(terms_, records_, loops_, starts_anew ? kFirstPasses : 1, is_last || starts_anew, may_rest);
+    paths.solve(terms_, records_, loops_, starts_anew ? kFirstPasses : 1, is_last || starts_anew,
+                may_rest ? Bundles::restless : Bundles::all);
 }
 
 template <class Real>
@@ -122,10 +124,12 @@ void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
                 on_supports);
 }
 
-/// Joints, then all contacts. @return whether contacts are left as they are, since neither joints nor what
+/// Joints, then contacts. @return whether contacts are left as they are, since neither joints nor what
 /// weighs on them have changed a velocity by more than `settled` [m/s]; below zero: never.
+/// @param is_near  whether those of shapes are solved alone that are near bodies which joints have changed by
+/// more than that
 template <class Real>
-bool SoftSolver<Real>::solve_turn(WorldState<Real>& world, double settled) {
+bool SoftSolver<Real>::solve_turn(WorldState<Real>& world, double settled, bool is_near) {
     const auto next = Sweeps::next(view(), Sweeps::Blocks::all, 1);
     if (!world.joints.empty()) {
         double change = joints.solve_again(joint_step(world), loops_);
@@ -133,16 +137,24 @@ bool SoftSolver<Real>::solve_turn(WorldState<Real>& world, double settled) {
             change = std::max(change, heavy_.solve(held_contacts(), joint_step(world), joints));
         if (change <= settled) return true;
     }
-    if (world.bodies.has_shapes) paths.solve(terms_, records_, loops_, 1, true);
+    if (world.bodies.has_shapes) {
+        using Bundles = typename PathSolver<Real>::Bundles;
+        paths.turns.begin();
+        const bool has_asked = joints.ask_turns(settled, paths.turns);
+        paths.solve(terms_, records_, loops_, 1, true,
+                    is_near && has_asked ? paths.near_turns() : Bundles::all);
+    }
     sweeps_.run(view(), {next.data(), next.size()});
     return false;
 }
 
+/// The first turn brings the contacts of all bodies to hold what joints have made of them; the others are for
+/// what presses.
 template <class Real>
 void SoftSolver<Real>::solve_joints_and_contacts(WorldState<Real>& world) {
     const double settled = kJointsSettled * terms_.fall_speed();
     const int turns = joints.touches_exactly() ? kTurns : kTurnsOfCrowd;
-    for (int turn = 0; turn < turns && !solve_turn(world, settled); ++turn) continue;
+    for (int turn = 0; turn < turns && !solve_turn(world, settled, turn > 0); ++turn) continue;
 }
 
 template <class Real>
@@ -158,7 +170,7 @@ void SoftSolver<Real>::bound_energy(WorldState<Real>& world) {
         const bool becomes_less = passive_.has_scaled() || gained < before;
         if (is_last || !(gained > 0) || !becomes_less) break;
         before = gained;
-        solve_turn(world, -1);
+        solve_turn(world, -1, false);
     }
 }
 

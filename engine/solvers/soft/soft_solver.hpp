@@ -185,7 +185,7 @@ class SoftSolver {
     /// Whether nothing of that has changed since the last step.
     bool knows_rows() const { return masses_.are_known(); }
     /// Rows have changed, and the graph has followed them.
-    void follow_rows() { masses_.follow_rows(); }
+    void follow_rows() { masses_.follow_rows(), paths.turns.forget(); }
 
     /// Nothing can touch any more.
     void drop_contacts() { graph.pairs = {}, graph.supports = {}, graph.lost.clear(), supports_ = {}; }
@@ -210,7 +210,7 @@ class SoftSolver {
   private:
     using Sweeps = ContactSweeps<Real>;
 
-    bool solve_turn(WorldState<Real>& world, double settled);
+    bool solve_turn(WorldState<Real>& world, double settled, bool is_near);
     JointStep<Real> joint_step(WorldState<Real>& world) {
         return {world, records_, terms_, books_.gravity_work, joints.springs()};
     }

@@ -12,7 +12,7 @@ template <class Real>
 void sort_rows(SoftSimulation<Real>& sim) {
     sort_rows_by_place(sim, [&](const std::int32_t* order) {
         sim.soft.graph.trail.follow_sorted(order, sim.world.bodies.count);
-        sim.soft.forget_rows();
+        sim.soft.forget_rows(), sim.soft.paths.turns.forget();
     });
 }
 

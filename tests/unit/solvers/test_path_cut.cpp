@@ -1,4 +1,5 @@
 #include "solvers/paths/path_cut.hpp"
+#include "solvers/paths/turn_rows.hpp"
 
 #include <doctest/doctest.h>
 
@@ -146,6 +147,53 @@ TEST_SUITE("solvers/paths/path_cut") {
             CHECK(places.size() == contacts.size());
             CHECK(walk(cut, contacts).hangs_together);
         }
+    }
+    TEST_CASE("contacts in turns are in the first bundles of each colour, and the paths are the same") {
+        Random random(17);
+        for (int trial = 0; trial < 40; ++trial) {
+            const auto bodies = static_cast<std::size_t>(2 + below(random, 200));
+            auto contacts = random_contacts(random, bodies, static_cast<std::size_t>(1 + below(random, 400)));
+            for (ContactLink& contact : contacts)
+                contact.is_watched = !contact.is_loaded && below(random, 4) == 0;
+            PathCut without, cut;
+            without.cut(contacts, bodies, 16, Executor());
+            CHECK(without.end_of_watched_turns() == without.first_watched());
+            for (ContactLink& contact : contacts) contact.is_in_turns = below(random, 8) == 0;
+            cut.cut(contacts, bodies, 16, Executor());
+            CHECK(walk(cut, contacts).hangs_together);
+            CHECK(cut.paths() == without.paths());
+            REQUIRE(cut.end_of_turns().size() == cut.colours());
+            for (std::size_t i = 0; i < contacts.size(); ++i) {
+                const std::size_t bundle = cut.places()[i].bundle;
+                if (!contacts[i].is_in_turns) continue;
+                const auto colour =
+                    std::upper_bound(cut.first_bundle().begin(), cut.first_bundle().end(), bundle) -
+                    cut.first_bundle().begin() - 1;
+                CHECK(bundle < (contacts[i].is_watched
+                                    ? cut.end_of_watched_turns()
+                                    : cut.end_of_turns()[static_cast<std::size_t>(colour)]));
+            }
+        }
+    }
+    TEST_CASE("contacts near a body in turns are those that few contacts part from it") {
+        std::vector<ContactLink> row;  // body i touches body i + 1
+        for (std::int32_t i = 0; i < 40; ++i) row.push_back({i, i + 1, 0, 0, 0, 0, true});
+        TurnRows turns;
+        turns.mark(row);
+        CHECK(std::none_of(row.begin(), row.end(), [](const ContactLink& c) { return c.is_in_turns; }));
+        turns.begin();
+        CHECK_FALSE(turns.are_known());
+        turns.ask(20);
+        CHECK_FALSE(turns.are_known());
+        turns.mark(row);
+        turns.begin(), turns.ask(20);
+        CHECK(turns.are_known());
+        for (std::int32_t i = 0; i < 40; ++i)
+            CHECK(row[static_cast<std::size_t>(i)].is_in_turns == (i >= 15 && i <= 24));
+        CHECK(turns.is_near(16));
+        CHECK_FALSE(turns.is_near(15));
+        turns.ask(3);
+        CHECK_FALSE(turns.are_known());
     }
     TEST_CASE("a cut is kept while contacts come, go and change their order") {
         Random random(13);

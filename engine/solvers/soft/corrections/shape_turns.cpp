@@ -110,21 +110,26 @@ void ShapeTurns<Real>::settle(const StepView<Real>& step, ContactSweeps<Real>& s
     const auto settled = static_cast<Real>(settled_ * step.terms.fall_speed());
     const auto struck = static_cast<Real>(kStruck * step.terms.fall_speed());
     Real first = 0;  // change [m/s]
+    paths.turns.begin();
+    for (const Uneven& contact : uneven_) paths.turns.ask(contact.heavy);
+    using Bundles = typename PathSolver<Real>::Bundles;
+    Bundles which = paths.near_turns();
     bool is_last = false;
     for (int turn = 1; !is_last; ++turn) {
         Column<Real>& velocity = step.records.velocity;
         before_.resize_for_overwrite(velocity.size());
         std::copy(velocity.begin(), velocity.end(), before_.begin());
-        paths.solve(step.terms, step.records, step.loops, 0, true);
+        paths.solve(step.terms, step.records, step.loops, 0, true, which);
         if (has_discs) sweeps.run(step, next);
         Real change = 0;
         for (std::size_t i = 0; i < velocity.size(); ++i)
             change = std::max(change, std::abs(velocity[i] - before_[i]));
         if (!(change > settled)) return;
         if (turn == 1) first = change;
-        is_last = turn == most_ || (turn == most_of_struck_ && change > struck) ||
+        is_last = turn == most_ || (turn >= most_of_struck_ && change > struck) ||
                   (turn == kFewTurns && change > first);
-        paths.solve(step.terms, step.records, step.loops, 1, false);
+        which = change > struck ? paths.near_turns() : Bundles::all;
+        paths.solve(step.terms, step.records, step.loops, 1, false, which);
     }
 }
 

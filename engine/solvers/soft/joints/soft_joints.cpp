@@ -261,6 +261,18 @@ double SoftJoints<Real>::solve_again(const JointStep<Real>& step, const StepLoop
 }
 
 template <class Real>
+bool SoftJoints<Real>::ask_turns(double settled, TurnRows& turns) const {
+    if (!swept_.empty()) return false;
+    for (std::size_t i = 0; i < first_beside_; ++i) {
+        if (!direct_[i].touches() || direct_[i].largest_change() <= settled) continue;
+        for (const std::int32_t row : direct_[i].rows())
+            if (row >= 0 && group_of_[static_cast<std::size_t>(row)] == static_cast<std::int32_t>(i))
+                turns.ask(row);
+    }
+    return true;
+}
+
+template <class Real>
 void SoftJoints<Real>::end_substep(const JointStep<Real>& step, Books& books) {
     for (DirectJoints<Real>& group : direct_) {
         group.note_forces();

@@ -41,6 +41,9 @@ class SoftJoints {
     /// @return by how much that changed the velocity of a centre or a rim, at most [m/s]; infinity where
     /// joints are swept
     double solve_again(const JointStep<Real>& step, const StepLoops<Real>& loops);
+    /// Asks for turns of contacts near bodies of groups that this has changed by more than `settled` [m/s].
+    /// @return whether joints change no others, as sweeps do
+    bool ask_turns(double settled, TurnRows& turns) const;
     /// Groups that are solved exactly, and the number of a body's group among them; -1: it is in none.
     std::size_t exact_groups() const { return first_beside_; }
     std::int32_t exact_group_of(std::int32_t row) const {
