@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "narrowphase/disc_edge.hpp"
+#include "state/edge_tracks.hpp"
 
 namespace carom {
 namespace {
@@ -50,9 +51,9 @@ void EdgeCandidates<Real>::place(const WorldState<Real>& world, double dt) {
         pose.row = world.handles.row_of_slot(world.edges.bodies[i].id.index);
         const std::size_t row = pose.row;
         pose.takes_part = (bodies.flags_of(row) & kDisabled) == 0;
-        pose.position = {bodies.position_x[row], bodies.position_y[row]};
+        const auto [position, angle] = frame_of(world, world.edges.bodies[i], row);
+        pose.position = position;
         pose.end_position = pose.position + dt * Vec2{bodies.velocity_x[row], bodies.velocity_y[row]};
-        const double angle = bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0;
         if (pose.angle != angle) pose.turn = rotation_by(angle);  // most edges never turn
         pose.angle = angle;
         const double spin = bodies.has_rotation ? static_cast<double>(bodies.angular_velocity[row]) : 0;
@@ -64,11 +65,12 @@ void EdgeCandidates<Real>::place(const WorldState<Real>& world, double dt) {
 template <class Real>
 void EdgeCandidates<Real>::settle(const WorldState<Real>& world) {
     const Bodies<Real>& bodies = world.bodies;
-    for (EdgePose& pose : poses_) {
-        const std::size_t row = pose.row;
-        pose.end_position = {bodies.position_x[row], bodies.position_y[row]};
-        if (!bodies.has_rotation || pose.end_angle == static_cast<double>(bodies.angle[row])) continue;
-        pose.end_angle = bodies.angle[row];
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+        EdgePose& pose = poses_[i];
+        const auto [position, angle] = frame_of(world, world.edges.bodies[i], pose.row);
+        pose.end_position = position;
+        if (!bodies.has_rotation || pose.end_angle == angle) continue;
+        pose.end_angle = angle;
         pose.end_turn = rotation_by(pose.end_angle);
     }
 }

@@ -178,6 +178,10 @@ struct Bodies {
 
     /// Whether there are rows for which may_touch may say no.
     bool has_filters() const { return has_groups || has_categories; }
+    /// Whether others may touch either of two bodies or neither.
+    bool are_filtered_alike(std::size_t a, std::size_t b) const {
+        return (!has_groups || group[a] == group[b]) && (!has_categories || filter[a] == filter[b]);
+    }
     /// Whether groups, categories and masks let two bodies touch.
     bool may_touch(std::size_t a, std::size_t b) const {
         if (has_groups && group[a] != 0 && group[a] == group[b]) return group[a] > 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace carom {
 namespace {
@@ -31,7 +32,20 @@ void link(EdgeStore& store, const EdgeBody& body, bool is_loop) {
 
 }  // namespace
 
+void EdgeStore::part() {
+    if (!std::exchange(is_joined, false)) return;
+    for (EdgeBody& body : bodies) {
+        if (body.track < 0) continue;
+        Edge& edge = edges[static_cast<std::size_t>(body.first)];
+        edge.a = body.own_a, edge.b = body.own_b, edge.previous = edge.next = -1;
+        body.track = -1, body.reach = body.own_reach;
+        body.own_a = body.own_b = {}, body.own_reach = 0;
+    }
+}
+
 void EdgeStore::append(BodyId id, const Shape& shape) {
+    if (!std::holds_alternative<Segment>(shape) && !std::holds_alternative<Chain>(shape)) return;
+    part();
     const auto number = static_cast<std::int32_t>(bodies.size());
     EdgeBody body{.id = id, .first = static_cast<std::int32_t>(edges.size())};
     const auto add = [&](Vec2 a, Vec2 b) {
@@ -42,13 +56,12 @@ void EdgeStore::append(BodyId id, const Shape& shape) {
     bool is_loop = false;
     if (const auto* segment = std::get_if<Segment>(&shape)) {
         add(segment->a, segment->b);
-    } else if (const auto* chain = std::get_if<Chain>(&shape)) {
+    } else {
+        const auto* chain = std::get_if<Chain>(&shape);
         is_loop = is_closed(*chain);
         for (std::size_t i = 0; i + 1 < chain->points.size(); ++i)
             add(chain->points[i], chain->points[i + 1]);
         if (chain->loop) add(chain->points.back(), chain->points.front());
-    } else {
-        return;
     }
     link(*this, body, is_loop);
     append_boxes(body);
@@ -86,7 +99,8 @@ Shape EdgeStore::shape_of(BodyId id) const {
     const auto body =
         std::find_if(bodies.begin(), bodies.end(), [id](const EdgeBody& other) { return other.id == id; });
     const Edge& first = (*this)[body->first];
-    if (body->count == 1) return Segment{first.a, first.b};
+    if (body->count == 1)
+        return body->track >= 0 ? Segment{body->own_a, body->own_b} : Segment{first.a, first.b};
     Chain chain{{first.a}, first.previous >= 0};
     for (std::int32_t n = 0; n + (chain.loop ? 1 : 0) < body->count; ++n)
         chain.points.push_back((*this)[body->first + n].b);
@@ -97,6 +111,7 @@ EdgeStore::Removed EdgeStore::remove(BodyId id) {
     const auto found =
         std::find_if(bodies.begin(), bodies.end(), [id](const EdgeBody& body) { return body.id == id; });
     if (found == bodies.end()) return {};
+    part();
     const Removed gone{found->first, found->count};
     edges.erase(edges.begin() + gone.first, edges.begin() + gone.first + gone.count);
     const auto first_box = boxes.begin() + found->first_box;

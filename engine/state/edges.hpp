@@ -29,6 +29,10 @@ struct EdgeBody {
     std::int32_t first = 0, count = 0;
     double reach = 0;                           // m, of the point that is farthest from the body's position
     std::int32_t first_box = 0, box_count = 0;  // in EdgeStore::boxes
+    std::int32_t track = -1;  // of a segment that is joined with others (edge_tracks.hpp): the first of their
+                              // bodies; then its edge is in the frame of the world
+    Vec2 own_a{}, own_b{};    // m, of such a segment, in the frame of its body
+    double own_reach = 0;     // m, likewise
 };
 
 /// A box, in the frame of a body, around edges that follow each other, or around such boxes.
@@ -47,12 +51,22 @@ struct EdgeStore {
     std::vector<EdgeBody> bodies;
     std::vector<Edge> edges;
     std::vector<EdgeBox> boxes;  // of each body with many edges: level by level, the finest first
+    bool is_joined = false;      // segments that lie end to end
 
     bool empty() const { return bodies.empty(); }
     const Edge& operator[](std::int32_t edge) const { return edges[static_cast<std::size_t>(edge)]; }
     const EdgeBody& body_of(std::int32_t edge) const {
         return bodies[static_cast<std::size_t>((*this)[edge].body)];
     }
+
+    /// The first body of the track that an edge is in; its own body if it is in none.
+    std::int32_t track_of(std::int32_t edge) const {
+        const std::int32_t track = body_of(edge).track;
+        return track >= 0 ? track : (*this)[edge].body;
+    }
+    /// To be called before segments are put elsewhere: each is alone, until they are joined anew.
+    /// Cost: O(bodies with edges) if they were joined.
+    void part();
 
     /// Nothing if the shape is none of edges.
     void append(BodyId id, const Shape& shape);
@@ -79,7 +93,7 @@ struct EdgeStore {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.bodies, self.edges, self.boxes);
+        archive(self.bodies, self.edges, self.boxes, self.is_joined);
     }
 
     std::size_t bytes() const {

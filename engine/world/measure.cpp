@@ -10,6 +10,7 @@
 #include "narrowphase/disc_edge.hpp"
 #include "shapes/convex_geometry.hpp"
 #include "shapes/walls.hpp"
+#include "state/edge_tracks.hpp"
 #include "world/shape_separations.hpp"
 
 namespace carom {
@@ -124,6 +125,22 @@ class AllAwake {
     std::size_t asleep_;
 };
 
+/// While it lives, segments that lie end to end are joined: measuring leaves no trace.
+template <class Real>
+class JoinedForNow {
+  public:
+    explicit JoinedForNow(WorldState<Real>& world) : edges_(world.edges), is_for_now_(join_segments(world)) {}
+    ~JoinedForNow() {
+        if (is_for_now_) edges_.part();
+    }
+    JoinedForNow(const JoinedForNow&) = delete;
+    JoinedForNow& operator=(const JoinedForNow&) = delete;
+
+  private:
+    EdgeStore& edges_;
+    bool is_for_now_;
+};
+
 }  // namespace
 
 // The candidates of the world are left alone. They would not do: what a disc reaches with a renewed margin is
@@ -132,6 +149,7 @@ template <class Real>
 OverlapReport measure_overlaps(Simulation<Real>& sim) {
     WorldState<Real>& world = sim.world;
     const AllAwake<Real> all_awake(world.bodies);
+    const JoinedForNow<Real> joined(world);
     Candidates<Real> discs;
     discs.prepare(world.bodies.count);
     // A clock that stands still: pairs of the present positions.

@@ -258,6 +258,7 @@ void BasicWorld<Real>::set_position(BodyId body, Vec2 position) {
     row = implementation_->row_of(body, "World::set_position");
     const auto move_to = [&](Real x, Real y) {
         implementation_->sim().note_place_before(row);
+        if ((b.flags_of(row) & kEdges) != 0) implementation_->sim().world.edges.part();
         implementation_->change_row(row, [&] { b.position_x[row] = x, b.position_y[row] = y; });
         implementation_->sim().note_place(row);
     };

@@ -88,7 +88,7 @@ void SurfaceFinder<Real>::take_over(const WorldState<Real>& world, std::span<con
     for (const EdgePair& pair : pairs) {
         const auto row = static_cast<std::size_t>(pair.row);
         if (!bodies.is_disc(row) && bodies.shape[row] >= 0 && !bodies.is_immovable(row))
-            pairs_.push_back({pair.row, world.edges[pair.edge].body, pair.edge});
+            pairs_.push_back({pair.row, world.edges.track_of(pair.edge), pair.edge});
     }
     std::sort(pairs_.begin(), pairs_.end());
     pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
@@ -189,7 +189,7 @@ void SurfaceFinder<Real>::find_edges(const Inputs& in, ManifoldList<Real>& list)
     for (std::size_t first = 0, last = 0; first < pairs_.size(); first = last) {
         near_edges_.clear();
         for (; last < pairs_.size() && pairs_[last].row == pairs_[first].row &&
-               pairs_[last].body == pairs_[first].body;
+               pairs_[last].track == pairs_[first].track;
              ++last)
             near_edges_.push_back(pairs_[last].edge);
         const auto row = static_cast<std::size_t>(pairs_[first].row);
@@ -203,7 +203,7 @@ void SurfaceFinder<Real>::find_edges(const Inputs& in, ManifoldList<Real>& list)
     }
 }
 
-/// Finds where a body, or a piece of it, touches the near edges, which are of one chain.
+/// Finds where a body, or a piece of it, touches the near edges, which are of one chain or track.
 template <class Real>
 void SurfaceFinder<Real>::find_on_chain(const Inputs& in, const EdgePose& pose, std::size_t row,
                                         const ConvexShape<Real>& shape, std::int32_t number,
@@ -246,8 +246,10 @@ void SurfaceFinder<Real>::find_on_chain(const Inputs& in, const EdgePose& pose, 
         if (time > 0) move_back(found.manifold, relative_motion(moving, {}), time);
         const Edge edge = with_what_goes_on(world.edges.edges, found.edge, moving);
         if (pass_each_other(moving, still_edge(edge), found.manifold, dt, thickness)) continue;
+        const std::int32_t track = world.edges.track_of(found.edge);
         list.add(static_cast<std::int32_t>(row), Partner::edge(found.edge).stored(),
-                 {bodies.id[row], bodies.id[pose.row], ManifoldName::place_of_side(0, number)});
+                 {bodies.id[row], world.edges.bodies[static_cast<std::size_t>(track)].id,
+                  ManifoldName::place_of_side(0, number)});
         manifolds_.push_back(turned(found.manifold, pose.turn)), pieces_.push_back(piece);
     }
 }

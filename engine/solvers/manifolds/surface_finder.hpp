@@ -51,7 +51,7 @@ class SurfaceFinder {
   private:
     /// An edge that a body can touch; those of one chain stand together.
     struct Near {
-        std::int32_t row, body, edge;  // body: number in EdgeStore::bodies
+        std::int32_t row, track, edge;  // track: EdgeStore::track_of its body
         friend auto operator<=>(const Near&, const Near&) = default;
     };
     void take_over(const WorldState<Real>& world, std::span<const EdgePair> pairs);

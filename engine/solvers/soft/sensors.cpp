@@ -5,6 +5,7 @@
 
 #include "shapes/convex_geometry.hpp"
 #include "solvers/soft/stages.hpp"
+#include "state/edge_tracks.hpp"
 
 namespace carom {
 namespace {
@@ -126,11 +127,12 @@ void SensorFinder<Real>::look_at_edges(std::size_t sensor) {
     for (const EdgeBody& edges : world_.edges.bodies) {
         const std::size_t row = world_.handles.row_of_slot(edges.id.index);
         if ((bodies.flags_of(row) & kDisabled) || (!moves(sensor) && !moves(row))) continue;
-        const Vec2 at{bodies.position_x[row], bodies.position_y[row]};
+        const EdgeFrame frame = frame_of(world_, edges, row);
+        const Vec2 at = frame.position;
         const double near = edges.reach + extent;
         if (length_squared(at - place) >= near * near) continue;
         if (world_.has_filters() && !world_.may_collide(sensor, row)) continue;
-        const Rotation turn = rotation_by(bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0);
+        const Rotation turn = rotation_by(frame.angle);
         bool is_inside = false;
         const auto look_at = [&](std::int32_t number) {
             if (is_inside) return;

@@ -5,6 +5,7 @@
 
 #include "constraints/contact_faults.hpp"
 #include "solvers/shared/candidate_stages.hpp"
+#include "state/edge_tracks.hpp"
 
 namespace carom {
 
@@ -34,6 +35,7 @@ bool moves_few_contacts(const SoftSimulation<Real>& sim) {
 
 template <class Real>
 void update_candidates(SoftSimulation<Real>& sim) {
+    if (!sim.world.edges.is_joined && join_segments(sim.world)) sim.candidates.invalidate_pairs();
     sim.edge_candidates.place(sim.world, sim.flight_dt);
     // Void pairs may be of edges that are gone.
     if (sim.candidates.is_valid() && sim.edge_candidates.has_left_margin() &&

@@ -281,31 +281,31 @@ void SupportFinder<Real>::note_left_edge(std::size_t candidate, std::size_t grou
     const ContactEffects& effects = search.step.settings.effects;
     if (!(candidates.normal_impulse[candidate] > 0)) return;
     left_edges_of_[group].push_back(
-        {candidates.a[candidate], search.world.edges[candidates.partner(candidate).edge_number()].body,
+        {candidates.a[candidate], search.world.edges.track_of(candidates.partner(candidate).edge_number()),
          static_cast<std::int32_t>(candidate), candidates.normal_impulse[candidate],
          effects.friction ? candidates.friction_impulse[candidate] : Real(0),
          effects.rolling ? candidates.rolling_impulse[candidate] : Real(0)});
 }
 
-/// A disc that rolls from one edge of a chain to the next rests on the second with what it rested on the
-/// first.
+/// A disc that rolls from one edge of a chain, or of a track, to the next rests on the second with what it
+/// rested on the first.
 template <class Real>
 void SupportFinder<Real>::hand_on_impulses(const Search& search) {
     if (left_edges_.empty()) return;
     ContactRows<Real>& supports = search.step.supports;
     const ContactEffects& effects = search.step.settings.effects;
     const auto by_row = [](const LeftEdge& left, const LeftEdge& right) {
-        return std::tie(left.row, left.body, left.candidate) <
-               std::tie(right.row, right.body, right.candidate);
+        return std::tie(left.row, left.track, left.candidate) <
+               std::tie(right.row, right.track, right.candidate);
     };
     std::sort(left_edges_.begin(), left_edges_.end(), by_row);
     supports.for_each([&](std::size_t i) {
         const Partner support =
             search.step.graph.supports.partner(static_cast<std::size_t>(supports.candidate[i]));
         if (!support.is_edge() || supports.normal_impulse[i] > 0) return;
-        const LeftEdge wanted{supports.a[i], search.world.edges[support.edge_number()].body, -1, 0, 0, 0};
+        const LeftEdge wanted{supports.a[i], search.world.edges.track_of(support.edge_number()), -1, 0, 0, 0};
         const auto left = std::lower_bound(left_edges_.begin(), left_edges_.end(), wanted, by_row);
-        if (left == left_edges_.end() || left->row != wanted.row || left->body != wanted.body) return;
+        if (left == left_edges_.end() || left->row != wanted.row || left->track != wanted.track) return;
         supports.normal_impulse[i] = left->normal_impulse;
         if (effects.friction) supports.friction_impulse[i] = left->friction_impulse;
         if (effects.rolling) supports.rolling_impulse[i] = left->rolling_impulse;

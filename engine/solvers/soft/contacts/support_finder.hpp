@@ -35,7 +35,7 @@ class SupportFinder {
   private:
     /// What a body felt from an edge that it has left.
     struct LeftEdge {
-        std::int32_t row, body, candidate;  // of the disc; number of the edge's body
+        std::int32_t row, track, candidate;  // of the disc; of the edge
         Real normal_impulse, friction_impulse, rolling_impulse;
     };
     /// What `find` is called with.
