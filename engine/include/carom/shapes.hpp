@@ -16,7 +16,7 @@ struct Disc {
 };
 
 /// A line between two points of the body's frame, without thickness; discs touch it from both sides and at
-/// its ends. For static and kinematic bodies.
+/// its ends. For static and kinematic bodies. Static ones that lie end to end are felt as one chain.
 struct Segment {
     Vec2 a{-0.5, 0};  ///< m
     Vec2 b{0.5, 0};   ///< m, not a
