@@ -14,7 +14,7 @@ namespace carom {
 /// Contacts are filed by both bodies: a drum or a bin that moves has contacts with thousands of others, which
 /// would all be gone through for each of them were they filed by one.
 ///
-/// Cost: about 3 ns a contact that is filed or found.
+/// Cost: O(1) a contact that is filed or found, in the mean.
 class ManifoldIndex {
   public:
     /// Files the contacts of a list that carry something, or have a place along a path.
