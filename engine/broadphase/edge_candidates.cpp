@@ -67,6 +67,8 @@ void EdgeCandidates<Real>::settle(const WorldState<Real>& world) {
     const Bodies<Real>& bodies = world.bodies;
     for (std::size_t i = 0; i < poses_.size(); ++i) {
         EdgePose& pose = poses_[i];
+        const bool went_nowhere = pose.end_position == pose.position && pose.end_angle == pose.angle;
+        if (went_nowhere && bodies.stands(pose.row)) continue;
         const auto [position, angle] = frame_of(world, world.edges.bodies[i], pose.row);
         pose.end_position = position;
         if (!bodies.has_rotation || pose.end_angle == angle) continue;
