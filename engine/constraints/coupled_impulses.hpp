@@ -212,8 +212,9 @@ class CoupledImpulses {
     std::vector<std::size_t> working_;   // rows that press or want to, ascending
     std::vector<std::uint8_t> works_;    // by row: whether it is one of these
     std::vector<std::uint8_t> is_free_;  // by motor
-    // Of the working rows and of motors that are free:
-    std::vector<std::size_t> columns_;
+    std::vector<std::size_t> columns_;   // the working rows, and behind them motors that are free
+    // The system of these columns: masses [1/kg], lacks [m/s], impulses before the sweeps [N s], and what a
+    // motor takes of each (scratch).
     std::vector<double> reduced_, reduced_lack_, old_, shares_;
 };
 

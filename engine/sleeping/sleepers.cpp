@@ -13,9 +13,9 @@ namespace {
 
 /// Islands are looked for at this interval while any body has been still for long enough.
 constexpr double kLookInterval = kTimeToSleep / 4;  // s
-/// Who falls asleep makes all pairs be found anew, which takes as long as some nine steps of those awake
-/// (docs/decisions/0080-price-of-the-ledger.md): islands wait until, of one look after the other, so many
-/// have waited as this share of the bodies awake.
+/// Islands that could sleep wait until their bodies, added up over the looks, are this share of those awake:
+/// when one falls asleep all pairs are found anew, which takes as long as about nine steps.
+/// docs/decisions/0080-price-of-the-ledger.md.
 constexpr double kShareToSleep = 0.5;
 
 template <class Real>

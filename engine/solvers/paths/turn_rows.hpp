@@ -14,7 +14,7 @@ namespace carom {
 /// time; until then a body that is new among them has all contacts solved.
 class TurnRows {
   public:
-    /// Before a turn: nobody has asked for it yet.
+    /// To be called before a turn: no body has asked for it yet.
     void begin() { has_asked_ = false, are_known_ = true; }
     /// Contacts near a body are to be solved in this turn.
     void ask(std::int32_t row) {
