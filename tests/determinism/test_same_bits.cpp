@@ -27,7 +27,7 @@ namespace {
 constexpr int kSteps = 90;
 
 constexpr Golden kGolden[] = {
-    {"mixed shapes", 0x80530e7edbb42171, 0x8dca028b37527b72},
+    {"mixed shapes", 0xd77d4afbd902c77f, 0x25bec3e9a4fd83ed},
     {"bouncing crowd", 0x32f5cf7cf7591ae8, 0x5d0e0f7fea4c8122},
     {"rough gas", 0xc009256aceff94e4, 0xb74961daf77a2622},
     {"gas", 0x680b8eec4001de52, 0x87bedad9b790c353},
@@ -38,7 +38,7 @@ constexpr Golden kGolden[] = {
     {"rolling sizes", 0x263e12283b58366d, 0x8c50dfc5f6f4e985},
     {"turning chain", 0x4ec535f1f7be0f7b, 0xf92b06a52802958b},
     {"woken sleepers", 0x4a097a5e5e860e93, 0xe6b0cf2e09ab2674},
-    {"falling compounds", 0x3581b450658110ed, 0x007e9bd67be6e6ae},
+    {"falling compounds", 0x3fba9fac5562a5f8, 0xbbafc864b2858d77},
 };
 
 }  // namespace

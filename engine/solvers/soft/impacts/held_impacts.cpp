@@ -82,20 +82,95 @@ void HeldImpacts<Real>::solve_normals(std::size_t points, double restitution) {
         impulses_[1] = std::fmax(b2 / k22, 0);
 }
 
-/// The laws of all directions in turns, until all hold.
+/// The impulses of one case of the laws, which is linear: what pushes leaves as Newton's law says, what
+/// sticks stops, what slides has what Coulomb's law allows.
+/// @param points, count  directions that are normals, and all of them
+/// @return whether the laws hold so; if not, the impulses say nothing
+template <class Real>
+bool HeldImpacts<Real>::solve_case(const Materials& materials, std::size_t points, std::size_t count,
+                                   const Cases& cases) {
+    const auto slides = [&](std::size_t i) { return i >= points && cases[i] != 0; };
+    const auto wanted = [&](std::size_t i) {  // m/s, velocity afterwards
+        return i < points ? -materials.restitution * std::fmin(velocity_[i], 0) : 0;
+    };
+    std::array<std::size_t, kMostDirections> asked{};  // directions whose impulses are unknown
+    std::size_t unknowns = 0;
+    for (std::size_t i = 0; i < count; ++i)
+        if (i < points ? cases[i] == 1 : !slides(i)) asked[unknowns++] = i;
+    // What slides has a share of the normal impulses: it is in the columns of these.
+    std::array<std::array<double, kMostDirections + 1>, kMostDirections> m{};
+    for (std::size_t r = 0; r < unknowns; ++r) {
+        const std::size_t i = asked[r];
+        for (std::size_t c = 0; c < unknowns; ++c) {
+            m[r][c] = masses_[i][asked[c]];
+            for (std::size_t k = points; k < count && asked[c] < points; ++k)
+                m[r][c] += cases[k] * coefficient_of(k, materials) * masses_[i][k];
+        }
+        m[r][unknowns] = wanted(i) - velocity_[i];
+    }
+    for (std::size_t r = 0; r < unknowns; ++r) {
+        if (!(m[r][r] > kSingular * masses_[asked[r]][asked[r]])) return false;
+        for (std::size_t below = r + 1; below < unknowns; ++below) {
+            const double share = m[below][r] / m[r][r];
+            for (std::size_t c = r; c <= unknowns; ++c) m[below][c] -= share * m[r][c];
+        }
+    }
+    impulses_ = {};
+    for (std::size_t r = unknowns; r-- > 0;) {
+        double left = m[r][unknowns];
+        for (std::size_t c = r + 1; c < unknowns; ++c) left -= m[r][c] * impulses_[asked[c]];
+        impulses_[asked[r]] = left / m[r][r];
+    }
+    double pressed = 0, speed = 0;  // N s, m/s
+    for (std::size_t i = 0; i < points; ++i) pressed += impulses_[i];
+    for (std::size_t i = points; i < count; ++i)
+        if (slides(i)) impulses_[i] = cases[i] * coefficient_of(i, materials) * pressed;
+    for (std::size_t i = 0; i < count; ++i) speed = std::fmax(speed, std::fabs(velocity_[i]));
+    const double noise = kConverged * speed;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i < points
+                ? !(impulses_[i] >= 0)
+                : !(std::fabs(impulses_[i]) <= (1 + kConverged) * coefficient_of(i, materials) * pressed))
+            return false;
+        if (i < points && cases[i] == 0 && !(velocity_after(i) >= wanted(i) - noise)) return false;
+        if (slides(i) && !(cases[i] * velocity_after(i) <= noise)) return false;
+    }
+    return true;
+}
+
+/// Looks for the case in which the laws hold: all that touches pushes and nothing slides, to begin with.
+template <class Real>
+bool HeldImpacts<Real>::find_case(const Materials& materials, std::size_t points, std::size_t count) {
+    constexpr std::array<int, 3> kOfRough{0, 1, -1};
+    constexpr std::array<std::array<int, 2>, 3> kOfPoints{{{1, 1}, {1, 0}, {0, 1}}};
+    const std::size_t rough = count - points;
+    for (std::size_t p = 0; p < (points > 1 ? kOfPoints.size() : 1); ++p)
+        for (std::size_t first = 0; first < (rough > 0 ? kOfRough.size() : 1); ++first)
+            for (std::size_t second = 0; second < (rough > 1 ? kOfRough.size() : 1); ++second) {
+                Cases cases{};
+                for (std::size_t i = 0; i < points; ++i) cases[i] = kOfPoints[p][i];
+                if (rough > 0) cases[points] = kOfRough[first];
+                if (rough > 1) cases[points + 1] = kOfRough[second];
+                if (solve_case(materials, points, count, cases)) return true;
+            }
+    return false;
+}
+
+/// The laws of all directions: the case in which they hold, or else, where points move as one, one after the
+/// other in turns until all hold.
 template <class Real>
 void HeldImpacts<Real>::solve_laws(const Materials& materials, bool has_friction) {
-    impulses_ = {};
     std::size_t points = 0;
     while (points < directions_.size() && directions_[points].law == Law::normal) ++points;
+    if (find_case(materials, points, has_friction ? directions_.size() : points)) return;
+    impulses_ = {};
     for (int round = 0; round < kMostRounds; ++round) {
         const Values before = impulses_;
         solve_normals(points, materials.restitution);
         const double pressed = impulses_[0] + (points > 1 ? impulses_[1] : 0);
         for (std::size_t i = points; i < directions_.size() && has_friction; ++i) {
             if (!(masses_[i][i] > 0)) continue;
-            const double coefficient =
-                directions_[i].law == Law::friction ? materials.friction : materials.rolling;
+            const double coefficient = coefficient_of(i, materials);
             impulses_[i] = std::clamp(impulses_[i] - velocity_after(i) / masses_[i][i],
                                       -coefficient * pressed, coefficient * pressed);
         }

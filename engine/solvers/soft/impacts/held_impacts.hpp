@@ -154,6 +154,14 @@ class HeldImpacts {
     void strike(std::size_t direction, std::int32_t row, double inverse_mass, double sign);
     void add_body(Answer& answer, const std::array<double, 4>& record);
     double velocity_after(std::size_t direction) const;
+    double coefficient_of(std::size_t direction, const Materials& materials) const {
+        return directions_[direction].law == Law::friction ? materials.friction : materials.rolling;
+    }
+    /// Which of its laws' cases each direction is in. Normals: 1 pushes, 0 lets go. Others: 0 sticks, 1 and
+    /// -1 slide, with an impulse of that sign.
+    using Cases = std::array<int, kMostDirections>;
+    bool solve_case(const Materials& materials, std::size_t points, std::size_t count, const Cases& cases);
+    bool find_case(const Materials& materials, std::size_t points, std::size_t count);
     void solve_normals(std::size_t points, double restitution);
     void solve_laws(const Materials& materials, bool has_friction);
     bool solve_impulses(const Materials& materials);

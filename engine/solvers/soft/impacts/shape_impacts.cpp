@@ -19,24 +19,30 @@ struct StruckBody {
     std::int32_t row;
     double w, w2;          // 1/kg: what an impulse changes the velocity, and one at the rim the rim speed by
     Vec2 start, foreseen;  // m/s, at the start of the substep and, if nothing happens, at its end
-    double start_rim, foreseen_rim;
+    Vec2 free;             // m/s, at its end in free flight
+    double start_rim, foreseen_rim, free_rim;
 
     /// @param half_kick  m/s: a body that joints hold has the velocity of the middle of the substep before,
     /// to which this is to be added; zero of others
-    StruckBody(BodyRecords<Real>& records, std::int32_t number, Vec2 half_kick) : row(number) {
+    StruckBody(const BodyRecords<Real>& records, std::int32_t number, Vec2 half_kick,
+               const SubstepTerms& terms)
+        : row(number) {
         const Real* record = &records.velocity[4 * static_cast<std::size_t>(row)];
         const double mass = record[3];
         w = std::fabs(mass), w2 = 2 * std::fmax(mass, 0);
         foreseen = {record[0], record[1]}, foreseen_rim = record[2];
-        start = foreseen, start_rim = foreseen_rim;
+        start = free = foreseen, start_rim = free_rim = foreseen_rim;
         if (static_cast<std::size_t>(row) >= records.count()) return;  // nothing moves it
         const auto [x, y, rim] = records.start_of_substep(row);
         start = Vec2{x, y} + half_kick, start_rim = rim;
+        const auto [free_x, free_y, free_turn] = records.free_flight(row, terms);
+        free = {free_x, free_y}, free_rim = free_turn;
     }
-    /// Its velocity becomes that of a later time. @param share  of the substep
-    void go_on(double share) {
-        start += share * (foreseen - start), start_rim += share * (foreseen_rim - start_rim);
-    }
+    /// Its velocity becomes that of a later time. What joints and contacts have given it so far counts for
+    /// the whole substep in the books, whatever it meets in between, so it is not in that velocity: else an
+    /// impact would change the energy by what they have given up to its time.
+    /// @param share  of the substep
+    void go_on(double share) { start += share * (free - start), start_rim += share * (free_rim - start_rim); }
 };
 
 /// How far the points of a body that turns come off the ways that a contact knows of, at most [m].
@@ -142,7 +148,8 @@ template <class Real, class Fn>
 bool strike_held(HeldImpacts<Real>& held, const StruckBody<Real>& a, const StruckBody<Real>& b, Vec2 n,
                  Vec2 t, const Levers& lever_a, const Levers& lever_b, const std::array<bool, 2>& meets,
                  const typename HeldImpacts<Real>::Materials& materials, const SubstepTerms& terms,
-                 BodyRecords<Real>& records, Books& books, PointImpulses& found, const Fn& note_changed) {
+                 BodyRecords<Real>& records, Books& books, double& gravity_work, PointImpulses& found,
+                 const Fn& note_changed) {
     using Law = typename HeldImpacts<Real>::Law;
     std::array<typename HeldImpacts<Real>::Direction, 3> directions;
     std::array<std::size_t, 3> point{};  // of each direction
@@ -157,7 +164,7 @@ bool strike_held(HeldImpacts<Real>& held, const StruckBody<Real>& a, const Struc
         directions[count++] = {k < 2 ? Law::normal : Law::friction, along, -lever_a[k], lever_b[k], surface};
     }
     const auto record_of = [&](std::int32_t row) {
-        const StruckBody<Real> body(records, row, half_kick_of(held, row, terms));
+        const StruckBody<Real> body(records, row, half_kick_of(held, row, terms), terms);
         return std::array<double, 4>{body.start.x, body.start.y, body.start_rim,
                                      records.velocity[4 * static_cast<std::size_t>(row) + 3]};
     };
@@ -168,9 +175,9 @@ bool strike_held(HeldImpacts<Real>& held, const StruckBody<Real>& a, const Struc
     found.by_normal = held.work_of(Law::normal), found.by_friction = held.work_of(Law::friction);
     found.is_given = true;
     books.immovable_momentum += held.carry_out([&](std::int32_t row, const std::array<double, 3>& by) {
-        // The books of this substep will take half of gravity's kick to be still to come.
+        // The books will take the whole kick of this substep to be still to come, and half of it has been.
         const double inverse_mass = std::fabs(records.velocity[4 * static_cast<std::size_t>(row) + 3]);
-        books.joints -= dot(Vec2{by[0], by[1]}, half_kick_of(held, row, terms)) / inverse_mass;
+        gravity_work -= dot(Vec2{by[0], by[1]}, half_kick_of(held, row, terms)) / inverse_mass;
         records.add_velocity(row, {by[0], by[1]}, by[2], terms);
         note_changed(row);
     });
@@ -225,8 +232,8 @@ struct Meeting {
           records(of_bodies),
           n{of.link.normal_x[of.lane], of.link.normal_y[of.lane]},
           t{-n.y, n.x},
-          first_a(of_bodies, of.near, half_kick_of(held, of.near, of_substep)),
-          first_b(of_bodies, of.far, half_kick_of(held, of.far, of_substep)),
+          first_a(of_bodies, of.near, half_kick_of(held, of.near, of_substep), of_substep),
+          first_b(of_bodies, of.far, half_kick_of(held, of.far, of_substep), of_substep),
           own_a{of.link.near1[of.lane], of.link.near2[of.lane], of.link.near_t[of.lane]},
           own_b{of.link.far1[of.lane], of.link.far2[of.lane], of.link.far_t[of.lane]} {}
 
@@ -351,9 +358,9 @@ Outcome carry_out_one(const PathContact<Real>& contact, const SubstepTerms& term
     const StruckBody<Real>&a = met.a, &b = met.b;
     const auto friction = static_cast<double>(contact.link.friction[contact.lane]);
     PointImpulses found;
-    if (!are_held ||
-        !strike_held(held, a, b, met.n, met.t, met.lever_a, met.lever_b, met.meets,
-                     {contact.restitution, friction, 0}, terms, records, books, found, note_changed))
+    if (!are_held || !strike_held(held, a, b, met.n, met.t, met.lever_a, met.lever_b, met.meets,
+                                  {contact.restitution, friction, 0}, terms, records, books, gravity_work,
+                                  found, note_changed))
         found = met.strike();
     const std::array<double, 2>& x = found.x;
     const double sum = x[0] + x[1], y = found.y;
