@@ -23,8 +23,10 @@ struct ConvexKernels {
     Find find_manifolds;      // of any convex shapes
     Find find_box_manifolds;  // of boxes, see is_box() in narrowphase/box_box.hpp
     void (*turn_angles)(const double* angles, double* cosines, double* sines);  // of a block, in rad
+    bool (*watch_poses)(const WatchPoses<Real>&, std::size_t first, std::size_t last);
     std::size_t (*find_approached)(const FindApproached<Real>&, std::size_t first, std::size_t last);
     std::size_t (*drop_parted)(const DropParted<Real>&);
+    bool (*find_thrown)(const FindThrown<Real>&, std::size_t first, std::size_t last);
     PathKernels<Real> paths;
 };
 

@@ -5,6 +5,8 @@
 #include "kernels/manifolds/find_approached.hpp"
 #include "kernels/manifolds/find_manifolds.hpp"
 #include "kernels/manifolds/turn_angles.hpp"
+#include "kernels/manifolds/watch_poses.hpp"
+#include "kernels/paths/find_thrown.hpp"
 #include "kernels/paths/path_loads.hpp"
 #include "kernels/paths/solve_paths.hpp"
 #include "kernels/paths/sweep_paths.hpp"
@@ -20,8 +22,10 @@ constexpr ConvexKernels<Real> make_convex_kernels() {
     return {.find_manifolds = &find_manifolds<Real, Isa>,
             .find_box_manifolds = &find_box_manifolds<Real, Isa>,
             .turn_angles = &turn_angles<Isa>,
+            .watch_poses = &watch_poses<Real, Isa>,
             .find_approached = &find_approached<Real, Isa>,
             .drop_parted = &drop_parted<Real, Isa>,
+            .find_thrown = &find_thrown<Real, Isa>,
             .paths = {&carry_paths<Real, Isa>, &warm_start_paths<Real, Isa>, &solve_paths<Real, Isa>,
                       &sweep_all_paths<Real, Isa>, &watch_paths<Real, Isa, true>,
                       &watch_paths<Real, Isa, false>, &settle_watched<Real>, &sum_path_loads<Real, Isa>,

@@ -31,6 +31,24 @@ struct ManifoldColumns {
 /// Angles that are turned into cosines and sines at once; their arrays are 64-byte aligned.
 inline constexpr std::size_t kAnglesOfBlock = 64;
 
+/// Rows of bodies whose poses are followed: solvers/manifolds/pose_watch.hpp. All columns by row.
+template <class Real>
+struct WatchPoses {
+    const Real *x, *y, *angle;                     // m, m, rad; angle is null where nothing turns
+    const Real *velocity_x, *velocity_y, *spin;    // m/s, m/s, rad/s; spin likewise
+    const Real *radius, *rim;                      // m; null where one value serves all
+    Real uniform_radius, uniform_rim;              // m
+    const Real* thinnest;                          // m, of the thinnest contact of each
+    Real dt;                                       // s
+    Real carried_share, carried_arc, carried_way;  // of the thinnest contact: what counts as not moved
+    Real* pose;        // in and out, [rows][4]: x, y [m], of the step before; cosine, sine, left as they are
+    Real* last_angle;  // in and out: rad, of the step before
+    Real* base;        // in and out, [rows][4]: x, y [m], angle [rad] where contacts were found; unused
+    Real *come, *turned;  // out: [rows][2] m and [rows] m of the rim, since the step before
+    Real *moved, *way;  // out: m, that a surface has come since the step before at most, and may in this one
+    std::uint8_t* has_moved;  // out: whether contacts of a row must be found again
+};
+
 /// Pairs that wait until their bodies have come near enough.
 template <class Real>
 struct FindApproached {

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "kernels/contacts/contact_arguments.hpp"
+
 // Plain arguments of the kernels that solve the contacts of convex shapes along paths: from body to body,
 // over one contact after the other. docs/decisions/0027-paths-of-contacts.md says why.
 
@@ -48,6 +50,19 @@ struct PathLoads {
     std::int32_t last_row = 0;     // of `motion`
     Real kept = 0;                 // share of what scaling added
     bool is_beside = false;        // the bundles are of contacts beside the paths, which may share bodies
+};
+
+/// Bodies that impulses have thrown: solvers/paths/warm_start_limit.hpp. Columns by row.
+template <class Real>
+struct FindThrown {
+    const Real* velocity;      // [rows][4], kernels/contacts/contact_arguments.hpp
+    StartColumns<Real> start;  // m/s, of before
+    const Real* inradius;      // m; null where one value serves all
+    Real uniform_inradius;     // m
+    const Real* joined;        // above zero where joints hold a body, which is never thrown; null: none does
+    Real times, fall;          // as fast as it was and m/s, so many times as much is thrown,
+    Real none;                 // 1/s, if it is more than this in inradii
+    std::uint8_t* is_thrown;   // out
 };
 
 /// Paths of contacts, a bundle after the other.

@@ -117,7 +117,10 @@ class SweptJoints {
     static bool has_angle_part(const StoredJoint& joint);
     Real* turn_of(BodyRecords<Real>& records);
     void load(const WorldState<Real>& world);
-    void begin_joint(const JointStep<Real>& step, Kind& own, std::size_t kind, std::size_t i);
+    void begin_joints(const JointStep<Real>& step, Kind& own, std::size_t kind, std::size_t first,
+                      std::size_t last);
+    void begin_joint(const JointStep<Real>& step, Kind& own, std::size_t kind, std::size_t i,
+                     const std::array<Rotation, 2>& turns);
     void begin_rods(const JointStep<Real>& step, Kind& own, std::size_t first, std::size_t last);
     void begin_drive(const JointStep<Real>& step, Kind& own, std::size_t kind, std::size_t i);
     void add_stiffness(const Kind& own);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "constraints/joints/spring_law.hpp"
@@ -22,6 +23,14 @@ constexpr double kNoEnd = 1e30;
 constexpr std::size_t kPlacesPerTask = 1024;
 constexpr double kNanosecondsToBegin = 5, kNanosecondsToStore = 8;
 
+/// The angle of a body, or of the world [rad].
+/// @param row  below 0: of the world
+template <class Real>
+double angle_of(const Bodies<Real>& bodies, std::int32_t row) {
+    return row >= 0 && bodies.has_rotation ? static_cast<double>(bodies.angle[static_cast<std::size_t>(row)])
+                                           : 0;
+}
+
 }  // namespace
 
 template <class Real>
@@ -44,8 +53,7 @@ void SweptJoints<Real>::begin_step(const JointStep<Real>& step, const StepLoops<
         moments_.resize(std::max(moments_.size(), own.slot.size()));
         for_each_task(own, [&](std::size_t first, std::size_t last) {
             if (kind == kRods) return begin_rods(step, own, first, last);
-            for (std::size_t i = first; i < last; ++i)
-                if (own.slot[i] >= 0) begin_joint(step, own, kind, i);
+            begin_joints(step, own, kind, first, last);
         });
         if ((needs_of(kind) & kArms) != 0) add_stiffness(own);
         SweepJoints<Real>& k = arguments_[kind];
@@ -80,33 +88,64 @@ void SweptJoints<Real>::begin_rods(const JointStep<Real>& step, Kind& own, std::
         if (a[i] < beyond && b[i] < beyond)
             start_x[i] = x[b[i]] - x[a[i]], start_y[i] = y[b[i]] - y[a[i]];
         else if (own.slot[i] >= 0)
-            begin_joint(step, own, kRods, i);
+            begin_joint(step, own, kRods, i,
+                        {rotation_by(angle_of(step.world.bodies, own.sources[i].row_a)),
+                         rotation_by(angle_of(step.world.bodies, own.sources[i].row_b))});
+    }
+}
+
+/// The joints of some places, their bodies' cosines and sines by lanes.
+template <class Real>
+void SweptJoints<Real>::begin_joints(const JointStep<Real>& step, Kind& own, std::size_t kind,
+                                     std::size_t first, std::size_t last) {
+    const Bodies<Real>& bodies = step.world.bodies;
+    constexpr std::size_t kJointsOfBlock = kAnglesOfBlock / 2;
+    alignas(64) std::array<double, kAnglesOfBlock> angles{}, cosines, sines;
+    cosines.fill(1), sines.fill(0);
+    for (std::size_t begin = first; begin < last; begin += kJointsOfBlock) {
+        const std::size_t end = std::min(last, begin + kJointsOfBlock);
+        if (kind != kAngles && bodies.has_rotation) {
+            for (std::size_t i = begin; i < end; ++i) {
+                if (own.slot[i] < 0) continue;
+                angles[2 * (i - begin)] = angle_of(bodies, own.sources[i].row_a);
+                angles[2 * (i - begin) + 1] = angle_of(bodies, own.sources[i].row_b);
+            }
+            kernels_->convex->turn_angles(angles.data(), cosines.data(), sines.data());
+        }
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::size_t a = 2 * (i - begin), b = a + 1;
+            if (own.slot[i] >= 0)
+                begin_joint(step, own, kind, i,
+                            {Rotation{cosines[a], sines[a]}, Rotation{cosines[b], sines[b]}});
+        }
     }
 }
 
 /// Where a joint is, and how it turns its bodies.
+/// @param turns  of both bodies; of angles they are not asked for
 template <class Real>
-void SweptJoints<Real>::begin_joint(const JointStep<Real>& step, Kind& own, std::size_t kind, std::size_t i) {
+void SweptJoints<Real>::begin_joint(const JointStep<Real>& step, Kind& own, std::size_t kind, std::size_t i,
+                                    const std::array<Rotation, 2>& turns) {
     const auto real = [](double value) { return static_cast<Real>(value); };
     const Bodies<Real>& bodies = step.world.bodies;
     struct End {
         Vec2 place, arm;
         double per_rim, angle;
     };
-    const auto end_of = [&](std::int32_t number, std::int32_t of, Vec2 anchor) -> End {
+    const auto end_of = [&](std::int32_t number, std::int32_t of, Vec2 anchor, const Rotation& turn) -> End {
         if (of < 0) return {anchor, {}, 0, 0};
         const auto row = static_cast<std::size_t>(of);
         End end{{bodies.position_x[row], bodies.position_y[row]}, {}, 0, 0};
         if (anchor == Vec2{} && (kind == kRods || kind == kRodsOfAnchors)) return end;
-        end.angle = bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0;
-        end.arm = rotate(rotation_by(end.angle), anchor);
+        end.angle = angle_of(bodies, of);
         end.per_rim = 1 / rim_of(bodies, row);
+        if (kind != kAngles) end.arm = rotate(turn, anchor);
         if (number >= first_beyond_) end.place += end.arm, end.arm = {}, end.per_rim = 0;
         return end;
     };
     const typename Kind::Source& source = own.sources[i];
-    const End a = end_of(own.a[i], source.row_a, source.anchor_a),
-              b = end_of(own.b[i], source.row_b, source.anchor_b);
+    const End a = end_of(own.a[i], source.row_a, source.anchor_a, turns[0]),
+              b = end_of(own.b[i], source.row_b, source.anchor_b, turns[1]);
     if (!own.alpha.empty()) begin_drive(step, own, kind, i);
     if (kind == kAngles) {
         own.start_x[i] = real(b.angle - a.angle - source.angle);

@@ -51,13 +51,15 @@ void HeldFlights<Real>::hold_what_pressed(const WorldState<Real>& world, const E
         return has_face_along(world.shapes[shape],
                               bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0, normal);
     };
-    for (std::size_t i = 0; i < pairs.count(); ++i) {
+    const std::size_t with_bodies = world.immovable_rows.empty() ? 0 : pairs.count();
+    for (std::size_t i = 0; i < with_bodies; ++i) {
         const auto a = static_cast<std::size_t>(pairs.a[i]), b = static_cast<std::size_t>(pairs.b[i]);
+        if (!bodies.stands(b)) continue;
         // Most bodies of a heap are too slow, whatever they press on.
         if (!(static_cast<double>(poses.way(a)) > kSlow * kPassing * bodies.inradius(a))) continue;
         const ManifoldMemory<Real>& memory = pairs.memory[i];
         const Vec2 normal{memory.normal_x, memory.normal_y};
-        if (!bodies.stands(b) || !memory.is_loaded() || !presses(a, normal)) continue;
+        if (!memory.is_loaded() || !presses(a, normal)) continue;
         const auto shape_of = [&](std::int32_t row, const Column<std::int32_t>& item) {
             return items.shape_of(world, row, items.empty() ? row : item[i]);
         };

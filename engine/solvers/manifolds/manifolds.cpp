@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "effects/friction.hpp"
 #include "effects/restitution.hpp"
@@ -15,7 +16,7 @@ namespace {
 // For the executor: ns a contact on one thread, and contacts of a task.
 constexpr double kNanosecondsToFind = 10, kNanosecondsToRecall = 5, kNanosecondsToList = 1,
                  kNanosecondsToJudge = 3;
-constexpr std::size_t kContactsPerTask = 256;
+constexpr std::size_t kContactsPerTask = 256, kBlocksPerTask = kContactsPerTask / kRowPadding;
 
 template <class Real>
 bool moves(const Bodies<Real>& bodies, std::int32_t b) {
@@ -133,7 +134,7 @@ void Manifolds<Real>::keep_of_sleepers(const WorldState<Real>& world) {
 template <class Real>
 std::span<const LoadedContact> Manifolds<Real>::loaded() {
     loaded_.clear();
-    for (const std::int32_t contact : live_) {
+    for (const std::int32_t contact : live()) {
         const ManifoldList<Real>& list = list_of(contact);
         const std::size_t i = place_of(contact);
         if (list.memory[i].is_loaded())
@@ -228,9 +229,10 @@ template <class Real>
 bool Manifolds<Real>::must_find(std::size_t block) const {
     if (block >= first_new_block_) return true;
     const std::size_t last = std::min(bodies_.count(), (block + 1) * kRowPadding);
+    unsigned moved = 0;  // without a branch for each, as most blocks have to be looked at whole
     for (std::size_t i = block * kRowPadding; i < last; ++i)
-        if (poses_.has_moved(bodies_.a[i]) || poses_.has_moved(bodies_.b[i])) return true;
-    return false;
+        moved |= unsigned{poses_.has_moved(bodies_.a[i])} | unsigned{poses_.has_moved(bodies_.b[i])};
+    return moved != 0;
 }
 
 template <class Real>
@@ -246,74 +248,126 @@ bool Manifolds<Real>::find(const WorldState<Real>& world, const EdgeCandidates<R
                            const StepLoops<Real>& loops) {
     std::swap(surfaces_, old_surfaces_);
     if (is_idle(world)) {
-        surfaces_.clear(), live_.clear(), was_live_.clear();
+        surfaces_.clear(), live_.clear();
         return true;
     }
     const Within within{near.share, near.fall, terms.dt};
     const bool finds_all = !(found_within_ == within);
     if (finds_all) first_new_block_ = 0;
     found_within_ = within;
-    poses_.look(world, terms.dt, near, finds_all, loops.kernels->convex->turn_angles, *loops.executor);
+    poses_.look(world, terms.dt, near, finds_all, *loops.kernels->convex, *loops.executor);
     take_near(world, terms.dt, near, loops);
+    choose_blocks(*loops.executor);
     flights_.clear();
     flights_.hold_what_pressed(world, edges, items_, poses_, terms.dt, bodies_, old_surfaces_);
     flights_.settle(world.bodies, terms.dt);
-    ahead_.look(world, terms.dt, poses_, flights_, items_, *loops.executor);
+    ahead_.look(world, terms.dt, poses_, flights_, items_, rows_to_find(world), *loops.executor);
     ahead_.look_at_surfaces(world, terms, old_surfaces_);
-    surface_finder_.find({world, edges, terms, near, flights_, ahead_.on_surfaces()}, surfaces_,
+    surface_finder_.find({world, edges, terms, near, poses_, flights_, ahead_.on_surfaces()}, surfaces_,
                          *loops.executor);
     recall_surfaces();
-    block_is_found_.assign(padded(bodies_.count()) / kRowPadding, 0);
     ahead_.resize_places(bodies_.count());
-    loops.executor->for_each_chunk(bodies_.count(), kContactsPerTask, kNanosecondsToFind,
-                                   [&](std::size_t, std::size_t first, std::size_t last) {
-                                       find_chunk(world, terms, near, *loops.kernels->convex, first, last);
-                                   });
+    const auto for_each_found_block = [&](double nanoseconds, const auto& fn) {
+        loops.executor->for_each_chunk(found_blocks_.size(), kBlocksPerTask, kRowPadding * nanoseconds,
+                                       [&](std::size_t, std::size_t first, std::size_t last) {
+                                           for (std::size_t n = first; n < last; ++n) fn(found_blocks_[n]);
+                                       });
+    };
+    for_each_found_block(kNanosecondsToFind, [&](std::size_t block) {
+        const std::size_t first = block * kRowPadding;
+        describe_pairs(world, near, first, std::min(bodies_.count(), first + kRowPadding));
+        find_pairs(world, terms, *loops.kernels->convex, block);
+    });
     Gaps<Real> gaps({world, items_, poses_, flights_, near, terms.dt}, bodies_);
     find_flights(gaps, world, terms.dt, *loops.executor);
-    loops.executor->for_each_chunk(bodies_.count(), kContactsPerTask, kNanosecondsToJudge,
-                                   [&](std::size_t, std::size_t first, std::size_t last) {
-                                       for (std::size_t begin = first; begin < last; begin += kRowPadding)
-                                           if (block_is_found_[begin / kRowPadding] != 0)
-                                               gaps.look_at(begin, std::min(last, begin + kRowPadding));
-                                   });
+    live_.begin(block_is_found_.size());
+    for_each_found_block(kNanosecondsToJudge, [&](std::size_t block) {
+        const std::size_t first = block * kRowPadding;
+        gaps.look_at(first, std::min(bodies_.count(), first + kRowPadding));
+        note_live(block);
+    });
     note_thicknesses(std::min(bodies_.count(), first_new_block_ * kRowPadding));
     first_new_block_ = block_is_found_.size();
-    some_are_carried_ = std::find(block_is_found_.begin(), block_is_found_.end(), 0) != block_is_found_.end();
-    return list_live(*loops.executor);
+    const auto none = static_cast<Real>(kNoPoint);
+    const bool is_same = live_.list(found_blocks_, surfaces_.count(), [&](std::size_t i) {
+        const bool is_live = surfaces_.separation1[i] < none;
+        if (!is_live) surfaces_.memory[i] = {};
+        return is_live;
+    });
+    return is_same &&
+           std::equal(surfaces_.a.begin(), surfaces_.a.end(), old_surfaces_.a.begin(), old_surfaces_.a.end());
 }
 
-/// @param first  a multiple of kRowPadding
 template <class Real>
-void Manifolds<Real>::find_chunk(const WorldState<Real>& world, const SubstepTerms& terms,
-                                 const ContactDistance& near, const ConvexKernels<Real>& kernels,
-                                 std::size_t first, std::size_t last) {
-    for (std::size_t begin = first; begin < last;) {
-        std::size_t end = begin;  // of the blocks from `begin` on that must be found
-        while (end < last && must_find(end / kRowPadding)) {
-            block_is_found_[end / kRowPadding] = 1;
-            end = std::min(last, end + kRowPadding);
-        }
-        if (end > begin) {
-            describe_pairs(world, near, begin, end);
-            find_pairs(world, terms, kernels, begin, end);
-        }
-        begin = end + kRowPadding;  // that block need not
+void Manifolds<Real>::note_live(std::size_t block) {
+    const auto none = static_cast<Real>(kNoPoint);
+    std::uint32_t mask = 0;
+    const std::size_t first = block * kRowPadding, last = std::min(bodies_.count(), first + kRowPadding);
+    for (std::size_t i = first; i < last; ++i) {
+        if (bodies_.separation1[i] < none)
+            mask |= 1u << (i - first);
+        else
+            bodies_.memory[i] = {};
     }
+    live_.set(block, static_cast<std::uint16_t>(mask));
+}
+
+/// The blocks that must be found in this step.
+template <class Real>
+void Manifolds<Real>::choose_blocks(const Executor& executor) {
+    block_is_found_.resize(padded(bodies_.count()) / kRowPadding);
+    executor.for_each_chunk(block_is_found_.size(), kBlocksPerTask, kRowPadding * kNanosecondsToList,
+                            [&](std::size_t, std::size_t first, std::size_t last) {
+                                for (std::size_t block = first; block < last; ++block)
+                                    block_is_found_[block] = must_find(block);
+                            });
+    found_blocks_.clear();
+    for (std::size_t block = 0; block < block_is_found_.size(); ++block)
+        if (block_is_found_[block] != 0) found_blocks_.push_back(static_cast<std::uint32_t>(block));
+}
+
+/// The rows whose contacts are found in this step, if they are few, each once; else nothing: all are.
+template <class Real>
+std::optional<std::span<const std::int32_t>> Manifolds<Real>::rows_to_find(const WorldState<Real>& world) {
+    // A row is in several blocks.
+    constexpr double kFew = 0.25;
+    if (!items_.empty() ||
+        static_cast<double>(found_blocks_.size()) > kFew * static_cast<double>(block_is_found_.size()))
+        return std::nullopt;
+    rows_.clear(), is_listed_.assign(world.bodies.rows(), 0);
+    const auto list = [&](std::size_t row) {
+        if (std::exchange(is_listed_[row], 1) == 0) rows_.push_back(static_cast<std::int32_t>(row));
+    };
+    for (const std::size_t block : found_blocks_) {
+        const std::size_t first = block * kRowPadding, last = std::min(bodies_.count(), first + kRowPadding);
+        for (std::size_t i = first; i < last; ++i)
+            list(static_cast<std::size_t>(bodies_.a[i])), list(static_cast<std::size_t>(bodies_.b[i]));
+    }
+    for (const ManifoldName& name : old_surfaces_.names)
+        if (world.handles.is_alive(name.a)) list(world.handles.row_of_slot(name.a.index));
+    // Padding of a list of contacts names the bodies of its first one.
+    if (bodies_.count() > 0)
+        list(static_cast<std::size_t>(bodies_.a[0])), list(static_cast<std::size_t>(bodies_.b[0]));
+    return rows_;
 }
 
 template <class Real>
 void Manifolds<Real>::find_flights(const Gaps<Real>& gaps, const WorldState<Real>& world, double dt,
                                    const Executor& executor) {
     const auto none = static_cast<Real>(kNoPoint);
-    holding_.choose(bodies_.count(), kNanosecondsToList, executor, [&](std::size_t i) {
-        return bodies_.separation1[i] < none && block_is_found_[i / kRowPadding] != 0 && gaps.holds(i);
+    const auto contact_of = [&](std::size_t n) {
+        return kRowPadding * found_blocks_[n / kRowPadding] + n % kRowPadding;
+    };
+    const std::size_t blocks = world.immovable_rows.empty() ? 0 : found_blocks_.size();  // nothing holds
+    holding_.choose(kRowPadding * blocks, kNanosecondsToList, executor, [&](std::size_t n) {
+        const std::size_t i = contact_of(n);
+        return i < bodies_.count() && bodies_.separation1[i] < none && gaps.holds(i);
     });
     const auto hold = [&](const ManifoldList<Real>& list, std::size_t i) {
         flights_.hold(static_cast<std::size_t>(list.a[i]), {list.normal_x[i], list.normal_y[i]},
                       std::min(list.separation1[i], list.separation2[i]));
     };
-    holding_.for_each([&](std::int32_t i) { hold(bodies_, static_cast<std::size_t>(i)); });
+    holding_.for_each([&](std::int32_t n) { hold(bodies_, contact_of(static_cast<std::size_t>(n))); });
     const Bodies<Real>& bodies = world.bodies;
     for (std::size_t i = 0; i < surfaces_.count(); ++i) {
         const auto row = static_cast<std::size_t>(surfaces_.a[i]);
@@ -377,10 +431,9 @@ void Manifolds<Real>::describe_pieces(const WorldState<Real>& world, const Conta
     bodies_.restitution[i] = static_cast<Real>(pair_restitution(at_a.restitution, at_b.restitution));
 }
 
-/// @param first  a multiple of kRowPadding
 template <class Real>
 void Manifolds<Real>::find_pairs(const WorldState<Real>& world, const SubstepTerms& terms,
-                                 const ConvexKernels<Real>& kernels, std::size_t first, std::size_t last) {
+                                 const ConvexKernels<Real>& kernels, std::size_t block) {
     const bool all_rows = items_.empty();
     const bool has_ahead = !ahead_.empty();  // it has the poses of pieces, too
     const FindManifolds<Real> now{has_ahead ? ahead_.pose.data() : poses_.pose.data(),
@@ -393,59 +446,10 @@ void Manifolds<Real>::find_pairs(const WorldState<Real>& world, const SubstepTer
                                   bodies_.columns()};
     FindManifolds<Real> ahead = now;
     ahead.come = ahead_.come.data(), ahead.a = ahead_.a.data(), ahead.b = ahead_.b.data();
-    for (std::size_t i = first; i < last; i += kRowPadding) {
-        const bool are_boxes = blocks_are_boxes_[i / kRowPadding] != 0;
-        const auto find = are_boxes ? kernels.find_box_manifolds : kernels.find_manifolds;
-        const bool were_found = i / kRowPadding < first_new_block_;
-        const bool are_ahead = ahead_.place(world, terms, bodies_, were_found, i);
-        find(are_ahead ? ahead : now, i, i + kRowPadding);
-    }
-}
-
-/// @return whether they are those of the step before
-template <class Real>
-bool Manifolds<Real>::list_live(const Executor& executor) {
-    std::swap(live_, was_live_);
-    live_.clear();
-    const auto none = static_cast<Real>(kNoPoint);
-    live_of_bodies_.choose(bodies_.count(), kNanosecondsToList, executor, [&](std::size_t i) {
-        const bool is_live = bodies_.separation1[i] < none;
-        if (!is_live) bodies_.memory[i] = {};
-        return is_live;
-    });
-    live_of_bodies_.for_each([&](std::int32_t i) { live_.push_back(i); });
-    for (std::size_t i = 0; i < surfaces_.count(); ++i)
-        if (surfaces_.separation1[i] < none)
-            live_.push_back(~static_cast<std::int32_t>(i));
-        else
-            surfaces_.memory[i] = {};
-    const bool is_same = live_ == was_live_;
-    if (is_same && !live_.empty())
-        changed_share_ = 0;
-    else
-        count_changes();
-    return is_same &&
-           std::equal(surfaces_.a.begin(), surfaces_.a.end(), old_surfaces_.a.begin(), old_surfaces_.a.end());
-}
-
-/// Contacts of two bodies keep their numbers until pairs are found anew; then was_live_ is empty.
-template <class Real>
-void Manifolds<Real>::count_changes() {
-    changed_share_ = -1;
-    if (was_live_.empty() || live_.empty()) return;
-    std::size_t same = 0, now = 0, before = 0;  // of bodies: those below 0 come last
-    const auto count_of = [](const std::vector<std::int32_t>& live) {
-        std::size_t count = live.size();
-        while (count > 0 && live[count - 1] < 0) --count;
-        return count;
-    };
-    const std::size_t all_now = count_of(live_), all_before = count_of(was_live_);
-    while (now < all_now && before < all_before) {
-        const std::int32_t a = live_[now], b = was_live_[before];
-        same += a == b;
-        now += a <= b, before += b <= a;
-    }
-    changed_share_ = static_cast<double>(all_now + all_before - 2 * same) / static_cast<double>(live_.size());
+    const std::size_t first = block * kRowPadding;
+    const auto find = blocks_are_boxes_[block] != 0 ? kernels.find_box_manifolds : kernels.find_manifolds;
+    const bool are_ahead = ahead_.place(world, terms, bodies_, block < first_new_block_, first);
+    find(are_ahead ? ahead : now, first, first + kRowPadding);
 }
 
 template <class Real>
@@ -454,8 +458,8 @@ std::size_t Manifolds<Real>::bytes() const {
     return bodies_.bytes() + surfaces_.bytes() + old_.bytes() + old_surfaces_.bytes() +
            surface_finder_.bytes() + items_.bytes() + distant_.bytes() + of(asleep_) + of(is_recalled_) +
            of(loaded_) + of(is_box_of_) + of(blocks_are_boxes_) + index_.bytes() + poses_.bytes() +
-           ahead_.bytes() + flights_.bytes() + of(block_is_found_) + of(live_) + of(was_live_) +
-           live_of_bodies_.bytes() + chosen_pairs_.bytes();
+           ahead_.bytes() + flights_.bytes() + of(block_is_found_) + of(found_blocks_) + of(rows_) +
+           of(is_listed_) + live_.bytes() + chosen_pairs_.bytes();
 }
 
 template class Manifolds<float>;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "solvers/manifolds/distant_pairs.hpp"
 #include "solvers/manifolds/gaps.hpp"
 #include "solvers/manifolds/held_flights.hpp"
+#include "solvers/manifolds/live_contacts.hpp"
 #include "solvers/manifolds/manifold_index.hpp"
 #include "solvers/manifolds/manifold_list.hpp"
 #include "solvers/manifolds/piece_items.hpp"
@@ -61,9 +63,11 @@ class Manifolds {
 
     /// The contacts that can touch in this step. From 0 on they are of two bodies, below 0 of a body and a
     /// wall or an edge.
-    std::span<const std::int32_t> live() const { return live_; }
+    std::span<const std::int32_t> live() const { return live_.numbers(); }
+    /// Places in `live` of those that were found in this step, in order; the others have been carried on.
+    std::span<const std::int32_t> found() const { return live_.found(); }
     /// Whether there are so many that the world is not small.
-    bool is_crowd() const { return live_.size() >= kContactsOfSmallWorld; }
+    bool is_crowd() const { return live().size() >= kContactsOfSmallWorld; }
     ManifoldList<Real>& list_of(std::int32_t contact) { return contact >= 0 ? bodies_ : surfaces_; }
     const ManifoldList<Real>& list_of(std::int32_t contact) const {
         return contact >= 0 ? bodies_ : surfaces_;
@@ -76,10 +80,10 @@ class Manifolds {
         return contact < 0 || block_is_found_[place_of(contact) / kRowPadding] != 0;
     }
     /// Whether some were carried on.
-    bool some_are_carried() const { return some_are_carried_; }
+    bool some_are_carried() const { return found_blocks_.size() < block_is_found_.size(); }
     /// Contacts of two bodies that have come or gone since the step before, as a share of those there are;
     /// negative where that is not known, since pairs have been found anew.
-    double changed_share() const { return changed_share_; }
+    double changed_share() const { return live_.changed_share(); }
     /// What bodies have come in the step before.
     PoseWatch<Real>& poses() { return poses_; }
     ManifoldMemory<Real>& memory_of(std::int32_t contact) {
@@ -121,9 +125,8 @@ class Manifolds {
     void find_box_blocks(const Bodies<Real>& bodies, std::size_t first);
     void recall(ManifoldList<Real>& list, const ManifoldList<Real>& old, const Executor& executor);
     void recall_surfaces();
-    /// Finds the contacts of a chunk of pairs that must be found in this step.
-    void find_chunk(const WorldState<Real>& world, const SubstepTerms& terms, const ContactDistance& near,
-                    const ConvexKernels<Real>& kernels, std::size_t first, std::size_t last);
+    void choose_blocks(const Executor& executor);
+    std::optional<std::span<const std::int32_t>> rows_to_find(const WorldState<Real>& world);
     /// Finds how bodies fly that surfaces and standing bodies hold.
     void find_flights(const Gaps<Real>& gaps, const WorldState<Real>& world, double dt,
                       const Executor& executor);
@@ -132,10 +135,10 @@ class Manifolds {
     void describe_pairs(const WorldState<Real>& world, const ContactDistance& near, std::size_t first,
                         std::size_t last);
     void describe_pieces(const WorldState<Real>& world, const ContactDistance& near, std::size_t i);
-    void count_changes();
     void find_pairs(const WorldState<Real>& world, const SubstepTerms& terms,
-                    const ConvexKernels<Real>& kernels, std::size_t first, std::size_t last);
-    bool list_live(const Executor& executor);
+                    const ConvexKernels<Real>& kernels, std::size_t block);
+    /// Tells live_ of a block that was found, and forgets the impulses of what cannot touch.
+    void note_live(std::size_t block);
 
     PieceItems<Real> items_;
     DistantPairs<Real> distant_;
@@ -148,9 +151,7 @@ class Manifolds {
     /// Contacts of bodies that slept when candidates were found last.
     std::vector<KeptManifold<Real>> asleep_;
     std::size_t asleep_then_ = 0;  // bodies that slept then
-    std::vector<std::int32_t> live_, was_live_;
-    ChunkedList live_of_bodies_;  // of them, those of two bodies
-    double changed_share_ = -1;
+    LiveContacts live_;
     std::vector<LoadedContact> loaded_;
     std::vector<std::uint8_t> is_box_of_;         // by shape
     std::uint64_t shapes_of_boxes_ = 0;           // ShapeStore::revision of these shapes
@@ -167,7 +168,9 @@ class Manifolds {
     Within found_within_;
     std::size_t first_new_block_ = 0;  // blocks from here on are to be found, whatever their bodies do
     std::vector<std::uint8_t> block_is_found_;
-    bool some_are_carried_ = false;
+    std::vector<std::uint32_t> found_blocks_;  // numbers of those
+    std::vector<std::int32_t> rows_;           // of rows_to_find
+    std::vector<std::uint8_t> is_listed_;      // by row: whether it is among them
     // Scratch of `recall`.
     ManifoldIndex index_;                    // of old contacts
     std::vector<std::uint8_t> is_recalled_;  // by old contact

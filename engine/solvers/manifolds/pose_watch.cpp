@@ -24,31 +24,76 @@ constexpr double kCarriedArc = 1e-6;
 constexpr double kCarriedWay = 0.25;
 
 constexpr std::size_t kRowsPerTask = 512;
-constexpr double kNanosecondsToLook = 20;  // a row, on one thread, for the executor
+constexpr double kNanosecondsToLook = 5;  // a row, on one thread, for the executor
 
 }  // namespace
 
 template <class Real>
 void PoseWatch<Real>::look(const WorldState<Real>& world, double dt, const ContactDistance& near,
-                           bool forgets, const TurnAngles& turn_angles, const Executor& executor) {
+                           bool forgets, const ConvexKernels<Real>& kernels, const Executor& executor) {
     const Bodies<Real>& bodies = world.bodies;
-    const std::size_t rows = bodies.rows();
-    pose.resize(4 * rows), angle_.resize(rows), base_.resize(4 * rows), has_moved_.resize(rows);
-    come_.resize(2 * rows), turned_.resize(rows), thinnest_.resize(rows), way_.resize(rows);
-    path_.resize(rows);
+    const std::size_t rows = bodies.rows(), room = padded(rows);
+    pose.resize(4 * room), angle_.resize(room), base_.resize(4 * room), has_moved_.resize(room);
+    come_.resize(2 * room), turned_.resize(room), thinnest_.resize(room), way_.resize(room);
+    moved_.resize(room), path_.resize(rows);
     awake_ = bodies.count;
     if (forgets) std::fill(thinnest_.begin(), thinnest_.end(), Real(0));
+    const WatchPoses<Real> k = arguments(bodies, dt, near);
     executor.for_each_chunk(rows, kRowsPerTask, kNanosecondsToLook,
                             [&](std::size_t, std::size_t first, std::size_t last) {
                                 for (std::size_t row = first; row < last; row += kAnglesOfBlock) {
                                     const std::size_t end = std::min(last, row + kAnglesOfBlock);
-                                    turn(bodies, turn_angles, row, end);
-                                    for (std::size_t i = row; i < end; ++i) look_at(world, dt, near, i);
+                                    if (kernels.watch_poses(k, row, padded(end)))
+                                        turn(bodies, kernels, row, end);
+                                    look_at_immovable(bodies, row, end);
                                 }
+                                follow_paths(first, last);
                             });
     if (forgets) std::fill(thinnest_.begin(), thinnest_.end(), std::numeric_limits<Real>::infinity());
     begins_paths_ = false;
     look_at_motors(world, dt);
+}
+
+template <class Real>
+WatchPoses<Real> PoseWatch<Real>::arguments(const Bodies<Real>& bodies, double dt,
+                                            const ContactDistance& near) {
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    WatchPoses<Real> k{};
+    k.x = bodies.position_x.data(), k.y = bodies.position_y.data();
+    k.velocity_x = bodies.velocity_x.data(), k.velocity_y = bodies.velocity_y.data();
+    if (bodies.has_rotation) k.angle = bodies.angle.data(), k.spin = bodies.angular_velocity.data();
+    k.radius = bodies.radius.data(), k.uniform_radius = bodies.radius.uniform_value();
+    k.rim = bodies.rim().data(), k.uniform_rim = bodies.rim().uniform_value();
+    k.thinnest = thinnest_.data(), k.dt = real(dt);
+    k.carried_share = real(kCarriedShare), k.carried_arc = real(kCarriedArc);
+    k.carried_way = real(kCarriedWay * near.share);
+    k.pose = pose.data(), k.last_angle = angle_.data(), k.base = base_.data();
+    k.come = come_.data(), k.turned = turned_.data(), k.moved = moved_.data(), k.way = way_.data();
+    k.has_moved = has_moved_.data();
+    return k;
+}
+
+/// What nothing moves has no way, whatever its velocity is; what moves by itself has moved if it has any.
+template <class Real>
+void PoseWatch<Real>::look_at_immovable(const Bodies<Real>& bodies, std::size_t first, std::size_t last) {
+    for (std::size_t row = first; row < last; ++row) {
+        if (row < bodies.count && !bodies.has_flags) continue;
+        const bool is_driven = (bodies.flags_of(row) & kKinematic) != 0;
+        if (!is_driven && row < bodies.count && !bodies.is_immovable(row)) continue;
+        if (!is_driven) {
+            way_[row] = 0, has_moved_[row] = 0;
+        } else if (way_[row] > 0) {
+            has_moved_[row] = 1;
+            base_[4 * row] = bodies.position_x[row], base_[4 * row + 1] = bodies.position_y[row];
+            base_[4 * row + 2] = angle_[row];
+        }
+    }
+}
+
+template <class Real>
+void PoseWatch<Real>::follow_paths(std::size_t first, std::size_t last) {
+    if (begins_paths_) return std::fill(&path_[first], &path_[first] + (last - first), 0.0);
+    for (std::size_t row = first; row < last; ++row) path_[row] += static_cast<double>(moved_[row]);
 }
 
 /// What a motor adds to the motion of its two bodies in a step, by its torque or force on each alone and up
@@ -124,19 +169,15 @@ Real PoseWatch<Real>::way_of_motors(std::size_t a, std::size_t b) const {
     return way;
 }
 
-/// Cosines and sines of the rows of a block, if one of them has turned.
+/// Cosines and sines of the rows of a block.
 template <class Real>
-void PoseWatch<Real>::turn(const Bodies<Real>& bodies, const TurnAngles& turn_angles, std::size_t first,
+void PoseWatch<Real>::turn(const Bodies<Real>& bodies, const ConvexKernels<Real>& kernels, std::size_t first,
                            std::size_t last) {
     alignas(64) std::array<double, kAnglesOfBlock> angles{}, cosines, sines;
-    bool has_turned = false;
-    for (std::size_t row = first; row < last; ++row) {
-        angles[row - first] = bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0;
-        const Real* at = &pose[4 * row];
-        has_turned = has_turned || angles[row - first] != angle_[row] || (at[2] == 0 && at[3] == 0);
-    }
-    if (!has_turned) return;
-    turn_angles(angles.data(), cosines.data(), sines.data());
+    if (bodies.has_rotation)
+        for (std::size_t row = first; row < last; ++row)
+            angles[row - first] = static_cast<double>(bodies.angle[row]);
+    kernels.turn_angles(angles.data(), cosines.data(), sines.data());
     for (std::size_t row = first; row < last; ++row) {
         pose[4 * row + 2] = static_cast<Real>(cosines[row - first]);
         pose[4 * row + 3] = static_cast<Real>(sines[row - first]);
@@ -144,39 +185,8 @@ void PoseWatch<Real>::turn(const Bodies<Real>& bodies, const TurnAngles& turn_an
 }
 
 template <class Real>
-void PoseWatch<Real>::look_at(const WorldState<Real>& world, double dt, const ContactDistance& near,
-                              std::size_t row) {
-    const Bodies<Real>& bodies = world.bodies;
-    Real *at = &pose[4 * row], *base = &base_[4 * row];
-    const Real x = bodies.position_x[row], y = bodies.position_y[row],
-               angle = bodies.has_rotation ? bodies.angle[row] : Real(0);
-    const auto wide = static_cast<double>(angle);
-    come_[2 * row] = x - at[0], come_[2 * row + 1] = y - at[1];
-    const auto turned = static_cast<Real>(wide - angle_[row]);
-    turned_[row] = turned * bodies.rim(row);
-    const Real moved =
-        std::fabs(come_[2 * row]) + std::fabs(come_[2 * row + 1]) + std::fabs(turned) * bodies.radius[row];
-    path_[row] = begins_paths_ ? 0 : path_[row] + static_cast<double>(moved);
-    at[0] = x, at[1] = y, angle_[row] = wide;
-    const bool is_driven = (bodies.flags_of(row) & kKinematic) != 0;
-    const bool may_move = is_driven || !(row >= bodies.count || bodies.is_immovable(row));
-    const Real thinnest = thinnest_[row], away = std::fabs(x - base[0]) + std::fabs(y - base[1]),
-               turn = angle - base[2];
-    const Real spin = bodies.has_rotation ? std::fabs(bodies.angular_velocity[row]) : Real(0);
-    const Real speed =
-        std::fabs(bodies.velocity_x[row]) + std::fabs(bodies.velocity_y[row]) + spin * bodies.radius[row];
-    const Real way = way_[row] = may_move ? static_cast<Real>(dt) * speed : Real(0);
-    const bool is_still =
-        away <= static_cast<Real>(kCarriedShare) * thinnest &&
-        turn * turn * bodies.radius[row] <= static_cast<Real>(kCarriedArc) * thinnest &&
-        way <= (is_driven ? Real(0) : static_cast<Real>(kCarriedWay * near.share) * thinnest);
-    has_moved_[row] = may_move && !is_still;
-    if (has_moved_[row] != 0 || thinnest == 0) base[0] = x, base[1] = y, base[2] = angle;
-}
-
-template <class Real>
 const Real* PoseWatch<Real>::come(std::size_t rows) {
-    come_.resize(2 * rows), turned_.resize(rows);
+    if (come_.size() < 2 * rows) come_.resize(2 * rows), turned_.resize(rows);
     std::fill(come_.begin() + static_cast<std::ptrdiff_t>(2 * awake_), come_.end(), Real(0));
     std::fill(turned_.begin() + static_cast<std::ptrdiff_t>(awake_), turned_.end(), Real(0));
     return come_.data();
@@ -185,7 +195,7 @@ const Real* PoseWatch<Real>::come(std::size_t rows) {
 template <class Real>
 std::size_t PoseWatch<Real>::bytes() const {
     return pose.bytes() + angle_.bytes() + base_.bytes() + thinnest_.bytes() + has_moved_.bytes() +
-           come_.bytes() + turned_.bytes() + way_.bytes() + path_.bytes() +
+           come_.bytes() + turned_.bytes() + moved_.bytes() + way_.bytes() + path_.bytes() +
            driven_.capacity() * sizeof(Driven) + with_motors_.capacity() * sizeof(std::uint32_t);
 }
 

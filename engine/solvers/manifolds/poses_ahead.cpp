@@ -60,16 +60,21 @@ void PosesAhead<Real>::note_shapes(const ShapeStore<Real>& shapes) {
 template <class Real>
 void PosesAhead<Real>::look(const WorldState<Real>& world, double dt, const PoseWatch<Real>& now,
                             const HeldFlights<Real>& flights, const PieceItems<Real>& pieces,
-                            const Executor& executor) {
+                            std::optional<std::span<const std::int32_t>> asked, const Executor& executor) {
     some_are_smooth_ = may_be_smooth(world, pieces);
     items_ = 0;
     if (!some_are_smooth_ && !some_are_round_) return;
     const std::size_t rows = world.bodies.rows();
     items_ = rows + pieces.count();
     pose.resize(12 * items_), come.resize(12 * items_), shape.resize(3 * items_);
-    executor.for_each_chunk(rows, kRowsPerTask, kNanosecondsToLook,
+    executor.for_each_chunk(asked ? asked->size() : rows, kRowsPerTask, kNanosecondsToLook,
                             [&](std::size_t, std::size_t first, std::size_t last) {
-                                look_at(world.bodies, static_cast<Real>(dt), now, first, last);
+                                const auto h = static_cast<Real>(dt);
+                                if (!asked) return look_at(world.bodies, h, now, first, last);
+                                for (std::size_t n = first; n < last; ++n) {
+                                    const auto row = static_cast<std::size_t>((*asked)[n]);
+                                    look_at(world.bodies, h, now, row, row + 1);
+                                }
                             });
     flights.for_each([&](std::size_t row, Vec2 velocity) { hold(row, velocity); });
     pieces.for_each_piece([&](std::size_t item, std::size_t row, std::int32_t number) {

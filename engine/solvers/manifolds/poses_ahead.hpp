@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -48,8 +49,10 @@ class PosesAhead {
     }
     /// Reads the poses at the start of a step, unless every contact is found where it is.
     /// @param dt  s, of the step
+    /// @param rows  whose places are asked for in this step; none: of all. Places of others mean nothing
     void look(const WorldState<Real>& world, double dt, const PoseWatch<Real>& now,
-              const HeldFlights<Real>& flights, const PieceItems<Real>& pieces, const Executor& executor);
+              const HeldFlights<Real>& flights, const PieceItems<Real>& pieces,
+              std::optional<std::span<const std::int32_t>> rows, const Executor& executor);
     /// Whether every contact is found where it is in this step.
     bool empty() const { return items_ == 0; }
 

@@ -15,7 +15,7 @@
 namespace carom {
 namespace {
 
-constexpr double kNanosecondsToLook = 2;  // a row, on one thread, for the executor
+constexpr double kNanosecondsToLook = 1;  // a row, on one thread, for the executor
 /// Share by which a reach may be off through rounding.
 constexpr double kRoundingOfReach = 1e-6;
 
@@ -140,9 +140,10 @@ template <class Real>
 void SurfaceFinder<Real>::list_near_walls(const Inputs& in, const Executor& executor) {
     const Bodies<Real>& bodies = in.world.bodies;
     const Enclosure<double> enclosure(&*in.world.walls);
+    const double radii = 2 + in.near.share, fall = in.near.fall;
     rows_near_walls_.choose(bodies.moving(), kNanosecondsToLook, executor, [&](std::size_t row) {
-        const double radius = bodies.radius[row];
-        const double most = 2 * radius + in.near(radius) + reach_in_step(bodies, row, in.terms.dt);
+        const double most =
+            radii * static_cast<double>(bodies.radius[row]) + fall + static_cast<double>(in.poses.way(row));
         return enclosure.clearance(bodies.position_x[row], bodies.position_y[row]) <
                (1 + kRoundingOfReach) * most;
     });

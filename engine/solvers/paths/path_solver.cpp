@@ -167,13 +167,20 @@ void PathSolver<Real>::fill_links(bool found, const WorldState<Real>& world, con
                                   const StepLoops<Real>& loops) {
     const auto fill = [&](std::size_t n) {
         const std::int32_t contact = manifolds.live()[n];
-        if (manifolds.is_found(contact) != found) return;
         const PathCut::Place place = cut().places()[n];
         write_link<Real>({links_[place.link], place.lane, place.is_reversed, row_of_far_[n]},
                          manifolds.list_of(contact), Manifolds<Real>::place_of(contact), found, world.bodies,
                          records);
     };
-    for_each_number(manifolds.live().size(), kNanosecondsToFill, *loops.executor, fill);
+    if (found) {
+        const std::span<const std::int32_t> numbers = manifolds.found();
+        for_each_number(numbers.size(), kNanosecondsToFill, *loops.executor,
+                        [&](std::size_t i) { fill(static_cast<std::size_t>(numbers[i])); });
+    } else {
+        for_each_number(manifolds.live().size(), kNanosecondsToFill, *loops.executor, [&](std::size_t n) {
+            if (!manifolds.is_found(manifolds.live()[n])) fill(n);
+        });
+    }
 }
 
 template <class Real>

@@ -57,31 +57,26 @@ void WarmStartLimit<Real>::apply(PathSolver<Real>& paths, const Bodies<Real>& bo
                                  const StepLoops<Real>& loops) {
     if (paths.manifolds.live().empty()) return;
     const std::size_t rows = records.moving();
-    const StartColumns<Real> start = records.start_columns();
     const auto fall = static_cast<Real>(terms.fall_speed()), none = static_cast<Real>(kNoWay / terms.dt);
-    Real times = kMostTimes;
-    const auto is_thrown = [&](std::size_t row) {
-        const Real* now = &records.velocity[4 * row];
-        const Real speed = std::fabs(now[0]) + std::fabs(now[1]) + std::fabs(now[2]),
-                   before = std::fabs(start.x[row]) + std::fabs(start.y[row]) +
-                            (start.rim ? std::fabs(start.rim[row]) : Real(0));
-        return speed > times * (before + fall) + none * bodies.inradius(row) && !(joined && joined[row] > 0);
-    };
-    is_thrown_.assign(records.rows(), 0);
+    FindThrown<Real> k{};
+    k.velocity = records.velocity.data(), k.start = records.start_columns();
+    k.inradius = bodies.inradius().data(), k.uniform_inradius = bodies.inradius().uniform_value();
+    k.joined = joined, k.times = kMostTimes, k.fall = fall, k.none = none;
+    is_thrown_.assign(padded(records.rows()), 0);
+    k.is_thrown = is_thrown_.data();
     has_thrown_.assign((rows + kRowsPerTask - 1) / kRowsPerTask, 0);
     for (int round = 0; round < kRounds; ++round) {
         loops.executor->for_each_chunk(rows, kRowsPerTask, kNanosecondsToLook,
                                        [&](std::size_t chunk, std::size_t first, std::size_t last) {
-                                           std::uint8_t any = 0;
-                                           for (std::size_t row = first; row < last; ++row)
-                                               any = std::max(any, is_thrown_[row] = is_thrown(row));
-                                           has_thrown_[chunk] = any;
+                                           has_thrown_[chunk] =
+                                               loops.kernels->convex->find_thrown(k, first, padded(last));
                                        });
+        std::fill_n(is_thrown_.begin() + static_cast<std::ptrdiff_t>(rows), padded(rows) - rows, 0);
         if (std::find(has_thrown_.begin(), has_thrown_.end(), 1) == has_thrown_.end()) return;
         if (round == 0) {
-            times = static_cast<Real>(kTimesOfLayer * layers_of(paths, bodies, terms.gravity_change));
-            if (times > static_cast<Real>(kMostTimes)) continue;
-            times = static_cast<Real>(kMostTimes);
+            k.times = static_cast<Real>(kTimesOfLayer * layers_of(paths, bodies, terms.gravity_change));
+            if (k.times > static_cast<Real>(kMostTimes)) continue;
+            k.times = static_cast<Real>(kMostTimes);
         }
         paths.take_back(is_thrown_, records);
     }

@@ -121,7 +121,7 @@ TEST_SUITE("solvers/manifolds/distant_pairs") {
         std::size_t listed = 0, left_after_ten = 0, parted_by_direction = 0;
         for (int step = 0; step < 120; ++step) {
             if (step % 40 == 0) list(), listed += waiting.size();
-            poses.look(world, kStep, kNear, false, kernels.turn_angles, executor);
+            poses.look(world, kStep, kNear, false, kernels, executor);
             for (const auto& pair : distant.take_near(world, kStep, true, poses, kNear, kernels, executor))
                 REQUIRE(waiting.erase({pair.a, pair.b}) == 1);
             for (const auto& [first, second] : waiting) {

@@ -104,7 +104,12 @@ void ShapeTunnelling<Real>::list_swift(const Inputs& in, const Manifolds<Real>& 
     const auto comes_far = [&](std::size_t row, Real of_other) {
         return way_along_axes(displacement + 2 * row) + of_other > least * bodies.inradius(row);
     };
-    const std::span<const std::int32_t> live = manifolds.live();
+    // Without bodies that nothing moves only contacts of surfaces are looked at, which come last.
+    std::span<const std::int32_t> live = manifolds.live();
+    if (in.world.immovable_rows.empty() && bodies.asleep == 0)
+        live = live.subspan(static_cast<std::size_t>(
+            std::partition_point(live.begin(), live.end(), [](std::int32_t n) { return n >= 0; }) -
+            live.begin()));
     const auto is_swift = [&](std::size_t n) {
         const ManifoldList<Real>& list = manifolds.list_of(live[n]);
         const std::size_t i = Manifolds<Real>::place_of(live[n]);
