@@ -57,6 +57,16 @@ bool JointSystem::holds(std::size_t extra, Drives drives) const {
             (drives == Drives::as_solved || (drives == Drives::no_motors && law == RowLaw::stop)));
 }
 
+bool JointSystem::answers_hold() const {
+    std::size_t found = 0;
+    for (std::size_t e = 0; e < extras_.size(); ++e) {
+        if (!holds(e, Drives::no_motors)) continue;
+        if (found == answered_with_.size() || answered_with_[found] != e) return false;
+        ++found;
+    }
+    return found == answered_with_.size();
+}
+
 void JointSystem::find_answers(std::span<const std::size_t> asked, Drives drives) {
     asked_.assign(asked.begin(), asked.end());
     std::size_t sides = 3 * asked.size();
@@ -66,6 +76,7 @@ void JointSystem::find_answers(std::span<const std::size_t> asked, Drives drives
         if (holds(e, drives)) free_.push_back(e);
         if (drives == Drives::no_motors && is_motor(e)) ++sides;
     }
+    answered_with_ = free_;
     answers_.reset(bodies.size(), sides);
     for (std::size_t i = 0; i < asked.size(); ++i)
         for (std::size_t c = 0; c < 3; ++c) answers_.of(asked[i])[c * sides + 3 * i + c] = 1;

@@ -160,6 +160,9 @@ class JointSystem {
     /// them is one for each motor, in their order, if motors give what they are told to. Cost: O(joints) a
     /// side, in lanes; O(rows²) of loops.
     void find_answers(std::span<const std::size_t> asked, Drives drives);
+    /// Whether the limits that hold now are those that held when answers to impulses without motors were
+    /// found; if not, a blow has another answer.
+    bool answers_hold() const;
     /// m/s, m/s, rad/s: of a body that was asked for.
     Vector answer_to(std::size_t side, std::size_t body) const { return answers_.at(body, side); }
     double answer_to(std::size_t side, const Motor& motor) const;  ///< m/s, of the motor's row
@@ -400,6 +403,7 @@ class JointSystem {
     std::vector<double> weight_;      // by body: how many times as heavy it counts; 1 but in corrections
     bool is_weighted_ = false;        // whether it is factored so
     std::vector<std::size_t> free_;
+    std::vector<std::size_t> answered_with_;   // rows that held in the last find_answers
     std::vector<JointPose> kept_poses_;        // by body: before a correction
     CoupledImpulses pushes_;                   // of loads
     std::vector<Vector> alone_displacements_;  // by body: without them

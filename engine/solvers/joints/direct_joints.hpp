@@ -67,6 +67,8 @@ class DirectJoints {
     /// What unit impulses on bodies, by their rows, and of all motors change these by while joints hold and
     /// motors give what they are told to: JointSystem::find_answers.
     void find_answers(std::span<const std::int32_t> rows);
+    /// Whether these are still the answers: no limit has begun to hold or let go since.
+    bool answers_hold() const { return system_.answers_hold(); }
     /// m/s, m/s, rad/s: of one of these bodies, by its place among them.
     JointSystem::Vector answer_to(std::size_t side, std::size_t place) const {
         return system_.answer_to(side, asked_[place]);

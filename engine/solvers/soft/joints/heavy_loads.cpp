@@ -307,6 +307,11 @@ template <class Real>
 void HeavyLoads<Real>::begin_substep(const JointStep<Real>& step, SoftJoints<Real>& joints) {
     if (empty()) return;
     displace_loads(step, joints);
+    find_answers(step, joints);
+}
+
+template <class Real>
+void HeavyLoads<Real>::find_answers(const JointStep<Real>& step, SoftJoints<Real>& joints) {
     find_masses(step, joints);
     leave_held_directions(step.world.bodies, joints);
 }
@@ -327,6 +332,11 @@ void HeavyLoads<Real>::read_motors(const JointStep<Real>& step, SoftJoints<Real>
 template <class Real>
 double HeavyLoads<Real>::solve(const HeldContacts<Real>& contacts, const JointStep<Real>& step,
                                SoftJoints<Real>& joints) {
+    // Joints were solved again: a body that a limit no longer holds is as light as it is.
+    const bool answers_hold = std::all_of(groups_.begin(), groups_.end(), [&](std::int32_t group) {
+        return joints.exact_group(group).answers_hold();
+    });
+    if (!answers_hold) find_answers(step, joints);
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
         const HeldContact::Values lack = contacts.lack(contacts_[c]),
                                   impulses = contacts.impulses(contacts_[c]);

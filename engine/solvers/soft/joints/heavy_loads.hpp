@@ -75,6 +75,7 @@ class HeavyLoads {
     void displace_loads(const JointStep<Real>& step, SoftJoints<Real>& joints) const;
     void list_held_ends(SoftJoints<Real>& joints);
     void add_answers(std::size_t g, SoftJoints<Real>& joints);
+    void find_answers(const JointStep<Real>& step, SoftJoints<Real>& joints);
     void find_masses(const JointStep<Real>& step, SoftJoints<Real>& joints);
     void add_answer(std::size_t by, std::int32_t row, const std::array<double, 3>& change);
     void leave_held_directions(const Bodies<Real>& bodies, SoftJoints<Real>& joints);
