@@ -338,18 +338,15 @@ void ContactGraph<Real>::add_late(ContactRows<Real>& sorted, std::int32_t paddin
     const std::size_t group = sorted.groups() - 1, first = sorted.first_colour[group];
     std::size_t place = first < sorted.colours() ? sorted.begin[first] : sorted.a.size();
     sorted.for_each(group, group + 1, [&](std::size_t i) {
-        late_.push_back({sorted.a[i], sorted.b[i], sorted.normal_impulse[i], sorted.friction_impulse[i], 0});
+        late_.push_back({sorted.a[i], sorted.b[i], sorted.normal_impulse[i], sorted.friction_impulse[i],
+                         sorted.rolling_impulse_of(i), 0});
     });
-    for (const Late& late :
-         late_) {  // rows that were there when the pairs were renewed, or in a restored state
+    for (const Late& late : late_) {  // rows as they were when pairs were renewed, or in a restored state
         const auto last = static_cast<std::size_t>(both_move ? std::max(late.a, late.b) : late.a);
         if (colours_of_[0].size() <= last) colours_of_[0].resize(last + 1);
     }
     std::uint64_t* taken = colours_of_[0].data();
-    for (const Late& late : late_) {
-        taken[late.a] = 0;
-        if (both_move) taken[late.b] = 0;
-    }
+    for (const Late& late : late_) taken[late.a] = taken[both_move ? late.b : late.a] = 0;
     std::size_t counts[kColours + 1] = {};
     for (Late& late : late_) {
         const std::uint64_t both = both_move ? taken[late.a] | taken[late.b] : taken[late.a];
@@ -370,6 +367,7 @@ void ContactGraph<Real>::add_late(ContactRows<Real>& sorted, std::int32_t paddin
     sorted.first_colour.back() = sorted.colours();
     for (Column<std::int32_t>* rows : {&sorted.a, &sorted.b}) rows->resize(place);
     for (Column<Real>* impulses : {&sorted.normal_impulse, &sorted.friction_impulse}) impulses->resize(place);
+    if (keeps_rolling) sorted.rolling_impulse.resize(place);
     std::size_t next[kColours + 1] = {};
     for (std::size_t colour = 0, c = first; colour <= kColours; ++colour)
         if (counts[colour] > 0) next[colour] = sorted.begin[c++];
@@ -378,6 +376,7 @@ void ContactGraph<Real>::add_late(ContactRows<Real>& sorted, std::int32_t paddin
         next[late.colour] += late.colour == kOverflow ? sorted.overflow_stride : 1;
         sorted.a[i] = late.a, sorted.b[i] = late.b;
         sorted.normal_impulse[i] = late.normal_impulse, sorted.friction_impulse[i] = late.friction_impulse;
+        if (keeps_rolling) sorted.rolling_impulse[i] = late.rolling_impulse;
     }
     sorted.pad_colours(first, sorted.colours(), padding_row);
 }
@@ -390,11 +389,11 @@ void ContactGraph<Real>::add(const Candidates<Real>& candidates, const EdgeCandi
     for (const auto& [a, b] : candidates.new_pairs()) {
         if (!bodies.are_discs(a, b) || is_forbidden(a, b)) continue;
         if (bodies.is_immovable(static_cast<std::size_t>(a)))
-            new_supports_.push_back({b, a, 0, 0, 0});
+            new_supports_.push_back({b, a, 0, 0, 0, 0});
         else if (bodies.is_immovable(static_cast<std::size_t>(b)))
-            new_supports_.push_back({a, b, 0, 0, 0});
+            new_supports_.push_back({a, b, 0, 0, 0, 0});
         else
-            new_pairs_.push_back({a, b, 0, 0, 0});
+            new_pairs_.push_back({a, b, 0, 0, 0, 0});
     }
     const auto is_known = [&](std::int32_t row, std::int32_t side) {
         bool found = false;
@@ -415,23 +414,21 @@ void ContactGraph<Real>::add(const Candidates<Real>& candidates, const EdgeCandi
         enclosure.for_each_side_within(
             bodies.position_x[row], bodies.position_y[row],
             candidates.reach()[row] + static_cast<Real>(candidates.largest_drift()), [&](std::int32_t side) {
-                if (!is_known(stray, side)) new_supports_.push_back({stray, side, 0, 0, 0});
+                if (!is_known(stray, side)) new_supports_.push_back({stray, side, 0, 0, 0, 0});
             });
     }
     for (const EdgePair pair : edges.new_pairs())
         if (bodies.are_discs(pair.row, pair.row))
-            new_supports_.push_back({pair.row, Partner::edge(pair.edge).stored(), 0, 0, 0});
+            new_supports_.push_back({pair.row, Partner::edge(pair.edge).stored(), 0, 0, 0, 0});
     const auto add_to = [&](ContactRows<Real>& contacts, const std::vector<Late>& added,
-                            RollingMemory<Real>& rolling, std::size_t padding_row) {
+                            std::size_t padding_row) {
         if (added.empty()) return;
-        if (keeps_rolling) rolling.file(contacts, bodies.count);
         late_ = added;
         add_late(contacts, static_cast<std::int32_t>(padding_row), &contacts == &pairs);
-        if (keeps_rolling) rolling.recall(contacts);
         ++version;
     };
-    add_to(pairs, new_pairs_, rolling_of_pairs_, bodies.count + groups.far());
-    add_to(supports, new_supports_, rolling_of_supports_, bodies.count);
+    add_to(pairs, new_pairs_, bodies.count + groups.far());
+    add_to(supports, new_supports_, bodies.count);
 }
 
 template <class Real>
@@ -469,8 +466,10 @@ void ContactGraph<Real>::follow_rows(const Bodies<Real>& bodies, std::span<const
                     if (side_b.is_body()) lose_contact(*contacts, i, a, new_b, bodies);
                 } else {
                     const bool turns = contacts == &pairs && new_a > new_b;
+                    const Real rolling = contacts->rolling_impulse_of(i);
                     late_.push_back({turns ? new_b : new_a, turns ? new_a : new_b,
-                                     contacts->normal_impulse[i], contacts->friction_impulse[i], 0});
+                                     contacts->normal_impulse[i], contacts->friction_impulse[i],
+                                     turns ? -rolling : rolling, 0});
                 }
                 drop(i, begin + --contacts->count[c] * stride);
             }

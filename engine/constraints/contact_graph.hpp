@@ -48,8 +48,7 @@ class ContactGraph {
 
     /// Follows rows that were removed, added or put elsewhere since the last renewal without finding pairs
     /// anew: contacts that are gone leave their colours, and those of bodies with a new row go to the last
-    /// groups. Not for rolling impulses. Cost: O(rows + contacts), about 1 ns each, and O(contacts of the
-    /// last groups).
+    /// groups. Cost: O(rows + contacts), about 1 ns each, and O(contacts of the last groups).
     /// @param is_elsewhere  a present row, whether its body was put elsewhere: its contacts are gone
     void follow_rows(const Bodies<Real>& bodies, std::span<const std::uint8_t> is_elsewhere);
 
@@ -103,7 +102,7 @@ class ContactGraph {
     /// A contact of a last group, while that is laid out anew.
     struct Late {
         std::int32_t a, b;
-        Real normal_impulse, friction_impulse;
+        Real normal_impulse, friction_impulse, rolling_impulse;
         std::uint32_t colour;
     };
 

@@ -188,14 +188,15 @@ ImpulseUpdate<F> hold_within(F before, F wanted, F limit) {
 
 /// What an impulse along the rolling velocity changes the rims by.
 template <class A, class B, class F>
-void apply_rolling(A& a, B& b, F of_a, F rolling) {
+[[gnu::always_inline]] inline void apply_rolling(A& a, B& b, F of_a, F rolling) {
     a.record[2] -= of_a * a.inverse_rim_mass() * rolling;
     if constexpr (B::kMoves) b.record[2] += (F(1) - of_a) * b.inverse_rim_mass() * rolling;
 }
 
 /// The impulses of a contact on its sides.
 template <unsigned kVariant, class A, class B, class F>
-void apply_impulses(A& a, B& b, F nx, F ny, F of_a, const ContactImpulses<F>& impulses) {
+[[gnu::always_inline]] inline void apply_impulses(A& a, B& b, F nx, F ny, F of_a,
+                                                  const ContactImpulses<F>& impulses) {
     a.apply_impulse(impulses.normal, impulses.tangent, nx, ny, F(-1));
     b.apply_impulse(impulses.normal, impulses.tangent, nx, ny, F(1));
     if constexpr ((kVariant & kRolling) != 0) apply_rolling(a, b, of_a, impulses.rolling);
@@ -204,7 +205,8 @@ void apply_impulses(A& a, B& b, F nx, F ny, F of_a, const ContactImpulses<F>& im
 /// The rolling impulse for a normal impulse, and what was added to it, which both rims get.
 /// @param slip  v_t; out: with what the rims changed it by
 template <class A, class B, class F>
-ImpulseUpdate<F> solve_rolling(A& a, B& b, const ContactTerms<F>& c, F before, F normal, F& slip) {
+[[gnu::always_inline]] inline ImpulseUpdate<F> solve_rolling(A& a, B& b, const ContactTerms<F>& c, F before,
+                                                             F normal, F& slip) {
     using simd::select;
     const F by_a = c.of_a * a.inverse_rim_mass();
     F change_of_slip = by_a, inverse_mass = c.of_a * by_a;

@@ -109,6 +109,7 @@ void ContactRows<Real>::pad_colour(std::size_t colour, std::size_t end, std::int
         if (k < used && k % apart == 0) continue;
         const std::size_t i = begin[colour] + k;
         a[i] = b[i] = padding_row, normal_impulse[i] = friction_impulse[i] = 0;
+        if (i < rolling_impulse.size()) rolling_impulse[i] = 0;
     }
 }
 

@@ -128,6 +128,10 @@ struct ContactRows {
     Column<Run> run;                                 // those of a group begin at its first block
     std::vector<std::size_t> run_count, live_count;  // a group: runs, contacts that can touch
 
+    /// N s; zero in worlds that have none.
+    Real rolling_impulse_of(std::size_t contact) const {
+        return contact < rolling_impulse.size() ? rolling_impulse[contact] : Real(0);
+    }
     /// The other side of a contact of the graph.
     Partner partner(std::size_t contact) const { return Partner(b[contact]); }
 

@@ -1,6 +1,7 @@
 #include "solvers/soft/contacts/contact_sweeps.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 namespace carom {
 namespace {
@@ -44,12 +45,18 @@ void sweep_pairs(ContactRows<Real>& pairs, std::size_t group,
             sweep.pair_kernel(on_pairs, kHalfBlock * run.first, kHalfBlock * run.last);
         return;
     }
+    const auto find = [&](int mark, std::size_t block, std::size_t last_of_run) {
+        const void* found = std::memchr(needs_second_sweep + block, mark, last_of_run - block);
+        return found ? static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - needs_second_sweep)
+                     : last_of_run;
+    };
     for (const auto& run : runs) {
-        const std::size_t end = kHalfBlock * run.last;
-        for (std::size_t at = kHalfBlock * run.first; at < end; at += kContactBlock) {
-            const std::size_t begin = at;
-            while (at < end && needs_second_sweep[at / kContactBlock]) at += kContactBlock;
-            if (at > begin) sweep.pair_kernel(on_pairs, begin, std::min(at, end));
+        const std::size_t end = kHalfBlock * run.last, behind = (end + kHalfBlock) / kContactBlock;
+        std::size_t block = kHalfBlock * run.first / kContactBlock;
+        while ((block = find(1, block, behind)) < behind) {
+            const std::size_t begin = kContactBlock * block;
+            block = find(0, block, behind);
+            sweep.pair_kernel(on_pairs, begin, std::min(kContactBlock * block, end));
         }
     }
 }

@@ -60,6 +60,9 @@ void ContactChains<Real>::list(const StepView<Real>& step) {
     const Rows &pairs = step.graph.pairs, &supports = step.supports;
     version_ = step.graph.version, age_ = 0;
     chains_.clear(), contacts_.clear();
+    const std::size_t live =
+        std::accumulate(pairs.live_count.begin(), pairs.live_count.end(), std::size_t{0});
+    if (10 * kMostContacts < 9 * live) return;  // in a pile chains cannot be nine tenths of it
     touches_.assign(step.records.count(), 0), pairs_of_.resize(step.records.count());
     const auto touch = [&](const Rows& rows, std::size_t i, const auto& fn) {
         const bool varies = step.settings.effects.radius_varies;
@@ -89,8 +92,6 @@ void ContactChains<Real>::list(const StepView<Real>& step) {
         const bool leads_on_at_a = leads_on(pairs, pairs.a[i], pair);
         if (leads_on_at_a != leads_on(pairs, pairs.b[i], pair)) walk(pairs, pair, leads_on_at_a);
     });
-    const std::size_t live =
-        std::accumulate(pairs.live_count.begin(), pairs.live_count.end(), std::size_t{0});
     if (chains_.size() > kMostChains || contacts_.size() > kMostContacts || 10 * contacts_.size() < 9 * live)
         chains_.clear(), contacts_.clear();
 }
