@@ -11,8 +11,9 @@
 #include "measure/gas.hpp"
 #include "measure/text.hpp"
 
-// 200 discs, and what has nothing to do with them: static discs far away, the rest of a long terrain, a speed
-// that all share, a disc much smaller than the others; and piles in which some discs are heavier.
+// 200 discs, and what has nothing to do with them: static discs far away, the rest of a long terrain of one
+// chain or of separate segments, also one of which a segment is taken and put back, a speed that all share, a
+// disc much smaller than the others; and piles in which some discs are heavier.
 //     strangers/<case>/<float|double>
 // `ratio` is the median time of a step over that of the same scene without it, both in processor time of the
 // thread. docs/decisions/0033-costs-of-strangers.md has the figures, 0064-uneven-masses-in-sweeps.md those of
@@ -55,13 +56,20 @@ Scene rough(Vec2 gravity = {0, -10}) {
     return scene;
 }
 
+enum class Terrain { chain, segments };
+
 /// Discs that fall onto hills and roll.
-Scene on_terrain(int points) {
+Scene on_terrain(int points, Terrain terrain = Terrain::chain) {
     Scene scene = rough();
     std::vector<Vec2> hills;
     for (int i = 0; i < points; ++i)
         hills.push_back({0.5 * (points / 2 - i), 2 * std::sin(0.05 * i) + 0.2 * std::sin(0.9 * i)});
-    scene.add({.type = BodyType::static_body, .shape = Chain{hills}, .material = material_of(0.5, 0)});
+    if (terrain == Terrain::chain)
+        scene.add({.type = BodyType::static_body, .shape = Chain{hills}, .material = material_of(0.5, 0)});
+    for (std::size_t i = 0; i + 1 < hills.size() && terrain == Terrain::segments; ++i)
+        scene.add({.type = BodyType::static_body,
+                   .shape = Segment{hills[i], hills[i + 1]},
+                   .material = material_of(0.5, 0)});
     for (int i = 0; i < 200; ++i)
         scene.add({.shape = Disc{0.5},
                    .position = {-25 + 1.25 * (i % 40), 8 + 1.3 * (i / 40)},
@@ -110,17 +118,41 @@ Scene of_masses(int columns, double friction, double ratio, unsigned every) {
     return scene;
 }
 
+/// Takes the first body of a world, which is a segment, out of it or puts it back.
+template <class World>
+class TouchedSegment {
+  public:
+    TouchedSegment(World& world, const Scene& scene) : world_(world), body_(scene.bodies.front()) {}
+    void touch() {
+        if (is_there_)
+            world_.remove(id_);
+        else
+            id_ = world_.add(body_);
+        is_there_ = !is_there_;
+    }
+
+  private:
+    World& world_;
+    Body body_;
+    BodyId id_{0, 0};
+    bool is_there_ = true;
+};
+
 /// @return s, median of a step
 template <class World>
-double time_of_step(const Scene& scene) {
+double time_of_step(const Scene& scene, bool is_touched) {
     const auto now = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
     constexpr int kTogether = 5;  // steps: the clock ticks in microseconds
     World world(scene, {.threads = 1});
+    TouchedSegment<World> segment(world, scene);
     for (int i = 0; i < kFirst; ++i) world.step(kStep);
     std::vector<double> times;
     for (int i = 0; i < kMeasured / kTogether; ++i) {
         const double start = now();
-        for (int k = 0; k < kTogether; ++k) world.step(kStep);
+        for (int k = 0; k < kTogether; ++k) {
+            if (is_touched) segment.touch();
+            world.step(kStep);
+        }
         times.push_back((now() - start) / kTogether);
     }
     const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
@@ -129,21 +161,22 @@ double time_of_step(const Scene& scene) {
 }
 
 template <class World>
-void run_strangers(benchmark::State& state, const Scene& with, const Scene& without) {
+void run_strangers(benchmark::State& state, const Scene& with, const Scene& without, bool is_touched) {
     double time = 0;
     for (auto _ : state) {
-        time = time_of_step<World>(with);
+        time = time_of_step<World>(with, is_touched);
         state.SetIterationTime(time);
     }
-    state.counters["ratio"] = time / time_of_step<World>(without);
+    state.counters["ratio"] = time / time_of_step<World>(without, false);
 }
 
 const bool kAdded = [] {
-    const auto add = [](const std::string& name, const Scene& with, const Scene& without) {
+    const auto add = [](const std::string& name, const Scene& with, const Scene& without,
+                        bool is_touched = false) {
         const auto add_for = [&](const char* precision, auto run) {
             benchmark::RegisterBenchmark(
                 measure::joined("strangers/", name, "/", precision).c_str(),
-                [run, with, without](benchmark::State& state) { run(state, with, without); })
+                [=](benchmark::State& state) { run(state, with, without, is_touched); })
                 ->Unit(benchmark::kMicrosecond)
                 ->UseManualTime()
                 ->Iterations(1);
@@ -157,6 +190,12 @@ const bool kAdded = [] {
                 beside_static(solver, strangers), beside_static(solver, 0));
     for (const int points : {2000, 60000})
         add("terrain-" + std::to_string(points), on_terrain(points), on_terrain(200));
+    for (const int points : {20001, 200001}) {
+        const Scene with = on_terrain(points, Terrain::segments),
+                    without = on_terrain(201, Terrain::segments);
+        add("segments-" + std::to_string(points - 1), with, without);
+        add("segment-touched-of-" + std::to_string(points - 1), with, without, true);
+    }
     add("falling-150", falling(150), falling(0));
     add("small-1e-3", with_small(1e-3), with_small(0));
     add("small-1e-6", with_small(1e-6), with_small(0));

@@ -134,7 +134,7 @@ void ContactRows<Real>::follow_removed_edges(EdgeStore::Removed gone) {
         if (!support.is_edge()) return;
         const std::int32_t edge = support.edge_number();
         if (edge >= gone.first + gone.count)
-            b[i] = Partner::edge(edge - gone.count).stored();
+            b[i] = Partner::edge(edge - gone.moved_up).stored();
         else if (edge >= gone.first)
             b[i] = Partner::gone().stored();
     });

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "math/rotation.hpp"
 #include "state/world_state.hpp"
 
@@ -9,11 +11,23 @@ namespace carom {
 
 /// Joins segments that stand still where their ends coincide, but for a rounding or a small overlap along a
 /// line: their edges become neighbours, as those of a chain are. A track, segments joined so, has its edges
-/// in the frame of the world. Cost: nothing while no segment comes, goes or is put elsewhere; else O(segments
-/// log segments).
+/// in the frame of the world. What is joined, and in which sense edges lead, depends on the segments alone,
+/// not on the order in which they came to where they are. Puts what is new or elsewhere into
+/// EdgeStore::standing. Cost: nothing while no segment comes, goes or is put elsewhere; else O(those that
+/// did, what is near them, and the segments of tracks that end there or lead through).
 /// @return whether tracks may have become others
 template <class Real>
 bool join_segments(WorldState<Real>& world);
+
+/// Positions are rounded to Real where the grid sees them.
+template <class Real>
+constexpr double kRoundingInGrid = sizeof(Real) == sizeof(float) ? 2e-7 : 1e-15;
+
+/// m, by which distances from an edge may be wrong there.
+template <class Real>
+double rounding_of(Vec2 a, Vec2 b) {
+    return kRoundingInGrid<Real> * (std::fabs(a.x) + std::fabs(a.y) + std::fabs(b.x) + std::fabs(b.y));
+}
 
 /// Where the frame of a body's edges is.
 struct EdgeFrame {

@@ -32,32 +32,95 @@ void link(EdgeStore& store, const EdgeBody& body, bool is_loop) {
 
 }  // namespace
 
-void EdgeStore::part() {
-    if (!std::exchange(is_joined, false)) return;
-    for (EdgeBody& body : bodies) {
-        if (body.track < 0) continue;
-        Edge& edge = edges[static_cast<std::size_t>(body.first)];
-        edge.a = body.own_a, edge.b = body.own_b, edge.previous = edge.next = -1;
-        body.track = -1, body.reach = body.own_reach;
-        body.own_a = body.own_b = {}, body.own_reach = 0;
+std::int32_t EdgeStore::number_of(BodyId id) const {
+    return id.index < numbers_.size() ? numbers_[id.index] : -1;
+}
+
+/// Lists what may have met the ends of a segment.
+void EdgeStore::touch_around(std::int32_t number) {
+    const StandingSegment& segment = segments[static_cast<std::size_t>(number)];
+    const double near = kMostOverlap * std::sqrt(length_squared(segment.b - segment.a));
+    std::vector<std::int32_t> found;
+    for (const Vec2 end : {segment.a, segment.b}) {
+        standing.find(box_around(end, near), found);
+        for (const std::int32_t other : found)
+            if (other != number) touched.push_back(other);
     }
 }
 
-void EdgeStore::append(BodyId id, const Shape& shape) {
-    if (!std::holds_alternative<Segment>(shape) && !std::holds_alternative<Chain>(shape)) return;
-    part();
-    const auto number = static_cast<std::int32_t>(bodies.size());
-    EdgeBody body{.id = id, .first = static_cast<std::int32_t>(edges.size())};
+void EdgeStore::part(std::int32_t number) {
+    if (bodies[static_cast<std::size_t>(number)].track < 0) return;
+    StandingSegment& segment = segments[static_cast<std::size_t>(number)];
+    EdgeBody& body = bodies[static_cast<std::size_t>(number)];
+    Edge& edge = edges[static_cast<std::size_t>(body.first)];
+    for (std::int32_t& end : segment.joined) {
+        if (end != StandingSegment::kAlone)
+            segments[static_cast<std::size_t>(end / 2)].joined[static_cast<std::size_t>(end % 2)] =
+                StandingSegment::kAlone;
+        end = StandingSegment::kAlone;
+    }
+    for (const std::int32_t neighbour : {edge.previous, edge.next}) {
+        if (neighbour < 0) continue;
+        Edge& other = edges[static_cast<std::size_t>(neighbour)];
+        if (other.previous == body.first) other.previous = -1;
+        if (other.next == body.first) other.next = -1;
+    }
+    edge.a = segment.own_a, edge.b = segment.own_b, edge.previous = edge.next = -1;
+    body.track = -1, body.reach = segment.own_reach;
+    segment.own_a = segment.own_b = {}, segment.own_reach = 0;
+}
+
+void EdgeStore::note_change(BodyId id) {
+    const std::int32_t number = number_of(id);
+    StandingSegment& segment = segments[static_cast<std::size_t>(number)];
+    if (segment.marks != 0 || std::binary_search(movers.begin(), movers.end(), number)) return;
+    standing.remove(number);
+    if (segment.may_join != 0) touch_around(number);
+    part(number);
+    segment.marks = 1, changed.push_back(number);
+}
+
+/// A number for a body that comes, with room for it.
+std::int32_t EdgeStore::take_number(BodyId id, bool is_segment) {
+    const auto take = [](std::vector<std::int32_t>& numbers) {
+        const std::int32_t number = numbers.back();
+        numbers.pop_back();
+        return number;
+    };
+    if (numbers_.size() <= id.index) numbers_.resize(id.index + std::size_t{1}, -1);
+    auto number = static_cast<std::int32_t>(bodies.size());
+    if (is_segment && !free_with_edge_.empty()) {
+        number = take(free_with_edge_);
+    } else {
+        if (!free_.empty())
+            number = take(free_);
+        else
+            bodies.push_back({}), segments.push_back({});
+        bodies[static_cast<std::size_t>(number)].first = static_cast<std::int32_t>(edges.size());
+        if (is_segment) edges.push_back({});
+    }
+    return numbers_[id.index] = number;
+}
+
+void EdgeStore::append(BodyId id, const Shape& shape, bool moves) {
+    const auto* segment = std::get_if<Segment>(&shape);
+    const auto* chain = std::get_if<Chain>(&shape);
+    if (!segment && !chain) return;
+    const std::int32_t number = take_number(id, segment != nullptr);
+    EdgeBody body{.id = id, .first = bodies[static_cast<std::size_t>(number)].first};
     const auto add = [&](Vec2 a, Vec2 b) {
-        edges.push_back({a, b, number});
-        ++body.count;
+        const Edge edge{a, b, number};
+        const std::int32_t place = body.first + body.count++;
+        if (segment)
+            edges[static_cast<std::size_t>(place)] = edge;
+        else
+            edges.push_back(edge);
         for (const Vec2 point : {a, b}) body.reach = std::fmax(body.reach, std::sqrt(length_squared(point)));
     };
     bool is_loop = false;
-    if (const auto* segment = std::get_if<Segment>(&shape)) {
+    if (segment) {
         add(segment->a, segment->b);
     } else {
-        const auto* chain = std::get_if<Chain>(&shape);
         is_loop = is_closed(*chain);
         for (std::size_t i = 0; i + 1 < chain->points.size(); ++i)
             add(chain->points[i], chain->points[i + 1]);
@@ -65,7 +128,12 @@ void EdgeStore::append(BodyId id, const Shape& shape) {
     }
     link(*this, body, is_loop);
     append_boxes(body);
-    bodies.push_back(body);
+    bodies[static_cast<std::size_t>(number)] = body;
+    if (moves) {
+        movers.insert(std::lower_bound(movers.begin(), movers.end(), number), number);
+        return;
+    }
+    segments[static_cast<std::size_t>(number)].marks = 1, changed.push_back(number);
 }
 
 void EdgeStore::append_boxes(EdgeBody& body) {
@@ -96,37 +164,53 @@ void EdgeStore::append_boxes(EdgeBody& body) {
 }
 
 Shape EdgeStore::shape_of(BodyId id) const {
-    const auto body =
-        std::find_if(bodies.begin(), bodies.end(), [id](const EdgeBody& other) { return other.id == id; });
-    const Edge& first = (*this)[body->first];
-    if (body->count == 1)
-        return body->track >= 0 ? Segment{body->own_a, body->own_b} : Segment{first.a, first.b};
+    const auto number = static_cast<std::size_t>(number_of(id));
+    const EdgeBody& body = bodies[number];
+    const Edge& first = (*this)[body.first];
+    if (body.count == 1)
+        return body.track >= 0 ? Segment{segments[number].own_a, segments[number].own_b}
+                               : Segment{first.a, first.b};
     Chain chain{{first.a}, first.previous >= 0};
-    for (std::int32_t n = 0; n + (chain.loop ? 1 : 0) < body->count; ++n)
-        chain.points.push_back((*this)[body->first + n].b);
+    for (std::int32_t n = 0; n + (chain.loop ? 1 : 0) < body.count; ++n)
+        chain.points.push_back((*this)[body.first + n].b);
     return chain;
 }
 
 EdgeStore::Removed EdgeStore::remove(BodyId id) {
-    const auto found =
-        std::find_if(bodies.begin(), bodies.end(), [id](const EdgeBody& body) { return body.id == id; });
-    if (found == bodies.end()) return {};
-    part();
-    const Removed gone{found->first, found->count};
-    edges.erase(edges.begin() + gone.first, edges.begin() + gone.first + gone.count);
-    const auto first_box = boxes.begin() + found->first_box;
-    const std::int32_t gone_boxes = found->box_count;
-    boxes.erase(first_box, first_box + gone_boxes);
-    for (auto later = bodies.erase(found); later != bodies.end(); ++later)
-        later->first -= gone.count, later->first_box -= gone_boxes;
-    const auto move_up = [&gone](std::int32_t& edge) {
-        if (edge >= 0) edge -= gone.count;
-    };
-    for (std::size_t i = static_cast<std::size_t>(gone.first); i < edges.size(); ++i) {
-        --edges[i].body;
-        move_up(edges[i].previous), move_up(edges[i].next);
+    const std::int32_t number = number_of(id);
+    if (number < 0) return {};
+    note_change(id);
+    for (std::vector<std::int32_t>* const list : {&movers, &changed, &touched}) std::erase(*list, number);
+    numbers_[id.index] = -1;
+    segments[static_cast<std::size_t>(number)] = {};
+    const EdgeBody gone = std::exchange(bodies[static_cast<std::size_t>(number)],
+                                        {.id = {}, .first = bodies[static_cast<std::size_t>(number)].first});
+    if (gone.count == 1 && gone.box_count == 0) {
+        free_with_edge_.push_back(number);
+        return {gone.first, 1, 0};
     }
-    return gone;
+    free_.push_back(number);
+    edges.erase(edges.begin() + gone.first, edges.begin() + gone.first + gone.count);
+    const auto first_box = boxes.begin() + gone.first_box;
+    boxes.erase(first_box, first_box + gone.box_count);
+    const auto move_up = [&gone](std::int32_t& edge) {
+        if (edge > gone.first) edge -= gone.count;
+    };
+    for (EdgeBody& body : bodies) {
+        move_up(body.first);
+        if (body.first_box > gone.first_box) body.first_box -= gone.box_count;
+    }
+    for (Edge& edge : edges) move_up(edge.previous), move_up(edge.next);
+    return {gone.first, gone.count, gone.count};
+}
+
+std::size_t EdgeStore::bytes() const {
+    return bodies.capacity() * sizeof(EdgeBody) + edges.capacity() * sizeof(Edge) +
+           boxes.capacity() * sizeof(EdgeBox) + segments.capacity() * sizeof(StandingSegment) +
+           standing.bytes() +
+           (movers.capacity() + changed.capacity() + touched.capacity() + placed.capacity() +
+            numbers_.capacity() + free_.capacity() + free_with_edge_.capacity()) *
+               sizeof(std::int32_t);
 }
 
 }  // namespace carom

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "math/vec2_math.hpp"
+#include "state/edge_index.hpp"
 
 // The edges of segments and chains: usually few beside the discs, so they have no columns. A long chain has a
 // tree of boxes, so that what looks for edges near a place pays for those alone.
@@ -23,7 +24,8 @@ struct Edge {
     std::int32_t next = -1;      // edge that begins where this ends; -1: none
 };
 
-/// A body that consists of edges [first, first + count).
+/// A body that consists of edges [first, first + count). A number that no body has, until one takes it, has
+/// none.
 struct EdgeBody {
     BodyId id;
     std::int32_t first = 0, count = 0;
@@ -31,29 +33,40 @@ struct EdgeBody {
     std::int32_t first_box = 0, box_count = 0;  // in EdgeStore::boxes
     std::int32_t track = -1;  // of a segment that is joined with others (edge_tracks.hpp): the first of their
                               // bodies; then its edge is in the frame of the world
-    Vec2 own_a{}, own_b{};    // m, of such a segment, in the frame of its body
-    double own_reach = 0;     // m, likewise
 };
 
-/// A box, in the frame of a body, around edges that follow each other, or around such boxes.
-struct EdgeBox {
-    Vec2 low, high;  // m
+/// Ends of two segments may meet where they lie no farther from each other than this share of the shorter
+/// one: segments that overlap along a line.
+inline constexpr double kMostOverlap = 0.01;
 
-    double distance_squared(Vec2 p) const {
-        const double x = std::max({low.x - p.x, p.x - high.x, 0.0}),
-                     y = std::max({low.y - p.y, p.y - high.y, 0.0});
-        return x * x + y * y;
-    }
+/// What joining knows of a body that is a segment and stands; apart, since steps do not ask for it. Its ends
+/// have numbers: twice that of the body, and one more for b.
+struct StandingSegment {
+    Vec2 a, b;                                           // m, in the world
+    Vec2 own_a, own_b;                                   // m, of one in a track, in the frame of its body
+    double own_reach = 0;                                // m, likewise
+    std::array<std::int32_t, 2> joined{kAlone, kAlone};  // the end that each end is joined with
+    std::uint32_t may_join = 0;                          // 1: it may
+    std::uint32_t marks = 0;  // what has been listed, while segments are being joined
+
+    static constexpr std::int32_t kAlone = -1;
 };
 
 /// Every edge of a world.
 struct EdgeStore {
     std::vector<EdgeBody> bodies;
     std::vector<Edge> edges;
-    std::vector<EdgeBox> boxes;  // of each body with many edges: level by level, the finest first
-    bool is_joined = false;      // segments that lie end to end
+    std::vector<EdgeBox> boxes;        // of each body with many edges: level by level, the finest first
+    std::vector<std::int32_t> movers;  // numbers of bodies that are not static, ascending
+    EdgeIndex standing;                // the others, in the world, by number; but for `changed`. Their boxes
+                                       // have room for what places are rounded by
+    std::vector<StandingSegment> segments;  // by number
+    // Numbers of bodies that came or are elsewhere since segments were joined, and of those near where one
+    // was.
+    std::vector<std::int32_t> changed, touched;
+    std::vector<std::int32_t> placed;  // whose frames may have become others when segments were joined last
 
-    bool empty() const { return bodies.empty(); }
+    bool empty() const { return bodies.size() == free_.size() + free_with_edge_.size(); }
     const Edge& operator[](std::int32_t edge) const { return edges[static_cast<std::size_t>(edge)]; }
     const EdgeBody& body_of(std::int32_t edge) const {
         return bodies[static_cast<std::size_t>((*this)[edge].body)];
@@ -64,13 +77,17 @@ struct EdgeStore {
         const std::int32_t track = body_of(edge).track;
         return track >= 0 ? track : (*this)[edge].body;
     }
-    /// To be called before segments are put elsewhere: each is alone, until they are joined anew.
-    /// Cost: O(bodies with edges) if they were joined.
-    void part();
+    /// To be called before a body is put elsewhere, or other filters hold for it: it is joined with no
+    /// segment until they are joined anew. Cost: O(what is near).
+    void note_change(BodyId id);
+    /// Takes a segment out of its track, if it is in one. The others stay in the frame of the world.
+    void part(std::int32_t number);
+    /// Whether segments are to be joined anew.
+    bool has_changes() const { return !changed.empty() || !touched.empty(); }
 
-    /// Nothing if the shape is none of edges.
-    void append(BodyId id, const Shape& shape);
-    /// The segment or chain of a body that has edges. Cost: O(bodies with edges + its edges).
+    /// Nothing if the shape is none of edges. @param moves  whether the body is not static
+    void append(BodyId id, const Shape& shape, bool moves = false);
+    /// The segment or chain of a body that has edges. Cost: O(its edges).
     Shape shape_of(BodyId id) const;
 
     /// Calls fn(edge) for all edges of a body within `reach` [m] of a place in its frame, and for some
@@ -84,22 +101,36 @@ struct EdgeStore {
         for (std::int32_t n = 0; n < body.count; ++n) fn(body.first + n);
     }
 
+    /// Calls fn(number) for all bodies that move and those that stand and have a box within `reach` [m] of a
+    /// place in the world, in their order. Cost: O(bodies that move + what is found).
+    /// @param near  scratch
+    template <class Fn>
+    void for_each_body_near(Vec2 place, double reach, std::vector<std::int32_t>& near, const Fn& fn) const {
+        standing.find(box_around(place, reach), near);
+        auto mover = movers.begin();
+        for (const std::int32_t number : near) {
+            for (; mover != movers.end() && *mover < number; ++mover) fn(*mover);
+            fn(number);
+        }
+        for (; mover != movers.end(); ++mover) fn(*mover);
+    }
+
     struct Removed {
         std::int32_t first = 0, count = 0;
+        std::int32_t moved_up = 0;  // by how much later ones did
     };
-    /// Takes the edges of a body out; later ones move up. Cost: O(edges).
+    /// Takes the edges of a body out. Those of a segment are left to the next one that comes; after those of
+    /// a chain, later ones move up. Cost: O(what is near), of a chain O(edges).
     /// @return which they were; none if the body has no edges.
     Removed remove(BodyId id);
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.bodies, self.edges, self.boxes, self.is_joined);
+        archive(self.bodies, self.edges, self.boxes, self.movers, self.standing, self.segments);
+        archive(self.changed, self.touched, self.numbers_, self.free_, self.free_with_edge_);
     }
 
-    std::size_t bytes() const {
-        return bodies.capacity() * sizeof(EdgeBody) + edges.capacity() * sizeof(Edge) +
-               boxes.capacity() * sizeof(EdgeBox);
-    }
+    std::size_t bytes() const;
 
   private:
     static constexpr std::int32_t kInABox = 8;  // edges, or boxes of the level below
@@ -124,6 +155,9 @@ struct EdgeStore {
         return count;
     }
     void append_boxes(EdgeBody& body);
+    std::int32_t number_of(BodyId id) const;
+    std::int32_t take_number(BodyId id, bool is_segment);
+    void touch_around(std::int32_t number);
 
     /// Looks into boxes [begin, end) of a level.
     template <class Fn>
@@ -144,6 +178,10 @@ struct EdgeStore {
             for (std::int32_t n = from; n < to; ++n) fn(body.first + n);
         }
     }
+
+    std::vector<std::int32_t> numbers_;  // by index of the body's handle; below zero: it has no edges
+    // Numbers that no body has, and of these, which have kept the edge of a segment.
+    std::vector<std::int32_t> free_, free_with_edge_;
 };
 
 }  // namespace carom

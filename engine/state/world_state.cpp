@@ -74,7 +74,7 @@ template <class Real>
 void WorldState<Real>::set_shape(std::size_t row, const Body& body, BodyId id) {
     const std::size_t rows = bodies.rows();
     if (!has_area(body.shape)) {
-        edges.append(id, body.shape);
+        edges.append(id, body.shape, body.type != BodyType::static_body);
         bodies.radius.set_any(row, rows, Real(1));
         if (!bodies.has_shapes) return;
         bodies.shape[row] = -1;
@@ -151,7 +151,8 @@ BodyId WorldState<Real>::append(const Body& body) {
 
 template <class Real>
 EdgeStore::Removed WorldState<Real>::remove(std::size_t row) {
-    const EdgeStore::Removed gone = edges.remove(bodies.id[row]);
+    const EdgeStore::Removed gone =
+        bodies.flags_of(row) & kEdges ? edges.remove(bodies.id[row]) : EdgeStore::Removed{};
     if (bodies.has_shapes && bodies.shape[row] >= 0) shapes.remove(bodies.shape[row]);
     if (!joints.empty()) joints.remove_of(bodies.id[row]);
     if (bodies.flags_of(row) & kSensor) std::erase(sensing.sensors, bodies.id[row]);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "broadphase/edge_candidates.hpp"
 #include "math/rotation.hpp"
@@ -129,16 +130,20 @@ class AllAwake {
 template <class Real>
 class JoinedForNow {
   public:
-    explicit JoinedForNow(WorldState<Real>& world) : edges_(world.edges), is_for_now_(join_segments(world)) {}
+    explicit JoinedForNow(WorldState<Real>& world) : edges_(world.edges) {
+        if (!edges_.has_changes()) return;
+        before_ = edges_;
+        join_segments(world);
+    }
     ~JoinedForNow() {
-        if (is_for_now_) edges_.part();
+        if (before_) std::swap(edges_, *before_);
     }
     JoinedForNow(const JoinedForNow&) = delete;
     JoinedForNow& operator=(const JoinedForNow&) = delete;
 
   private:
     EdgeStore& edges_;
-    bool is_for_now_;
+    std::optional<EdgeStore> before_;
 };
 
 }  // namespace

@@ -258,7 +258,7 @@ void BasicWorld<Real>::set_position(BodyId body, Vec2 position) {
     row = implementation_->row_of(body, "World::set_position");
     const auto move_to = [&](Real x, Real y) {
         implementation_->sim().note_place_before(row);
-        if ((b.flags_of(row) & kEdges) != 0) implementation_->sim().world.edges.part();
+        if ((b.flags_of(row) & kEdges) != 0) implementation_->world().edges.note_change(body);
         implementation_->change_row(row, [&] { b.position_x[row] = x, b.position_y[row] = y; });
         implementation_->sim().note_place(row);
     };
@@ -314,6 +314,7 @@ void BasicWorld<Real>::set_filter(BodyId body, const Filter& filter) {
     row = implementation_->wake_around(row);
     Bodies<Real>& b = implementation_->bodies();
     b.set_group(row, filter.group), b.set_filter(row, filter.category, filter.mask);
+    if ((b.flags_of(row) & kEdges) != 0) implementation_->world().edges.note_change(body);
     // Pairs are found anew, and contacts that stay keep their impulses. To follow the row as one that is
     // elsewhere (decision 0031) would cost less and lose those of all its contacts.
     implementation_->sim().forget_derived_state();

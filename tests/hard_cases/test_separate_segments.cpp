@@ -25,6 +25,10 @@ struct Floor {
     bool is_chain = false;
 };
 
+/// Whether filters treat all segments alike, or neighbours in different ways; from the start on or after a
+/// step.
+enum class Filters { alike, apart, alike_later, apart_later };
+
 enum class Slider { smooth_disc, rolling_disc, smooth_box };
 
 void add_floor(Scene& scene, const Floor& floor, const Material& material) {
@@ -57,12 +61,14 @@ void add_floor(Scene& scene, const Floor& floor, const Material& material) {
 /// What is left of the kinetic energy and that of height behind 27 segments, in shares of the first kinetic
 /// energy.
 template <class Real>
-double energy_left(Slider slider, const Floor& floor) {
+double energy_left(Slider slider, const Floor& floor, Filters filters = Filters::alike) {
     Scene scene;
     scene.accuracy.solver = Solver::soft;
     scene.gravity = {0, -kGravity};
     const Material material{.friction = slider == Slider::rolling_disc ? 0.5 : 0};
     add_floor(scene, floor, material);
+    const bool begins_alike = filters == Filters::alike || filters == Filters::apart_later;
+    for (std::size_t i = 0; i < scene.bodies.size() && !begins_alike; i += 2) scene.bodies[i].category = 2;
     const double start = 1.3;  // m, along the floor
     const double angle = floor.bend, sine = std::sin(angle), cosine = std::cos(angle);
     const Vec2 foot{1 + (start - 1) * cosine, (start - 1) * sine};
@@ -76,6 +82,14 @@ double energy_left(Slider slider, const Floor& floor) {
     if (slider == Slider::rolling_disc) body.angular_velocity = -kSpeed / kSize;
     const BodyId id = scene.add(body);
     BasicWorld<Real> world(scene, {.threads = 1});
+    if (filters == Filters::alike_later || filters == Filters::apart_later) {
+        world.step(kStep);
+        for (std::uint32_t i = 0; i < id.index; ++i)
+            world.set_filter({i, 0},
+                             {.category = static_cast<std::uint16_t>(begins_alike && i % 2 == 0 ? 2 : 1)});
+        world.set_position(id, body.position), world.set_velocity(id, body.velocity);
+        world.set_angular_velocity(id, body.angular_velocity);
+    }
     const double spin_share = slider == Slider::rolling_disc ? 0.5 * kSize * kSize : 0;
     const auto energy = [&] {
         const BodyState s = world.state(id);
@@ -144,5 +158,15 @@ TEST_SUITE("hard cases/separate segments") {
         world.remove(left);
         for (int i = 0; i < 10; ++i) world.step(kStep);
         CHECK(world.state(disc).position.y == doctest::Approx(kSize).epsilon(1e-3));
+    }
+    TEST_CASE_TEMPLATE("segments that come to be filtered alike are joined, others are parted", Real, float,
+                       double) {
+        const Floor floor{.bend = -0.01, .off = 1e-7};
+        const double joined = energy_left<Real>(Slider::smooth_disc, floor),
+                     parted = energy_left<Real>(Slider::smooth_disc, floor, Filters::apart);
+        CHECK(parted < 0.97);
+        CHECK(joined > 0.99);
+        CHECK(energy_left<Real>(Slider::smooth_disc, floor, Filters::alike_later) == joined);
+        CHECK(energy_left<Real>(Slider::smooth_disc, floor, Filters::apart_later) == parted);
     }
 }

@@ -38,6 +38,7 @@ LAYER_OF_FILE = {  # patterns of paths without suffix: files that differ from th
     r"version": 0,
     r"step/stage(_times)?": 1,
     r"state/edges": 1,
+    r"state/edge_index": 1,
     r"kernels/(\w+/)?(\w+_)?arguments": 2,
     r"scene/mass": 2,
     r"constraints/contact_law": 2,

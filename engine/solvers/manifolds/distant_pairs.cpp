@@ -64,7 +64,9 @@ void DistantPairs<Real>::describe_rows(const WorldState<Real>& world, double dt,
                         : Real(0);
         motion[3] = static_cast<Real>(bodies.restitution[row]);
     };
-    executor.for_each_chunk(rows, kRowsPerTask, kNanosecondsToDescribe,
+    // What stands or sleeps comes nowhere.
+    const std::size_t changed_rows = frame_.size() == rows ? poses.rows_looked_at() : rows;
+    executor.for_each_chunk(changed_rows, kRowsPerTask, kNanosecondsToDescribe,
                             [&](std::size_t, std::size_t first, std::size_t last) {
                                 for (std::size_t row = first; row < last; ++row) describe(row);
                             });

@@ -38,14 +38,17 @@ void PoseWatch<Real>::look(const WorldState<Real>& world, double dt, const Conta
     moved_.resize(room), path_.resize(rows);
     awake_ = bodies.count;
     if (forgets) std::fill(thinnest_.begin(), thinnest_.end(), Real(0));
+    if (forgets || begins_paths_) looks_at_others_ = kLooksAtOthers;
+    rows_looked_at_ = looks_at_others_ > 0 ? rows : bodies.moving();
+    if (looks_at_others_ > 0) --looks_at_others_;
     const WatchPoses<Real> k = arguments(bodies, dt, near);
-    executor.for_each_chunk(rows, kRowsPerTask, kNanosecondsToLook,
+    executor.for_each_chunk(rows_looked_at_, kRowsPerTask, kNanosecondsToLook,
                             [&](std::size_t, std::size_t first, std::size_t last) {
                                 for (std::size_t row = first; row < last; row += kAnglesOfBlock) {
                                     const std::size_t end = std::min(last, row + kAnglesOfBlock);
                                     if (kernels.watch_poses(k, row, padded(end)))
                                         turn(bodies, kernels, row, end);
-                                    look_at_immovable(bodies, row, end);
+                                    look_at_immovable(bodies, row, std::min(rows, padded(end)));
                                 }
                                 follow_paths(first, last);
                             });

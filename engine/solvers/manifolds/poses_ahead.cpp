@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace carom {
 namespace {
@@ -63,11 +64,17 @@ void PosesAhead<Real>::look(const WorldState<Real>& world, double dt, const Pose
                             std::optional<std::span<const std::int32_t>> asked, const Executor& executor) {
     some_are_smooth_ = may_be_smooth(world, pieces);
     items_ = 0;
-    if (!some_are_smooth_ && !some_are_round_) return;
     const std::size_t rows = world.bodies.rows();
+    const Layout written = std::exchange(written_, {});
+    if (!some_are_smooth_ && !some_are_round_) return;
     items_ = rows + pieces.count();
+    written_ = {rows, items_, is_used(Lead::half), is_used(Lead::whole)};
     pose.resize(12 * items_), come.resize(12 * items_), shape.resize(3 * items_);
-    executor.for_each_chunk(asked ? asked->size() : rows, kRowsPerTask, kNanosecondsToLook,
+    // What stands or sleeps is where it was.
+    const bool others_stay = written == written_ && now.rows_looked_at() < rows;
+    const std::size_t all = others_stay ? now.rows_looked_at() : rows;
+    if (asked && !others_stay) written_ = {};
+    executor.for_each_chunk(asked ? asked->size() : all, kRowsPerTask, kNanosecondsToLook,
                             [&](std::size_t, std::size_t first, std::size_t last) {
                                 const auto h = static_cast<Real>(dt);
                                 if (!asked) return look_at(world.bodies, h, now, first, last);

@@ -92,6 +92,12 @@ class PosesAhead {
     std::vector<std::uint8_t> is_round_;  // by shape
     bool some_are_round_ = false, some_are_smooth_ = false;
     std::size_t items_ = 0;
+    struct Layout {
+        std::size_t rows = 0, items = 0;
+        bool has_middle = false, has_end = false;
+        friend bool operator==(const Layout&, const Layout&) = default;
+    };
+    Layout written_;  // of the columns, as they are
     std::vector<double> on_surfaces_;
 };
 

@@ -124,14 +124,15 @@ void SensorFinder<Real>::look_at_edges(std::size_t sensor) {
         });
         return any;
     };
-    for (const EdgeBody& edges : world_.edges.bodies) {
+    const auto look_at_body = [&](std::int32_t body) {
+        const EdgeBody& edges = world_.edges.bodies[static_cast<std::size_t>(body)];
         const std::size_t row = world_.handles.row_of_slot(edges.id.index);
-        if ((bodies.flags_of(row) & kDisabled) || (!moves(sensor) && !moves(row))) continue;
+        if ((bodies.flags_of(row) & kDisabled) || (!moves(sensor) && !moves(row))) return;
         const EdgeFrame frame = frame_of(world_, edges, row);
         const Vec2 at = frame.position;
         const double near = edges.reach + extent;
-        if (length_squared(at - place) >= near * near) continue;
-        if (world_.has_filters() && !world_.may_collide(sensor, row)) continue;
+        if (length_squared(at - place) >= near * near) return;
+        if (world_.has_filters() && !world_.may_collide(sensor, row)) return;
         const Rotation turn = rotation_by(frame.angle);
         bool is_inside = false;
         const auto look_at = [&](std::int32_t number) {
@@ -149,7 +150,9 @@ void SensorFinder<Real>::look_at_edges(std::size_t sensor) {
         };
         world_.edges.for_each_near(edges, rotate_back(turn, place - at), kWiderCircle * extent, look_at);
         if (is_inside) inside.push_back({bodies.id[sensor], edges.id});
-    }
+    };
+    std::vector<std::int32_t> near_bodies;
+    world_.edges.for_each_body_near(place, kWiderCircle * extent, near_bodies, look_at_body);
 }
 
 /// Sorts out what is news: bodies that came, those that left, those that passed.

@@ -7,7 +7,7 @@ namespace carom {
 template <class Real>
 void SoftSimulation<Real>::forget_derived_state() {
     this->candidates.invalidate();
-    soft.forget_rows(), soft.paths.forget_cut();
+    soft.forget_rows(), soft.paths.forget_cut(), edge_candidates.forget_rows();
 }
 
 template <class Real>

@@ -13,7 +13,7 @@ template <class Real>
 void sort_rows(SoftSimulation<Real>& sim) {
     sort_rows_by_place(sim, [&](const std::int32_t* order) {
         sim.soft.graph.trail.follow_sorted(order, sim.world.bodies.count);
-        sim.soft.forget_rows(), sim.soft.paths.turns.forget();
+        sim.soft.forget_rows(), sim.soft.paths.turns.forget(), sim.edge_candidates.forget_rows();
     });
 }
 
@@ -35,10 +35,10 @@ bool moves_few_contacts(const SoftSimulation<Real>& sim) {
 
 template <class Real>
 void update_candidates(SoftSimulation<Real>& sim) {
-    if (!sim.world.edges.is_joined && join_segments(sim.world)) sim.candidates.invalidate_pairs();
+    if (join_segments(sim.world)) sim.candidates.invalidate_pairs();
     sim.edge_candidates.place(sim.world, sim.flight_dt);
     // Void pairs may be of edges that are gone.
-    if (sim.candidates.is_valid() && sim.edge_candidates.has_left_margin() &&
+    if (sim.candidates.is_valid() && sim.edge_candidates.has_left_margin(sim.world) &&
         (sim.world.bodies.has_shapes || sim.world.bodies.asleep > 0 || !sim.edge_candidates.may_add() ||
          !moves_few_contacts(sim)))
         sim.candidates.invalidate_pairs();

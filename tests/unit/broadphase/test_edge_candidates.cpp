@@ -92,10 +92,10 @@ TEST_SUITE("broadphase/edge_candidates") {
     TEST_CASE("the margin of a moving edge is used up by its motion, and not before") {
         Place<double> place = random_place<double>(4, 0.5);
         place.find(1.0 / 60);
-        CHECK_FALSE(place.edges.has_left_margin());
+        CHECK_FALSE(place.edges.has_left_margin(place.world));
         Bodies<double>& bodies = place.world.bodies;
         int steps = 0;
-        for (; steps < 1000 && !place.edges.has_left_margin(); ++steps) {
+        for (; steps < 1000 && !place.edges.has_left_margin(place.world); ++steps) {
             for (std::size_t row = 0; row < 6; ++row) {
                 bodies.position_x[row] += bodies.velocity_x[row] / 60;
                 bodies.position_y[row] += bodies.velocity_y[row] / 60;

@@ -78,7 +78,7 @@ TEST_SUITE("narrowphase/disc_edge") {
             const double before = angle(random), after = angle(random), at = angle(random);
             const Vec2 from{std::cos(before), std::sin(before)}, to{std::cos(after), std::sin(after)};
             EdgeStore edges;
-            edges.append({}, corner_at_origin(from, to));
+            edges.append({0, 0}, corner_at_origin(from, to));
             const Vec2 p{0.1 * std::cos(at), 0.1 * std::sin(at)};
             const bool beside_first = dot(p, from) > 0, beside_second = dot(p, to) > 0;
             CAPTURE(i);
@@ -89,12 +89,12 @@ TEST_SUITE("narrowphase/disc_edge") {
 
     TEST_CASE("the ends of a chain that is no loop are touched, those of a loop are joints") {
         EdgeStore edges;
-        edges.append({}, Chain{.points = {{0, 0}, {1, 0}, {1, 1}}});
+        edges.append({0, 0}, Chain{.points = {{0, 0}, {1, 0}, {1, 1}}});
         CHECK(is_touched_here({-0.1, 0}, 0, edges, edges[0]));
         CHECK(is_touched_here({1, 1.1}, 1, edges, edges[1]));
         CHECK_FALSE(is_touched_here({1.1, 0}, 0, edges, edges[1]));
         EdgeStore loop;
-        loop.append({}, Chain{.points = {{0, 0}, {1, 0}, {1, 1}}, .loop = true});
+        loop.append({0, 0}, Chain{.points = {{0, 0}, {1, 0}, {1, 1}}, .loop = true});
         REQUIRE(loop.edges.size() == 3);
         CHECK(loop[0].previous == 2);
         CHECK(loop[2].next == 0);
@@ -112,10 +112,10 @@ TEST_SUITE("narrowphase/disc_edge") {
         CHECK(gone.count == 2);
         REQUIRE(edges.edges.size() == 4);
         CHECK(edges.body_of(1).id == BodyId{2, 0});
-        CHECK(edges.bodies[1].first == 1);
+        CHECK(edges.body_of(1).first == 1);
         CHECK(edges[1].previous == 3);
         CHECK(edges[3].next == 1);
-        CHECK(edges.bodies[1].reach == 5);
+        CHECK(edges.body_of(1).reach == 5);
         CHECK(edges.remove({7, 0}).count == 0);
     }
 }

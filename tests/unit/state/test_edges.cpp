@@ -33,7 +33,7 @@ Asked ask(const EdgeStore& store, std::mt19937& random, double reach) {
     std::uniform_real_distribution<double> off(-2, 2);
     Asked asked;
     for (const EdgeBody& body : store.bodies)
-        for (int i = 0; i < 200; ++i) {
+        for (int i = 0; i < 200 && body.count > 0; ++i) {
             const auto some = static_cast<std::int32_t>(random() % static_cast<unsigned>(body.count));
             const Vec2 place = store[body.first + some].a + Vec2{off(random), off(random)};
             std::vector<int> seen(static_cast<std::size_t>(body.count));

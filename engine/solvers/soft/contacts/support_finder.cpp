@@ -106,9 +106,11 @@ template <class Real>
 void SupportFinder<Real>::lead_discs(const Search& search, const Real* joined, Books& books) {
     const WorldState<Real>& world = search.world;
     const EdgeCandidates<Real>& edges = search.edges;
-    const auto may_lead = [&](const EdgeBody& body) { return is_curve_at_rest(search, body.first); };
-    const std::vector<EdgeBody>& bodies = world.edges.bodies;
-    if (std::none_of(bodies.begin(), bodies.end(), may_lead)) return;
+    const auto may_lead = [&](std::int32_t mover) {
+        return is_curve_at_rest(search, world.edges.bodies[static_cast<std::size_t>(mover)].first);
+    };
+    const std::vector<std::int32_t>& movers = world.edges.movers;
+    if (!edges.have_standing_tracks() && std::none_of(movers.begin(), movers.end(), may_lead)) return;
     velocity_.resize(hold_.size());
     const ContactRows<Real>& candidates = search.step.graph.supports;
     candidates.for_each([&](std::size_t i) {

@@ -127,18 +127,16 @@ void ShapeTunnelling<Real>::list_swift(const Inputs& in, const Manifolds<Real>& 
         const std::int32_t contact = live[static_cast<std::size_t>(n)];
         mark(static_cast<std::size_t>(manifolds.list_of(contact).a[Manifolds<Real>::place_of(contact)]));
     });
-    edge_ways_.clear();
-    for (const EdgeBody& body : in.world.edges.bodies) {
-        const EdgePose& pose = in.flight.edges.pose_of(in.world.edges[body.first]);
+    const auto way_of_edge = [&](const Edge& edge) {
+        const EdgePose& pose = in.flight.edges.pose_of(edge);
         const Vec2 way = pose.end_position - pose.position;
-        edge_ways_.push_back(static_cast<Real>(std::fabs(way.x) + std::fabs(way.y) +
-                                               std::fabs(pose.end_angle - pose.angle) * body.reach));
-    }
+        return static_cast<Real>(std::fabs(way.x) + std::fabs(way.y) +
+                                 std::fabs(pose.end_angle - pose.angle) *
+                                     in.world.edges.bodies[static_cast<std::size_t>(edge.body)].reach);
+    };
     for (const EdgePair& pair : in.flight.edges.pairs()) {
         const auto row = static_cast<std::size_t>(pair.row);
-        if (comes_far(row, edge_ways_[static_cast<std::size_t>(in.world.edges[pair.edge].body)]) ||
-            begins_in_core(in, pair))
-            mark(row);
+        if (comes_far(row, way_of_edge(in.world.edges[pair.edge])) || begins_in_core(in, pair)) mark(row);
     }
     for (const std::int32_t row : swift_) is_swift_[static_cast<std::size_t>(row)] = 0;
     std::sort(swift_.begin(), swift_.end());
@@ -219,13 +217,16 @@ bool ShapeTunnelling<Real>::sinks_in(const Core& core, const Edge& edge) {
 
 template <class Real>
 void ShapeTunnelling<Real>::look_at_edges(const Inputs& in, const Way& way, const Core& core, bool is_last,
-                                          Passed& first) const {
+                                          Passed& first) {
     constexpr double kWiderCircle = 1 + 1e-9;  // against rounding
-    for (const EdgeBody& body : in.world.edges.bodies) {
+    // An impact is found a little before the core is there.
+    const double reach =
+        (1 + 2 * kMeetingTarget) * core.radius + 0.5 * std::sqrt(length_squared(core.to - core.from));
+    const auto look_at = [&](std::int32_t edges) {
+        const EdgeBody& body = in.world.edges.bodies[static_cast<std::size_t>(edges)];
         const EdgePose& pose = in.flight.edges.pose_of(in.world.edges[body.first]);
-        if (!pose.takes_part || (in.world.has_filters() && !in.world.may_collide(way.row, pose.row)))
-            continue;
-        if (is_last && (in.world.bodies.flags_of(pose.row) & kKinematic) != 0) continue;
+        if (!pose.takes_part || (in.world.has_filters() && !in.world.may_collide(way.row, pose.row))) return;
+        if (is_last && (in.world.bodies.flags_of(pose.row) & kKinematic) != 0) return;
         const Core seen = core.seen_from(pose);
         const MovingConvex moving = moving_disc(seen.from, seen.to, seen.radius);
         const double half = 0.5 * std::sqrt(length_squared(moving.velocity));
@@ -246,7 +247,9 @@ void ShapeTunnelling<Real>::look_at_edges(const Inputs& in, const Way& way, cons
                 first = {time, pose, seen.from + time * moving.velocity, side * Vec2{along.y, -along.x},
                          still.shape};
             });
-    }
+    };
+    in.world.edges.for_each_body_near(0.5 * (core.from + core.to), kWiderCircle * reach, near_bodies_,
+                                      look_at);
 }
 
 template <class Real>

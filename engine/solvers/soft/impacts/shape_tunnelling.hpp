@@ -29,7 +29,7 @@ class ShapeTunnelling {
 
     std::size_t bytes() const {
         return swift_.capacity() * sizeof(std::int32_t) + chosen_.bytes() + is_swift_.capacity() +
-               near_.bytes() + edge_ways_.capacity() * sizeof(Real);
+               near_.bytes() + near_bodies_.capacity() * sizeof(std::int32_t);
     }
 
   private:
@@ -64,7 +64,7 @@ class ShapeTunnelling {
     void look_at(const Inputs& in, std::size_t row);
     Passed first_passed(const Inputs& in, const Way& way, bool is_last);
     static bool sinks_in(const Core& core, const Edge& edge);
-    void look_at_edges(const Inputs& in, const Way& way, const Core& core, bool is_last, Passed& first) const;
+    void look_at_edges(const Inputs& in, const Way& way, const Core& core, bool is_last, Passed& first);
     void look_at_body(const Inputs& in, const Way& way, const Core& core, std::size_t other,
                       Passed& first) const;
     void put_back(const Inputs& in, Way& way, const Passed& passed, bool to_start);
@@ -73,8 +73,8 @@ class ShapeTunnelling {
     std::vector<std::int32_t> swift_;     // rows that may have passed something
     ChunkedList chosen_;                  // of rows, then of contacts, before they are marked
     std::vector<std::uint8_t> is_swift_;  // by row; all zero but within undo()
-    std::vector<Real> edge_ways_;         // m, of what edges belong to, in the step
     Column<std::int32_t> near_;
+    std::vector<std::int32_t> near_bodies_;  // with edges
 };
 
 extern template class ShapeTunnelling<float>;

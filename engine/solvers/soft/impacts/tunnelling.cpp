@@ -48,14 +48,18 @@ void Tunnelling<Real>::note_crossings(const WorldState<Real>& world, const StepF
                                       std::int32_t disc) {
     const auto row = static_cast<std::size_t>(disc);
     const Vec2 x{world.bodies.position_x[row], world.bodies.position_y[row]};
-    for (const EdgeBody& body : world.edges.bodies) {
-        const EdgePose& pose = flight.edges.pose_of(world.edges[body.first]);
-        const Vec2 from = rotate_back(pose.turn, flight.start_of(row) - pose.position);
-        const Vec2 to = rotate_back(pose.end_turn, x - pose.end_position);
-        const double half = 0.5 * std::sqrt(length_squared(to - from));
-        world.edges.for_each_near(body, 0.5 * (from + to), kWiderCircle * half,
-                                  [&](std::int32_t edge) { note_crossing(world, flight, disc, edge); });
-    }
+    const Vec2 start = flight.start_of(row);
+    const double half_way = 0.5 * std::sqrt(length_squared(x - start));
+    world.edges.for_each_body_near(
+        0.5 * (start + x), kWiderCircle * half_way, near_bodies_, [&](std::int32_t number) {
+            const EdgeBody& body = world.edges.bodies[static_cast<std::size_t>(number)];
+            const EdgePose& pose = flight.edges.pose_of(world.edges[body.first]);
+            const Vec2 from = rotate_back(pose.turn, start - pose.position);
+            const Vec2 to = rotate_back(pose.end_turn, x - pose.end_position);
+            const double half = 0.5 * std::sqrt(length_squared(to - from));
+            world.edges.for_each_near(body, 0.5 * (from + to), kWiderCircle * half,
+                                      [&](std::int32_t edge) { note_crossing(world, flight, disc, edge); });
+        });
 }
 
 /// Lists which disc crossed which edge, the first edge first.

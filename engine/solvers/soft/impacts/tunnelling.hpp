@@ -22,11 +22,15 @@ class Tunnelling {
   public:
     /// Puts discs that have got past an edge in this step back to it.
     /// @param supports  all that the contact graph has
-    /// Cost: O(bodies + supports); for each disc that was shot out of its margin O(edges)
+    /// Cost: O(bodies + supports); for each disc that was shot out of its margin O(bodies with edges that
+    /// move) and what is near its way
     void undo(WorldState<Real>& world, const StepFlight<Real>& flight, const ContactRows<Real>& supports,
               const Executor& executor);
 
-    std::size_t bytes() const { return crossings_.capacity() * sizeof(Crossing) + strays_.bytes(); }
+    std::size_t bytes() const {
+        return crossings_.capacity() * sizeof(Crossing) + strays_.bytes() +
+               near_bodies_.capacity() * sizeof(std::int32_t);
+    }
 
   private:
     /// A disc whose centre crossed an edge.
@@ -47,6 +51,7 @@ class Tunnelling {
     std::vector<Crossing> crossings_;  // of this step
     bool is_last_ = false;             // round of undo()
     ChunkedList strays_;               // rows that have left their margins in this step
+    std::vector<std::int32_t> near_bodies_;
 };
 
 extern template class Tunnelling<float>;
