@@ -294,16 +294,16 @@ struct Meeting {
         if (shares)
             share_points(bodies, records, contact, time * (b.start - a.start), n, t, lever_a, lever_b);
         find_velocities();
-        if (!shares) return true;
         const std::array<bool, 2> still_meets{meets[0] && v[0] < 0, meets[1] && v[1] < 0};
         if (!still_meets[0] && !still_meets[1]) return false;
         meets = still_meets;
         return true;
     }
-    /// If the bodies part already about shared points: the paths know those of each alone, and would take the
-    /// approach that they see without restitution.
+    /// If the bodies part already, about shared points or since what makes them meet is not in free flight:
+    /// the paths know the points of each alone at the start, and would take the approach that they see
+    /// without restitution.
     void go_to_meeting(double then) {
-        if (!go_to(then, both_move()) && !go_to(0, true)) go_to(0, false);
+        if (!go_to(then, both_move()) && !(both_move() && go_to(0, true))) go_to(0, false);
     }
 
     PointImpulses solve() const {
