@@ -76,6 +76,19 @@ Scene whirling_chain(int links) {
     return scene;
 }
 
+/// Steps a world of a chain that whirls for ten seconds. @param fn  fn(cause) is called after each step
+/// @return J, kinetic energy at the start
+template <class Real, class Fn>
+double follow_chain(int links, const Fn& fn) {
+    BasicWorld<Real> world(whirling_chain(links), {.solver = Solver::soft});
+    const double start = world.ledger().energy.kinetic;
+    for (int i = 0; i < 600; ++i) {
+        world.step(kStep);
+        fn(world.ledger().energy_by_cause);
+    }
+    return start;
+}
+
 }  // namespace
 
 TEST_SUITE("hard cases/books") {
@@ -120,14 +133,10 @@ TEST_SUITE("hard cases/books") {
     // not off that of gravity: joints seemed to give what displacement took.
     TEST_CASE_TEMPLATE("where what joints hold is struck, displacement has no work but that of overlaps",
                        Real, float, double) {
-        BasicWorld<Real> world(whirling_chain(2), {.solver = Solver::soft});
-        const double start = world.ledger().energy.kinetic;
         double least = 0, most = 0;
-        for (int i = 0; i < 600; ++i) {
-            world.step(kStep);
-            const double correction = world.ledger().energy_by_cause.correction;
-            least = std::fmin(least, correction), most = std::fmax(most, correction);
-        }
+        const double start = follow_chain<Real>(2, [&](const EnergyByCause& cause) {
+            least = std::fmin(least, cause.correction), most = std::fmax(most, cause.correction);
+        });
         report("displacement works ", least / start, " to ", most / start, " of the energy");
         CHECK(least > -1e-3 * start);
         CHECK(most < 1e-3 * start);
@@ -137,14 +146,10 @@ TEST_SUITE("hard cases/books") {
     // and changed those that have none of it: the difference was in no book, and was energy from nothing.
     TEST_CASE_TEMPLATE("where something of a long chain is struck, all of the energy has a cause", Real,
                        float, double) {
-        BasicWorld<Real> world(whirling_chain(24), {.solver = Solver::soft});
-        const double start = world.ledger().energy.kinetic;
         double largest = 0, before = 0;
-        for (int i = 0; i < 600; ++i) {
-            world.step(kStep);
-            const double now = world.ledger().energy_by_cause.unexplained;
-            largest = std::fmax(largest, std::abs(now - before)), before = now;
-        }
+        const double start = follow_chain<Real>(24, [&](const EnergyByCause& cause) {
+            largest = std::fmax(largest, std::abs(cause.unexplained - before)), before = cause.unexplained;
+        });
         report("a step leaves at most ", largest / start, " of the energy without a cause");
         CHECK(largest < 1e-5 * start);
     }

@@ -180,6 +180,49 @@ TEST_SUITE("constraints/contact graph") {
         all_are_kept(600);  // of the removed body, at most
     }
 
+    TEST_CASE("contacts that came with new margins keep their impulses when others come") {
+        Graph of(crowd(30, 30, 0));
+        of.graph.keeps_rolling = true;
+        of.bodies.velocity_x[0] = of.bodies.velocity_y[0] = 6;  // m/s, through all others
+        of.renew();
+        std::int64_t renewed = of.candidates.rebuild_count();
+        std::map<PairOfRows, float> given;
+        std::size_t late = 0, kept = 0;
+        for (int step = 0; step < 200; ++step) {
+            of.bodies.position_x[0] += 0.1f, of.bodies.position_y[0] += 0.1f;
+            of.candidates.move_places(of.bodies, 1.0 / 60, of.executor);
+            const float way = std::hypot(of.bodies.position_x[0] + 0.1f - of.candidates.built_x()[0],
+                                         of.bodies.position_y[0] + 0.1f - of.candidates.built_y()[0]);
+            std::vector<std::int32_t> displaced;
+            if (way >= of.candidates.reach()[0] - of.bodies.radius[0]) displaced.push_back(0);
+            of.candidates.update(of.bodies, flight_clock_at(1.0 / 60, 0), {}, displaced, 9,
+                                 select_kernels("auto").of<float>(), of.executor);
+            if (of.candidates.rebuild_count() != renewed) {
+                renewed = of.candidates.rebuild_count(), given.clear();
+                of.graph.renew(of.candidates, EdgeCandidates<float>{}, of.bodies, nullptr, of.executor);
+                continue;
+            }
+            late += of.candidates.new_pairs().size();
+            of.graph.add(of.candidates, EdgeCandidates<float>{}, of.bodies, nullptr);
+            ContactRows<float>& pairs = of.graph.pairs;
+            pairs.for_each([&](std::size_t i) {
+                const PairOfRows pair = std::minmax(pairs.a[i], pairs.b[i]);
+                if (const auto before = given.find(pair); before != given.end()) {
+                    REQUIRE(pairs.normal_impulse[i] == before->second);
+                    REQUIRE(pairs.friction_impulse[i] == 2 * before->second);
+                    REQUIRE(pairs.rolling_impulse[i] == 3 * before->second);
+                    ++kept;
+                }
+                const auto impulse = static_cast<float>(1 + given.size());
+                const float now = given.try_emplace(pair, impulse).first->second;
+                pairs.normal_impulse[i] = now, pairs.friction_impulse[i] = 2 * now;
+                pairs.rolling_impulse[i] = 3 * now;
+            });
+        }
+        CHECK(late > 10);
+        CHECK(kept > 1000);
+    }
+
     TEST_CASE("threads do not change the graph") {
         Graph one(crowd(150, 120, 5), 1), three(crowd(150, 120, 5), 3);
         one.renew(), three.renew();
