@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "narrowphase/disc_edge.hpp"
-#include "state/edge_tracks.hpp"
+#include "state/edges/edge_tracks.hpp"
 
 namespace carom {
 namespace {

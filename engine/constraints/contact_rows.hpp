@@ -8,7 +8,7 @@
 #include "constraints/partner.hpp"
 #include "kernels/contacts/contact_arguments.hpp"
 #include "state/columns/column.hpp"
-#include "state/edges.hpp"
+#include "state/edges/edges.hpp"
 
 namespace carom {
 

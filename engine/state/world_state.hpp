@@ -11,7 +11,7 @@
 
 #include "state/bodies.hpp"
 #include "state/books.hpp"
-#include "state/edges.hpp"
+#include "state/edges/edges.hpp"
 #include "state/handles.hpp"
 #include "state/joints.hpp"
 #include "state/sensing.hpp"

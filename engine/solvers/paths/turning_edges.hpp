@@ -11,7 +11,7 @@
 #include "solvers/substeps/body_records.hpp"
 #include "solvers/substeps/step_terms.hpp"
 #include "state/bodies.hpp"
-#include "state/edges.hpp"
+#include "state/edges/edges.hpp"
 
 namespace carom {
 

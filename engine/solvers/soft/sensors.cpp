@@ -5,7 +5,7 @@
 
 #include "shapes/convex_geometry.hpp"
 #include "solvers/soft/stages.hpp"
-#include "state/edge_tracks.hpp"
+#include "state/edges/edge_tracks.hpp"
 
 namespace carom {
 namespace {

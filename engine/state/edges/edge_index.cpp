@@ -1,4 +1,4 @@
-#include "state/edge_index.hpp"
+#include "state/edges/edge_index.hpp"
 
 #include <cmath>
 

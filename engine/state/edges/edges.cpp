@@ -1,4 +1,4 @@
-#include "state/edges.hpp"
+#include "state/edges/edges.hpp"
 
 #include <algorithm>
 #include <cmath>

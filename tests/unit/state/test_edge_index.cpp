@@ -1,5 +1,5 @@
 // Boxes that come and go one by one, against a look at all of them.
-#include "state/edge_index.hpp"
+#include "state/edges/edge_index.hpp"
 
 #include <doctest/doctest.h>
 
@@ -10,7 +10,7 @@
 
 using namespace carom;
 
-TEST_SUITE("state/edge_index") {
+TEST_SUITE("state/edges/edge_index") {
     TEST_CASE(
         "all boxes that touch one are found, in order, whatever their sizes, while others come and go") {
         std::mt19937 random(11);

@@ -1,5 +1,5 @@
 // The tree of boxes over the edges of a body, against all edges one by one.
-#include "state/edges.hpp"
+#include "state/edges/edges.hpp"
 
 #include <doctest/doctest.h>
 
@@ -56,7 +56,7 @@ Asked ask(const EdgeStore& store, std::mt19937& random, double reach) {
 
 }  // namespace
 
-TEST_SUITE("state/edges") {
+TEST_SUITE("state/edges/edges") {
     TEST_CASE("all edges near a place are found, in their order, and few others") {
         std::mt19937 random(5);
         EdgeStore store;
