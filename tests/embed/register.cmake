@@ -17,15 +17,21 @@ set_tests_properties(${embed}.install PROPERTIES FIXTURES_SETUP installed)
 carom_add_embed_test(installed -DCMAKE_PREFIX_PATH=${embed_work}/prefix -DCMAKE_BUILD_TYPE=Release)
 set_tests_properties(${embed}.installed PROPERTIES FIXTURES_REQUIRED installed)
 
-# Also shows that the library builds without OpenMP, and with scalar kernels alone. It builds by clang, where there is
-# one, in half of gcc's time, and without debug information in four fifths (docs/decisions/0015-cold-test-run.md).
+# What is embedded is a copy of the sources with the effect in it that docs/add-an-effect.md adds, so that one build
+# shows both. Also shows that the library builds without OpenMP, and with scalar kernels alone. It builds by clang, where
+# there is one, in half of gcc's time, and without debug information in four fifths (docs/decisions/0015-cold-test-run.md).
 find_program(CAROM_CLANG clang++)
 if(NOT CAROM_CLANG)
     set(CAROM_CLANG ${CMAKE_CXX_COMPILER})
 endif()
-carom_add_embed_test(subdirectory -DCMAKE_CXX_COMPILER=${CAROM_CLANG} -DCAROM_FOLDER=${PROJECT_SOURCE_DIR}
+add_test(NAME ${embed}.apply_example
+    COMMAND ${CAROM_PYTHON} ${embed_folder}/apply_example.py ${PROJECT_SOURCE_DIR} ${embed_work}/effect)
+set_tests_properties(${embed}.apply_example PROPERTIES FIXTURES_SETUP effect_sources COST 70)
+carom_add_embed_test(subdirectory -DCMAKE_CXX_COMPILER=${CAROM_CLANG} -DCAROM_FOLDER=${embed_work}/effect -DEMBED_EFFECT=ON
                      -DCAROM_OPENMP=OFF -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCAROM_ISAS=scalar -DCAROM_PRECOMPILE_ENGINE=ON)
-set_tests_properties(${embed}.subdirectory PROPERTIES COST 60)
+set_tests_properties(${embed}.subdirectory PROPERTIES COST 60 FIXTURES_REQUIRED effect_sources FIXTURES_SETUP effect)
+add_test(NAME ${embed}.effect COMMAND ${embed_work}/subdirectory/effect)
+set_tests_properties(${embed}.effect PROPERTIES FIXTURES_REQUIRED "effect_sources;effect" COST 40)
 
 add_test(NAME ${embed}.extract_example
     COMMAND ${CAROM_PYTHON} ${embed_folder}/extract_example.py
