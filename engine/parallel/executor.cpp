@@ -92,20 +92,25 @@ void Executor::gather_team(TeamCall work) const {
 }
 
 /// On all threads, those of the team if there is one.
-/// @return s, that the caller's thread has waited for the others
+/// @return s, that the caller's thread has waited for the others: at the end, and at the beginning, where
+/// OpenMP lets none start before all have come back from the loop before
 double Executor::run_on_threads(int threads, const Team::Call& call) const {
     if (team_.threads() > 0) return team_.run(call);
-    double end = 0;
+    double waited = 0;
 #if defined(_OPENMP)
+    const double start = seconds_now();
+    double done = start;
 #pragma omp parallel num_threads(threads)
     {
-        call.invoke(call.function, static_cast<std::size_t>(omp_get_thread_num()),
+        const int thread = omp_get_thread_num();
+        const double begun = thread == 0 ? seconds_now() : 0;
+        call.invoke(call.function, static_cast<std::size_t>(thread),
                     static_cast<std::size_t>(omp_get_num_threads()));
-#pragma omp master
-        end = seconds_now();
+        if (thread == 0) waited = begun - start, done = seconds_now();
     }
+    waited += seconds_now() - done;
 #endif
-    return seconds_now() - end;
+    return waited;
 }
 
 void Executor::run(std::size_t chunks, Call call) const {
