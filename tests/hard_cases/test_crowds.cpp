@@ -142,6 +142,29 @@ TEST_SUITE("hard cases/crowds") {
         CHECK(world.quarantined().empty());
     }
 
+    TEST_CASE("a crowd that falls on itself is not pressed into each other, whatever bounces") {
+        for (const double restitution : {0.1, 0.3, 0.6, 0.8}) {
+            CAPTURE(restitution);
+            Scene scene = gas_scene({.count = 600,
+                                     .packing_fraction = 0.35,
+                                     .velocity_rms = 1,
+                                     .restitution = restitution,
+                                     .smallest_radius = 0.2,
+                                     .largest_radius = 0.5});
+            scene.gravity = {0, -10};
+            scene.walls->min.y -= 5;  // m, that the lowest discs fall; the highest fall 30 m
+            scene.walls->top = false;
+            World world(scene, {.threads = 1});
+            double overlap = 0;  // radii of the smaller one
+            for (int i = 0; i < 260; ++i) {
+                world.step(kStep);
+                overlap = std::max(overlap, world.overlaps().max);
+            }
+            report("restitution ", restitution, ": largest overlap ", overlap, " of the smaller radius");
+            CHECK(overlap < 0.1);
+        }
+    }
+
     TEST_CASE_TEMPLATE("B16: discs poured into a funnel jam and come apart again", Real, float, double) {
         // A column that falls is stopped from below, one disc after the other, several within a step.
         double deepest = 0, after = 0, lowest = 1e9;

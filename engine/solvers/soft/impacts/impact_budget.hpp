@@ -24,7 +24,10 @@ class ImpactBudget {
     /// Whether it has had so many that it may be in a crowd that collapses.
     bool may_collapse(std::int32_t row) { return tally_of(row).spent > kCollapsing; }
     /// Whether it has to wait for the sweeps of the next substep.
-    bool is_exhausted(std::int32_t row) { return tally_of(row).spent >= kBudget + kOverdraft; }
+    /// @param would_be_deep  whether it would be deep in what it hits by then
+    bool is_exhausted(std::int32_t row, bool would_be_deep) {
+        return tally_of(row).spent >= kBudget + (would_be_deep ? kOverdraftOfDeep : kOverdraft);
+    }
     /// Takes the cost of an impact. @param speed  m/s, along the normal
     /// @param joints  that answer it
     void spend(std::int32_t row, double restitution, double speed, std::size_t joints) {
@@ -42,6 +45,8 @@ class ImpactBudget {
     static constexpr float kCollapsing = 1;
     /// Spent beyond the budget, on impacts without restitution.
     static constexpr float kOverdraft = 8;
+    /// Likewise on those that would be deep: docs/decisions/0088-what-falls-on-heaps.md.
+    static constexpr float kOverdraftOfDeep = 64;
     /// The cost for each unit of 1 - e, but at most 1; and what every impact costs besides.
     static constexpr double kCostOfLoss = 10, kCostOfOne = 0.002;
     /// What an impact takes longer by each joint that answers it, in times of an impact of free bodies.

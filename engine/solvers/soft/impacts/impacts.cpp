@@ -382,11 +382,12 @@ bool Impacts<Real>::carry_out(Place place, double time, Books& books, double& gr
     const auto collide = [&](auto& side) {
         const double speed = -normal_velocity(a, side, n.x, n.y);
         if (!(speed > noise)) return false;
+        const bool would_be_deep = speed * (bodies_->h - time) > kDeepening * smaller_radius(place);
         bool has_enough = true, is_exhausted = false;
         std::size_t joints = 0;  // that answer the impact
         for_each_mover([&](std::int32_t row) {
             has_enough = has_enough && budget_.has_enough(row);
-            is_exhausted = is_exhausted || budget_.is_exhausted(row);
+            is_exhausted = is_exhausted || budget_.is_exhausted(row, would_be_deep);
             joints += held.joints_of(row);
         });
         if (is_exhausted) return make_contact(place, n, gap, time), false;
