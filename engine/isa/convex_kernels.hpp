@@ -13,6 +13,7 @@ struct PathKernels {
     Pass carry, warm_start, solve, sweep;
     Pass watch, watch_again, settle;  // of contacts beside the paths; watch_again has the floors of watch
     Pass sum_loads, scale_loads, retain_loads;
+    Pass find_fast;
 };
 
 /// The kernels of convex shapes of one instruction set in one precision. They are compiled in files of their
@@ -22,7 +23,8 @@ struct ConvexKernels {
     using Find = std::size_t (*)(const FindManifolds<Real>&, std::size_t first, std::size_t last);
     Find find_manifolds;      // of any convex shapes
     Find find_box_manifolds;  // of boxes, see is_box() in narrowphase/box_box.hpp
-    void (*turn_angles)(const double* angles, double* cosines, double* sines);  // of a block, in rad
+    void (*turn_angles)(const double* angles, double* cosines, double* sines);     // of a block, in rad
+    std::uint32_t (*question_gaps)(const QuestionGaps<Real>&, std::size_t first);  // of a block
     bool (*watch_poses)(const WatchPoses<Real>&, std::size_t first, std::size_t last);
     std::size_t (*find_approached)(const FindApproached<Real>&, std::size_t first, std::size_t last);
     std::size_t (*drop_parted)(const DropParted<Real>&);

@@ -4,8 +4,10 @@
 #include "kernels/broadphase/drop_parted.hpp"
 #include "kernels/manifolds/find_approached.hpp"
 #include "kernels/manifolds/find_manifolds.hpp"
+#include "kernels/manifolds/question_gaps.hpp"
 #include "kernels/manifolds/turn_angles.hpp"
 #include "kernels/manifolds/watch_poses.hpp"
+#include "kernels/paths/find_fast.hpp"
 #include "kernels/paths/find_thrown.hpp"
 #include "kernels/paths/path_loads.hpp"
 #include "kernels/paths/solve_paths.hpp"
@@ -22,6 +24,7 @@ constexpr ConvexKernels<Real> make_convex_kernels() {
     return {.find_manifolds = &find_manifolds<Real, Isa>,
             .find_box_manifolds = &find_box_manifolds<Real, Isa>,
             .turn_angles = &turn_angles<Isa>,
+            .question_gaps = &question_gaps<Real, Isa>,
             .watch_poses = &watch_poses<Real, Isa>,
             .find_approached = &find_approached<Real, Isa>,
             .drop_parted = &drop_parted<Real, Isa>,
@@ -29,7 +32,7 @@ constexpr ConvexKernels<Real> make_convex_kernels() {
             .paths = {&carry_paths<Real, Isa>, &warm_start_paths<Real, Isa>, &solve_paths<Real, Isa>,
                       &sweep_all_paths<Real, Isa>, &watch_paths<Real, Isa, true>,
                       &watch_paths<Real, Isa, false>, &settle_watched<Real>, &sum_path_loads<Real, Isa>,
-                      &scale_path_loads<Real, Isa>, &retain_path_loads<Real, Isa>}};
+                      &scale_path_loads<Real, Isa>, &retain_path_loads<Real, Isa>, &find_fast<Real, Isa>}};
 }
 
 /// The kernels of convex shapes, instantiated for each instruction set by its file.

@@ -64,6 +64,21 @@ struct FindApproached {
     std::int32_t* out;          // numbers of pairs
 };
 
+/// Contacts that were found, of which some have to be looked at one by one: solvers/manifolds/gaps.hpp.
+template <class Real>
+struct QuestionGaps {
+    const std::int32_t *a, *b;                   // rows
+    const Real *velocity_x, *velocity_y, *spin;  // m/s, m/s, rad/s, by row; spin is null where nothing turns
+    const Real* radius;                          // m, by row; null where one value serves all
+    Real uniform_radius;                         // m
+    const Real *thickness, *restitution;         // m, no unit, by contact
+    ManifoldColumns<Real> found;
+    Real dt;             // s
+    Real share, fall;    // ContactDistance
+    Real beside, swift;  // of the thickness: separations of corners beside each other, ways of what is swift,
+    Real passing;        // and how far behind the gap what passes is at least
+};
+
 /// Contacts of pairs of convex shapes.
 template <class Real>
 struct FindManifolds {

@@ -100,6 +100,8 @@ struct SolvePaths {
     int sweeps_of_unsettled;  // over paths that do not settle so either
     PathLoads<Real> coarse;   // for the kernels of path_loads.hpp alone
     std::uint32_t* closing;   // [bundles]: of contacts beside the paths, a bit for each lane that closes
+    Real fast, light_press;   // for find_fast: m/s; share of the impulse that would stop both bodies
+    std::uint32_t* is_fast;   // [links], likewise, out: a bit for each lane that comes faster
     void* scratch;            // of path_scratch_bytes(longest bundle) bytes, aligned to 64
 };
 

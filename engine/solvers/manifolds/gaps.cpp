@@ -1,6 +1,7 @@
 #include "solvers/manifolds/gaps.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -17,17 +18,50 @@ constexpr double kRoundingOfGaps = 16 * static_cast<double>(std::numeric_limits<
 
 /// Bodies that do not touch yet may meet elsewhere than where they face each other (meeting.hpp), or not at
 /// all in this step, whatever becomes of them: those contacts are left out.
+///
+/// Most of a crowd touch, or stand beside each other: a kernel tells the others from these.
 template <class Real>
 void Gaps<Real>::look_at(std::size_t first, std::size_t last) {
+    std::uint32_t left = in_.kernels.question_gaps(arguments(), first);
+    // The kernel takes bodies to fly as they do: what is held flies otherwise, beside what stands.
+    if (in_.flights.hold_any())
+        for (std::size_t i = first; i < last; ++i)
+            if (in_.world.bodies.stands(static_cast<std::size_t>(contacts_.b[i]))) left |= 1u << (i - first);
+    if (last - first < kRowPadding) left &= (1u << (last - first)) - 1;
+    for (; left != 0; left &= left - 1) look_at_one(first + static_cast<std::size_t>(std::countr_zero(left)));
+}
+
+template <class Real>
+QuestionGaps<Real> Gaps<Real>::arguments() const {
+    const Bodies<Real>& bodies = in_.world.bodies;
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    return {contacts_.a.data(),
+            contacts_.b.data(),
+            bodies.velocity_x.data(),
+            bodies.velocity_y.data(),
+            bodies.has_rotation ? bodies.angular_velocity.data() : nullptr,
+            bodies.radius.data(),
+            bodies.radius.uniform_value(),
+            contacts_.thickness.data(),
+            contacts_.restitution.data(),
+            contacts_.columns(),
+            real(in_.dt),
+            real(in_.near.share),
+            real(in_.near.fall),
+            real(kBeside),
+            real(kFastThicknesses),
+            real(kPassing)};
+}
+
+template <class Real>
+void Gaps<Real>::look_at_one(std::size_t i) {
     const auto none = static_cast<Real>(kNoPoint);
-    for (std::size_t i = first; i < last; ++i) {
-        const Real gap = std::min(contacts_.separation1[i], contacts_.separation2[i]);
-        if (are_corners_beside(i)) contacts_.separation1[i] = none;
-        if (!(gap > 0) || !(contacts_.separation1[i] < none)) continue;
-        const Manifold<double> facing = contacts_.manifold(i);
-        const bool may_touch = find_meeting(i, static_cast<double>(gap)) || can_close(i);
-        if (!may_touch || do_pass(i, facing)) contacts_.separation1[i] = contacts_.separation2[i] = none;
-    }
+    const Real gap = std::min(contacts_.separation1[i], contacts_.separation2[i]);
+    if (are_corners_beside(i)) contacts_.separation1[i] = none;
+    if (!(gap > 0) || !(contacts_.separation1[i] < none)) return;
+    const Manifold<double> facing = contacts_.manifold(i);
+    const bool may_touch = find_meeting(i, static_cast<double>(gap)) || can_close(i);
+    if (!may_touch || do_pass(i, facing)) contacts_.separation1[i] = contacts_.separation2[i] = none;
 }
 
 template <class Real>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "isa/convex_kernels.hpp"
 #include "solvers/manifolds/contact_distance.hpp"
 #include "solvers/manifolds/held_flights.hpp"
 #include "solvers/manifolds/manifold_list.hpp"
@@ -22,15 +23,18 @@ class Gaps {
         const HeldFlights<Real>& flights;
         const ContactDistance& near;
         double dt;  // s, of the step
+        const ConvexKernels<Real>& kernels;
     };
     Gaps(const Inputs& in, ManifoldList<Real>& contacts) : in_(in), contacts_(contacts) {}
 
     /// Whether a contact is a face of what stands still that holds its body in the step.
     bool holds(std::size_t i) const;
-    /// Looks at the contacts first ... last: they become those of the moment of meeting, or none.
+    /// Looks at the contacts first ... last of a block: they become those of the moment of meeting, or none.
     void look_at(std::size_t first, std::size_t last);
 
   private:
+    QuestionGaps<Real> arguments() const;
+    void look_at_one(std::size_t i);
     bool are_corners_beside(std::size_t i) const;
     bool stay_parted(std::size_t i) const;
     bool find_meeting(std::size_t i, double gap);

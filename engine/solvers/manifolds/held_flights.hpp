@@ -38,6 +38,8 @@ class HeldFlights {
     /// Finds the velocities of bodies that are held. To be called when all planes are known.
     void settle(const Bodies<Real>& bodies, double dt);
 
+    /// Whether some body is held.
+    bool hold_any() const { return !held_.empty(); }
     /// m/s
     Vec2 velocity(const Bodies<Real>& bodies, std::size_t row) const;
     /// Calls fn(row, velocity [m/s]) for each body that is held.

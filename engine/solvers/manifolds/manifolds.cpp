@@ -278,7 +278,7 @@ bool Manifolds<Real>::find(const WorldState<Real>& world, const EdgeCandidates<R
         describe_pairs(world, near, first, std::min(bodies_.count(), first + kRowPadding));
         find_pairs(world, terms, *loops.kernels->convex, block);
     });
-    Gaps<Real> gaps({world, items_, poses_, flights_, near, terms.dt}, bodies_);
+    Gaps<Real> gaps({world, items_, poses_, flights_, near, terms.dt, *loops.kernels->convex}, bodies_);
     find_flights(gaps, world, terms.dt, *loops.executor);
     live_.begin(block_is_found_.size());
     for_each_found_block(kNanosecondsToJudge, [&](std::size_t block) {
@@ -398,7 +398,8 @@ void Manifolds<Real>::describe_pairs(const WorldState<Real>& world, const Contac
         bodies_.friction[i] = friction_varies
                                   ? static_cast<Real>(pair_friction(bodies.friction[a], bodies.friction[b]))
                                   : bodies.friction[a];
-        if (!items_.empty()) describe_pieces(world, near, i);
+        if (!items_.empty() && (bodies_.item_a[i] != bodies_.a[i] || bodies_.item_b[i] != bodies_.b[i]))
+            describe_pieces(world, near, i);
     }
 }
 
@@ -410,7 +411,6 @@ void Manifolds<Real>::describe_pieces(const WorldState<Real>& world, const Conta
     const std::int32_t a = bodies_.a[i], b = bodies_.b[i];
     const StoredPiece *of_a = items_.piece_of(world, a, bodies_.item_a[i]),
                       *of_b = items_.piece_of(world, b, bodies_.item_b[i]);
-    if (!of_a && !of_b) return;
     struct Side {
         Real thickness;
         double friction, restitution;

@@ -9,6 +9,7 @@
 #include "kernels/manifolds/manifold_arguments.hpp"
 #include "math/rotation.hpp"
 #include "narrowphase/convex.hpp"
+#include "narrowphase/disc_edge.hpp"
 #include "shapes/walls.hpp"
 #include "solvers/manifolds/meeting.hpp"
 
@@ -18,6 +19,7 @@ namespace {
 constexpr double kNanosecondsToLook = 1;  // a row, on one thread, for the executor
 /// Share by which a reach may be off through rounding.
 constexpr double kRoundingOfReach = 1e-6;
+constexpr double kWiderCircle = 1 + 1e-9;  // against rounding, in double precision
 
 /// How far a body can come in a step [m].
 template <class Real>
@@ -85,12 +87,17 @@ Edge with_what_goes_on(std::span<const Edge> edges, std::int32_t number, const M
 template <class Real>
 void SurfaceFinder<Real>::take_over(const WorldState<Real>& world, std::span<const EdgePair> pairs) {
     const Bodies<Real>& bodies = world.bodies;
+    const auto before = static_cast<std::ptrdiff_t>(pairs_.size());
     for (const EdgePair& pair : pairs) {
         const auto row = static_cast<std::size_t>(pair.row);
         if (!bodies.is_disc(row) && bodies.shape[row] >= 0 && !bodies.is_immovable(row))
             pairs_.push_back({pair.row, world.edges.track_of(pair.edge), pair.edge});
     }
-    std::sort(pairs_.begin(), pairs_.end());
+    // They come by row and edge, which is in order of tracks, too, where the edges of each were added
+    // together.
+    const auto added = pairs_.begin() + before;
+    if (!std::is_sorted(added, pairs_.end())) std::sort(added, pairs_.end());
+    std::inplace_merge(pairs_.begin(), added, pairs_.end());
     pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
 }
 
@@ -264,10 +271,13 @@ double SurfaceFinder<Real>::time_of_meeting_edges(const WorldState<Real>& world,
     const double way = dt * (std::sqrt(length_squared(body.velocity)) +
                              std::fabs(body.spin) * static_cast<double>(body.shape.extent));
     if (!(way > kFastThicknesses * thickness)) return 0;
+    const double target = kMeetingTarget * thickness,
+                 reach = kWiderCircle * (body.shape.extent + way + target);
     double first = 0;
     for (const std::int32_t number : near_edges_) {
         const Edge& edge = world.edges[number];
-        const ConvexImpact impact = impact_time(body, still_edge(edge), dt, kMeetingTarget * thickness);
+        if (distance_squared(body.centre, edge.a, edge.b) > reach * reach) continue;
+        const ConvexImpact impact = impact_time(body, still_edge(edge), dt, target);
         if (!impact.touches) continue;
         if (!(impact.time > 0)) return 0;  // it touches already
         if (first == 0 || impact.time < first) first = impact.time;

@@ -70,6 +70,17 @@ class PathSolver {
                            contact.link.separation1[contact.lane], contact.link.separation2[contact.lane]});
     }
     void unhide() { hidden_.clear(); }
+    /// Tells which contacts have a point that comes faster than `speed` [m/s] and do not press by more than a
+    /// share of what would stop their bodies, or may by rounding or what joints hold.
+    /// @param velocity  [rows][4], as records have them
+    /// @return a bit for each lane of each link
+    std::span<const std::uint32_t> find_fast(Column<Real>& velocity, double speed, double light_press,
+                                             const SubstepTerms& terms, BodyRecords<Real>& records,
+                                             const StepLoops<Real>& loops);
+    /// The place of a contact: kPathLanes times its link, plus its lane.
+    std::size_t place_of(const PathContact<Real>& contact) const {
+        return kPathLanes * static_cast<std::size_t>(&contact.link - links_.data()) + contact.lane;
+    }
     using LoadPass = typename PathKernels<Real>::Pass PathKernels<Real>::*;
     /// Runs a pass of coarse correction (kernels/paths/path_loads.hpp) over all contacts.
     void run_loads(LoadPass pass, const PathLoads<Real>& loads, const SubstepTerms& terms,
@@ -180,8 +191,8 @@ class PathSolver {
 
     PathRolling<Real> rolling_;
     TurningEdges<Real> turning_edges_;
-    std::vector<std::int32_t> row_of_far_;  // of each contact: the row of b in the records
-    Column<std::uint32_t> closing_;         // kernels/paths/path_arguments.hpp
+    std::vector<std::int32_t> row_of_far_;     // of each contact: the row of b in the records
+    Column<std::uint32_t> closing_, is_fast_;  // kernels/paths/path_arguments.hpp
     PathChoice<Real> choice_;
     Column<PathLink<Real>> links_;
     std::vector<Hidden> hidden_;

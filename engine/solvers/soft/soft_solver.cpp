@@ -83,6 +83,7 @@ template <class Real>
 void SoftSolver<Real>::find_manifolds(const WorldState<Real>& world, const EdgeCandidates<Real>& edges) {
     paths.rescale(warm_start_.kept());
     paths.find(world, edges, terms_, {kNearFraction, settings_.fall}, records_, loops_);
+    impacts.shapes.begin_step();
     corrections_.shape_turns.begin_step(world, paths, masses_);
     counters.contacts += paths.counters.contacts;
 }

@@ -97,8 +97,8 @@ class SoftSolver {
     }
     /// Carries out the impacts of shapes in a substep.
     void carry_out_shape_impacts(const Bodies<Real>& bodies, Books& books) {
-        paths.counters.impacts += impacts.shapes.carry_out(paths, terms_, bodies, records_, impacts.held,
-                                                           books, books_.gravity_work);
+        paths.counters.impacts += impacts.shapes.carry_out(paths, terms_, bodies, records_, loops_,
+                                                           impacts.held, books, books_.gravity_work);
         impacts.note_deflected(records_.velocity);
     }
     /// Solves the contacts of shapes in substep `number`.

@@ -1,5 +1,7 @@
 #include "solvers/soft/corrections/shape_turns.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -121,9 +123,11 @@ void ShapeTurns<Real>::settle(const StepView<Real>& step, ContactSweeps<Real>& s
         std::copy(velocity.begin(), velocity.end(), before_.begin());
         paths.solve(step.terms, step.records, step.loops, 0, true, which);
         if (has_discs) sweeps.run(step, next);
-        Real change = 0;
-        for (std::size_t i = 0; i < velocity.size(); ++i)
-            change = std::max(change, std::abs(velocity[i] - before_[i]));
+        std::array<Real, 4> changes{};  // vx, vy, rim speed, and the masses, which stay: a register's lanes
+        for (std::size_t i = 0; i < velocity.size(); i += changes.size())
+            for (std::size_t k = 0; k < changes.size(); ++k)
+                changes[k] = std::max(changes[k], std::abs(velocity[i + k] - before_[i + k]));
+        const Real change = *std::max_element(changes.begin(), changes.end());
         if (!(change > settled)) return;
         if (turn == 1) first = change;
         is_last = turn == most_ || (turn >= most_of_struck_ && change > struck) ||

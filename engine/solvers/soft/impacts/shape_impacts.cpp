@@ -5,140 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "solvers/soft/impacts/shape_meeting.hpp"
+
 namespace carom {
 namespace {
 
 /// Rounds over all contacts in a substep: what a blow sets in motion may hit the next body in the same one.
 constexpr int kRounds = 8;
-/// Slower than so many times what gravity adds in a substep is no impact but a contact.
-constexpr double kRestFalls = 2;
-
-/// A body of an impact.
-template <class Real>
-struct StruckBody {
-    std::int32_t row;
-    double w, w2;          // 1/kg: what an impulse changes the velocity, and one at the rim the rim speed by
-    Vec2 start, foreseen;  // m/s, at the start of the substep and, if nothing happens, at its end
-    Vec2 free;             // m/s, at its end in free flight
-    double start_rim, foreseen_rim, free_rim;
-
-    /// @param half_kick  m/s: a body that joints hold has the velocity of the middle of the substep before,
-    /// to which this is to be added; zero of others
-    StruckBody(const BodyRecords<Real>& records, std::int32_t number, Vec2 half_kick,
-               const SubstepTerms& terms)
-        : row(number) {
-        const Real* record = &records.velocity[4 * static_cast<std::size_t>(row)];
-        const double mass = record[3];
-        w = std::fabs(mass), w2 = 2 * std::fmax(mass, 0);
-        foreseen = {record[0], record[1]}, foreseen_rim = record[2];
-        start = free = foreseen, start_rim = free_rim = foreseen_rim;
-        if (static_cast<std::size_t>(row) >= records.count()) return;  // nothing moves it
-        const auto [x, y, rim] = records.start_of_substep(row);
-        start = Vec2{x, y} + half_kick, start_rim = rim;
-        const auto [free_x, free_y, free_turn] = records.free_flight(row, terms);
-        free = {free_x, free_y}, free_rim = free_turn;
-    }
-    /// Its velocity becomes that of a later time. What joints and contacts have given it so far counts for
-    /// the whole substep in the books, whatever it meets in between, so it is not in that velocity: else an
-    /// impact would change the energy by what they have given up to its time.
-    /// @param share  of the substep
-    void go_on(double share) { start += share * (free - start), start_rim += share * (free_rim - start_rim); }
-};
-
-/// How far the points of a body that turns come off the ways that a contact knows of, at most [m].
-/// @param rim_speed  m/s  @param time  s, for which it turns
-template <class Real>
-double bend_of(const Bodies<Real>& bodies, std::int32_t number, double rim_speed, double time) {
-    const auto row = static_cast<std::size_t>(number);
-    if (row >= bodies.count || rim_speed == 0) return 0;
-    const double angle = time * rim_speed / static_cast<double>(bodies.rim(row));
-    return 0.5 * angle * angle * static_cast<double>(bodies.radius[row]);
-}
-
-/// The time [s] at which a gap closes that has a velocity now and another one after h.
-double time_to_close(double gap, double velocity, double soon, double h) {
-    if (!(gap > 0)) return 0;
-    const double change = (soon - velocity) / h, root = velocity * velocity - 2 * change * gap;
-    return std::fmin(h, 2 * gap / (-velocity + std::sqrt(std::fmax(root, 0))));
-}
-
-template <class Real>
-Vec2 half_kick_of(const HeldImpacts<Real>& held, std::int32_t row, const SubstepTerms& terms) {
-    return held.holds(row) ? 0.5 * terms.gravity_change : Vec2{};
-}
-
-/// Levers of a contact's two points, then of both for friction, in rims of the body.
-using Levers = std::array<double, 3>;
-
-/// Shifts the levers of two bodies that move so that both are about one point of the world, half way between
-/// where each body has carried the point since the contact was found. An impulse along one line gives the two
-/// no angular momentum; about a point of each body it gives them the impulse times the way that the points
-/// have gone apart, which is of the order of the step.
-/// @param come  m, of b against a up to the impact
-template <class Real>
-void share_points(const Bodies<Real>& bodies, const BodyRecords<Real>& records,
-                  const PathContact<Real>& contact, Vec2 come, Vec2 n, Vec2 t, Levers& lever_a,
-                  Levers& lever_b) {
-    const auto row_a = static_cast<std::size_t>(contact.near), row_b = static_cast<std::size_t>(contact.far);
-    const auto place = [&](std::size_t row) {
-        return Vec2{static_cast<double>(bodies.position_x[row]) + records.displacement[2 * row],
-                    static_cast<double>(bodies.position_y[row]) + records.displacement[2 * row + 1]};
-    };
-    const Vec2 apart = place(row_b) - place(row_a) + come;
-    const double rim_a = bodies.rim(row_a), rim_b = bodies.rim(row_b);
-    // r x n = -(r . t), r . n: from a's points to b's.
-    const double along = dot(apart, t) - (rim_b * lever_b[0] - rim_a * lever_a[0]),
-                 above = dot(apart, n) + (rim_b * lever_b[2] - rim_a * lever_a[2]);
-    for (std::size_t k = 0; k < 2; ++k) lever_a[k] -= 0.5 * along / rim_a, lever_b[k] += 0.5 * along / rim_b;
-    lever_a[2] += 0.5 * above / rim_a, lever_b[2] -= 0.5 * above / rim_b;
-}
-
-/// What the impulses of an impact are, and their work [J].
-struct PointImpulses {
-    std::array<double, 2> x{};  // N s, along the normal at each point
-    double y = 0;               // N s, along the tangent
-    double by_normal = 0, by_friction = 0;
-    bool is_given = false;  // bodies have them already
-};
-
-/// The impact of two shapes that fly: Newton's law of both points at once, then Coulomb's.
-/// @param v  m/s, normal velocities of the two points
-template <class Real>
-PointImpulses solve_free(const StruckBody<Real>& a, const StruckBody<Real>& b, Vec2 t, const Levers& lever_a,
-                         const Levers& lever_b, const std::array<bool, 2>& meets, double e, double friction,
-                         const std::array<double, 2>& v) {
-    PointImpulses found;
-    std::array<double, 2>& x = found.x;
-    const double w = a.w + b.w;
-    const auto mass = [&](std::size_t i, std::size_t k) {
-        return (i < 2) == (k < 2) ? w + a.w2 * lever_a[i] * lever_a[k] + b.w2 * lever_b[i] * lever_b[k]
-                                  : a.w2 * lever_a[i] * lever_a[k] + b.w2 * lever_b[i] * lever_b[k];
-    };
-    const double k11 = mass(0, 0), k12 = mass(0, 1), k22 = mass(1, 1);
-    // Newton's law of what is met: each point leaves at e times the speed it came with, or faster.
-    const double b1 = (1 + e) * v[0], b2 = (1 + e) * v[1];
-    if (!meets[1]) {
-        x = {-b1 / k11, 0};
-    } else if (!meets[0]) {
-        x = {0, -b2 / k22};
-    } else {
-        const double n1 = k12 * b2 - k22 * b1, n2 = k12 * b1 - k11 * b2, determinant = k11 * k22 - k12 * k12;
-        if (n1 >= 0 && n2 >= 0 && determinant > 0)
-            x = {n1 / determinant, n2 / determinant};
-        else
-            x = n2 <= 0 ? std::array<double, 2>{-b1 / k11, 0} : std::array<double, 2>{0, -b2 / k22};
-    }
-    // Work: x . (v + v') / 2, v' = v + K x.
-    found.by_normal =
-        x[0] * (v[0] + 0.5 * (k11 * x[0] + k12 * x[1])) + x[1] * (v[1] + 0.5 * (k12 * x[0] + k22 * x[1]));
-    const double sum = x[0] + x[1];
-    const double vt = dot(b.start - a.start, t) + b.start_rim * lever_b[2] - a.start_rim * lever_a[2] +
-                      mass(0, 2) * x[0] + mass(1, 2) * x[1],
-                 ktt = mass(2, 2), limit = friction * sum;
-    found.y = std::fmin(std::fmax(-vt / ktt, -limit), limit);
-    found.by_friction = found.y * (vt + 0.5 * ktt * found.y);
-    return found;
-}
 
 /// The impact of shapes of which joints hold one at least: held_impacts.hpp.
 /// @param meets  which of the two points
@@ -164,7 +37,7 @@ bool strike_held(HeldImpacts<Real>& held, const StruckBody<Real>& a, const Struc
         directions[count++] = {k < 2 ? Law::normal : Law::friction, along, -lever_a[k], lever_b[k], surface};
     }
     const auto record_of = [&](std::int32_t row) {
-        const StruckBody<Real> body(records, row, half_kick_of(held, row, terms), terms);
+        const StruckBody<Real> body(records, row, half_kick_of(held, row, terms));
         return std::array<double, 4>{body.start.x, body.start.y, body.start_rim,
                                      records.velocity[4 * static_cast<std::size_t>(row) + 3]};
     };
@@ -184,151 +57,31 @@ bool strike_held(HeldImpacts<Real>& held, const StruckBody<Real>& a, const Struc
     return true;
 }
 
-/// What becomes of a contact in a substep.
-enum class Outcome : std::uint8_t {
-    none,
-    comes,  ///< fast, but not near enough yet
-    met     ///< there was an impact
-};
-
-/// Whether no point of a contact can be fast, whatever joints hold: of nearly all contacts of what rests.
-template <class Real>
-bool is_slow(const PathContact<Real>& contact, const SubstepTerms& terms, const BodyRecords<Real>& records) {
-    const auto count = static_cast<std::int32_t>(records.count());
-    if (contact.near >= count || contact.far >= count) return false;  // nothing moves one of them
-    const auto a = records.start_of_substep(contact.near), b = records.start_of_substep(contact.far);
-    const auto arm = [&](const auto& first, const auto& second) {
-        return std::fmax(std::fabs(static_cast<double>(first[contact.lane])),
-                         std::fabs(static_cast<double>(second[contact.lane])));
-    };
-    const PathLink<Real>& link = contact.link;
-    const double most = std::fabs(b[0] - a[0]) + std::fabs(b[1] - a[1]) +
-                        std::fabs(a[2]) * arm(link.near1, link.near2) +
-                        std::fabs(b[2]) * arm(link.far1, link.far2);
-    return most <= (kRestFalls - 1) * terms.fall_speed();  // half a kick of gravity may come to each
+/// What comes no faster than this [m/s] at the start of a substep is no impact, whatever joints hold: half a
+/// kick of gravity may come to one of two bodies. A quarter more is left to rounding.
+double speed_of_none(const SubstepTerms& terms) {
+    return (kRestFalls - 0.75) * terms.fall_speed();
 }
 
-/// An impact as it is worked out: what meets, when, and with what velocities.
+/// Whether a point of a contact comes faster than that.
 template <class Real>
-struct Meeting {
-    const PathContact<Real>& contact;
-    const SubstepTerms& terms;
-    const Bodies<Real>& bodies;
-    const BodyRecords<Real>& records;
-    const Vec2 n, t;                          // normal, from near to far; tangent
-    const StruckBody<Real> first_a, first_b;  // at the start of the substep
-    const Levers own_a, own_b;                // about the points that each has carried
-    StruckBody<Real> a = first_a, b = first_b;
-    Levers lever_a = own_a, lever_b = own_b;
-    std::array<double, 2> v{};    // m/s, normal velocities of the points
-    std::array<bool, 2> meets{};  // what is not met yet has an impact of its own, later
-    double time = 0;              // s, from the start of the substep
-
-    Meeting(const PathContact<Real>& of, const SubstepTerms& of_substep, const Bodies<Real>& all,
-            BodyRecords<Real>& of_bodies, const HeldImpacts<Real>& held)
-        : contact(of),
-          terms(of_substep),
-          bodies(all),
-          records(of_bodies),
-          n{of.link.normal_x[of.lane], of.link.normal_y[of.lane]},
-          t{-n.y, n.x},
-          first_a(of_bodies, of.near, half_kick_of(held, of.near, of_substep), of_substep),
-          first_b(of_bodies, of.far, half_kick_of(held, of.far, of_substep), of_substep),
-          own_a{of.link.near1[of.lane], of.link.near2[of.lane], of.link.near_t[of.lane]},
-          own_b{of.link.far1[of.lane], of.link.far2[of.lane], of.link.far_t[of.lane]} {}
-
-    bool both_move() const { return a.w > 0 && b.w > 0; }
-    double closing() const { return std::fmax(meets[0] ? -v[0] : 0, meets[1] ? -v[1] : 0); }
-    /// The velocity of b against a at a point [m/s], along the normal; for the third lever along the tangent.
-    /// Displacements in place of velocities give the way [m].
-    double relative(Vec2 va, double ua, Vec2 vb, double ub, std::size_t k) const {
-        return dot(vb - va, k < 2 ? n : t) + ub * lever_b[k] - ua * lever_a[k];
-    }
-    void find_velocities() {
-        for (std::size_t k = 0; k < 2; ++k) v[k] = relative(a.start, a.start_rim, b.start, b.start_rim, k);
-    }
-
-    /// Finds which points meet in the substep, and when the first one does.
-    Outcome look() {
-        const PathLink<Real>& link = contact.link;
-        const std::size_t lane = contact.lane;
-        const double rest_speed = kRestFalls * terms.fall_speed(), h = terms.substep_dt;
-        const auto come = [&](std::int32_t row) {
-            const auto r = static_cast<std::size_t>(row);
-            return Vec2{records.displacement[2 * r], records.displacement[2 * r + 1]};
-        };
-        const auto turned = [&](std::int32_t row) {
-            return static_cast<double>(records.turn()[static_cast<std::size_t>(row)]);
-        };
-        // Bodies that turn are struck earlier by what bends their ways since the contact was found, so that
-        // they do not end in each other, where they would be pushed apart.
-        const double since = terms.elapsed + h, bend = bend_of(bodies, a.row, a.start_rim, since) +
-                                                       bend_of(bodies, b.row, b.start_rim, since);
-        bool comes = false, is_free = true;
-        find_velocities();
-        time = h;
-        for (std::size_t k = 0; k < 2; ++k) {
-            if (k == 1 && !(link.separation2[lane] < static_cast<Real>(kNoPoint))) break;
-            const double gap =
-                static_cast<double>(k == 0 ? link.separation1[lane] : link.separation2[lane]) +
-                relative(come(contact.near), turned(contact.near), come(contact.far), turned(contact.far), k);
-            const double soon = relative(a.foreseen, a.foreseen_rim, b.foreseen, b.foreseen_rim, k);
-            const bool is_fast = v[k] < -rest_speed, touches = gap + h * soon < 0;
-            meets[k] = is_fast && touches, comes = comes || is_fast, is_free = is_free && !touches;
-            if (meets[k]) time = std::fmin(time, time_to_close(gap - bend, v[k], soon, h));
-        }
-        const double pressing =
-            static_cast<double>(link.normal1[lane]) + static_cast<double>(link.normal2[lane]);
-        if (pressing > kLightPress * std::fmax(-v[0], -v[1]) / (a.w + b.w)) return Outcome::none;
-        if (meets[0] || meets[1]) return Outcome::met;
-        return comes && is_free ? Outcome::comes : Outcome::none;
-    }
-
-    /// Velocities and levers become those of a time.
-    /// @param shares  whether the levers are about points that both bodies share
-    /// @return whether the bodies still meet then
-    bool go_to(double then, bool shares) {
-        time = then, a = first_a, b = first_b, lever_a = own_a, lever_b = own_b;
-        const double share = time / terms.substep_dt;
-        a.go_on(share), b.go_on(share);
-        if (shares)
-            share_points(bodies, records, contact, time * (b.start - a.start), n, t, lever_a, lever_b);
-        find_velocities();
-        const std::array<bool, 2> still_meets{meets[0] && v[0] < 0, meets[1] && v[1] < 0};
-        if (!still_meets[0] && !still_meets[1]) return false;
-        meets = still_meets;
-        return true;
-    }
-    /// If the bodies part already, about shared points or since what makes them meet is not in free flight:
-    /// the paths know the points of each alone at the start, and would take the approach that they see
-    /// without restitution.
-    void go_to_meeting(double then) {
-        if (!go_to(then, both_move()) && !(both_move() && go_to(0, true))) go_to(0, false);
-    }
-
-    PointImpulses solve() const {
-        return solve_free(a, b, t, lever_a, lever_b, meets, contact.restitution,
-                          static_cast<double>(contact.link.friction[contact.lane]), v);
-    }
-    /// What impulses change the rim speed of a body by [m/s]. @param sign  -1 of a, 1 of b
-    double change_of_rim(const StruckBody<Real>& body, double sign, const Levers& lever,
-                         const PointImpulses& by) const {
-        return sign * body.w2 * (lever[0] * by.x[0] + lever[1] * by.x[1] + lever[2] * by.y);
-    }
-    /// Solves the impact of bodies that fly. They are struck earlier by what will bend their ways until
-    /// contacts are found anew, for the reason of look().
-    PointImpulses strike() {
-        const PointImpulses found = solve();
-        if (!(time > 0)) return found;
-        const double left = terms.dt - terms.elapsed,
-                     later =
-                         bend_of(bodies, a.row, a.start_rim + change_of_rim(a, -1, lever_a, found), left) +
-                         bend_of(bodies, b.row, b.start_rim + change_of_rim(b, 1, lever_b, found), left);
-        if (!(later > 0)) return found;
-        go_to_meeting(std::fmax(0, time - later / closing()));
-        return solve();
-    }
-};
+bool may_be_fast(const PathContact<Real>& contact, const SubstepTerms& terms,
+                 const BodyRecords<Real>& records) {
+    const auto velocity_of = [&](std::int32_t row) -> std::array<double, 3> {
+        if (static_cast<std::size_t>(row) < records.count()) return records.start_of_substep(row);
+        const Real* record = &records.velocity[4 * static_cast<std::size_t>(row)];  // nothing moves it
+        return {record[0], record[1], record[2]};
+    };
+    const auto a = velocity_of(contact.near), b = velocity_of(contact.far);
+    const PathLink<Real>& link = contact.link;
+    const std::size_t lane = contact.lane;
+    const double along = dot(Vec2{b[0], b[1]} - Vec2{a[0], a[1]}, {link.normal_x[lane], link.normal_y[lane]});
+    const auto comes = [&](const Real* near, const Real* far) {
+        return along + b[2] * static_cast<double>(far[lane]) - a[2] * static_cast<double>(near[lane]) <
+               -speed_of_none(terms);
+    };
+    return comes(link.near1, link.far1) || comes(link.near2, link.far2);
+}
 
 /// Gives a body what an impact gives it, from the start of the substep on: drag takes more of a change then
 /// than from its own time.
@@ -387,30 +140,92 @@ Outcome carry_out_one(const PathContact<Real>& contact, const SubstepTerms& term
 
 }  // namespace
 
+/// Lists the contacts that have restitution, in their order.
+template <class Real>
+void ShapeImpacts<Real>::list_bouncing(const PathSolver<Real>& paths, std::size_t links) {
+    if (is_listed_) return;
+    is_listed_ = true;
+    bouncing_.clear(), at_place_.assign(kPathLanes * links, -1);
+    std::size_t number = 0;
+    paths.for_each([&](const PathContact<Real>& contact) {
+        if (contact.restitution > 0) {
+            at_place_[paths.place_of(contact)] = static_cast<std::int32_t>(bouncing_.size());
+            bouncing_.push_back({number, contact.near, contact.far});
+        }
+        ++number;
+    });
+}
+
+/// Lists the contacts of each body. What nothing moves has a row for each contact: nothing that one of them
+/// does concerns another one.
+template <class Real>
+void ShapeImpacts<Real>::list_of_rows(std::size_t rows) {
+    if (are_of_rows_listed_) return;
+    are_of_rows_listed_ = true;
+    first_of_row_.assign(rows + 1, 0);
+    const auto for_each_row = [&](const Bouncing& bouncing, const auto& fn) {
+        for (const std::int32_t row : {bouncing.near, bouncing.far})
+            if (static_cast<std::size_t>(row) < rows) fn(static_cast<std::size_t>(row));
+    };
+    for (const Bouncing& bouncing : bouncing_)
+        for_each_row(bouncing, [&](std::size_t row) { ++first_of_row_[row]; });
+    for (std::size_t row = 0; row < rows; ++row) first_of_row_[row + 1] += first_of_row_[row];
+    of_row_.resize(first_of_row_[rows]);
+    for (std::size_t i = bouncing_.size(); i-- > 0;)
+        for_each_row(bouncing_[i],
+                     [&](std::size_t row) { of_row_[--first_of_row_[row]] = static_cast<std::uint32_t>(i); });
+}
+
+/// Makes those due that come fast as the substep begins. @return whether there are any
+template <class Real>
+bool ShapeImpacts<Real>::list_fast(PathSolver<Real>& paths, const SubstepTerms& terms,
+                                   BodyRecords<Real>& records, const StepLoops<Real>& loops) {
+    start_.resize_for_overwrite(records.velocity.size());
+    std::copy(records.velocity.begin(), records.velocity.end(), start_.begin());
+    const StartColumns<Real> start = records.start_columns();
+    for (std::size_t row = 0; row < records.count(); ++row) {
+        start_[4 * row] = start.x[row], start_[4 * row + 1] = start.y[row];
+        start_[4 * row + 2] = start.rim ? start.rim[row] : Real(0);
+    }
+    const std::span<const std::uint32_t> fast =
+        paths.find_fast(start_, speed_of_none(terms), kLightPress, terms, records, loops);
+    bool any = false;
+    for (std::size_t link = 0; link < fast.size(); ++link)
+        for (std::uint32_t left = fast[link]; left != 0; left &= left - 1) {
+            list_bouncing(paths, fast.size());
+            const std::size_t lane = static_cast<std::size_t>(std::countr_zero(left));
+            const std::int32_t bouncing = at_place_[kPathLanes * link + lane];
+            if (bouncing < 0) continue;
+            if (!any) due_.clear(bouncing_.size());
+            any = true, due_.put(static_cast<std::size_t>(bouncing));
+        }
+    return any;
+}
+
 /// An impact changes what its bodies, and what joints hold them with, meet from then on: other contacts are
 /// not looked at again.
 template <class Real>
 std::int64_t ShapeImpacts<Real>::carry_out(PathSolver<Real>& paths, const SubstepTerms& terms,
                                            const Bodies<Real>& bodies, BodyRecords<Real>& records,
-                                           HeldImpacts<Real>& held, Books& books, double& gravity_work) {
-    deflected_.clear(), bouncing_.clear();
-    std::size_t number = 0;
-    paths.for_each([&](const PathContact<Real>& contact) {
-        if (contact.restitution > 0) bouncing_.push_back({number, contact.near, contact.far});
-        ++number;
-    });
-    paths.unhide();
-    changed_.assign(records.rows(), 0);
-    std::uint32_t look = 0;
-    const auto note_changed = [&](std::int32_t row) { changed_[static_cast<std::size_t>(row)] = look; };
+                                           const StepLoops<Real>& loops, HeldImpacts<Real>& held,
+                                           Books& books, double& gravity_work) {
+    deflected_.clear(), paths.unhide();
+    if (!list_fast(paths, terms, records, loops)) return 0;
+    coming_.clear(bouncing_.size());
+    const auto note_changed = [&](std::int32_t number) {
+        const auto row = static_cast<std::size_t>(number);
+        if (row >= records.count()) return;
+        list_of_rows(records.count());
+        for (std::size_t n = first_of_row_[row]; n < first_of_row_[row + 1]; ++n) due_.put(of_row_[n]);
+    };
     std::int64_t impacts = 0;
     bool goes_on = true;
-    const auto look_at = [&](Bouncing& bouncing, const PathContact<Real>& contact) {
-        bouncing.looked = ++look, bouncing.comes = false;
-        if (is_slow(contact, terms, records)) return;
+    const auto look_at = [&](std::size_t i, const PathContact<Real>& contact) {
+        due_.take(i), coming_.take(i);
+        if (!may_be_fast(contact, terms, records)) return;
         const Outcome outcome =
             carry_out_one(contact, terms, bodies, records, held, books, gravity_work, note_changed);
-        bouncing.comes = outcome == Outcome::comes;
+        if (outcome == Outcome::comes) coming_.put(i);
         if (outcome != Outcome::met) return;
         ++impacts, goes_on = true;
         for (const std::int32_t row : {contact.near, contact.far})
@@ -418,23 +233,26 @@ std::int64_t ShapeImpacts<Real>::carry_out(PathSolver<Real>& paths, const Subste
                 bodies.is_disc(static_cast<std::size_t>(row)))
                 deflected_.push_back(row);
     };
+    const auto at = [&](std::size_t i, const auto& fn) {
+        paths.for_each_of(bouncing_[i].number, bouncing_[i].number + 1, fn);
+    };
     for (int round = 0; round < kRounds && goes_on; ++round) {
         goes_on = false;
-        for (Bouncing& bouncing : bouncing_) {
-            const std::uint32_t changed = std::max(changed_[static_cast<std::size_t>(bouncing.near)],
-                                                   changed_[static_cast<std::size_t>(bouncing.far)]);
-            if (changed >= bouncing.looked)
-                paths.for_each_of(bouncing.number, bouncing.number + 1,
-                                  [&](const PathContact<Real>& contact) { look_at(bouncing, contact); });
-        }
+        due_.for_each(
+            [&](std::size_t i) { at(i, [&](const PathContact<Real>& contact) { look_at(i, contact); }); });
     }
     if (!goes_on)  // else what was seen in the last round no longer holds
-        for (const Bouncing& bouncing : bouncing_)
-            if (bouncing.comes)
-                paths.for_each_of(bouncing.number, bouncing.number + 1,
-                                  [&](const PathContact<Real>& contact) { paths.hide(contact); });
+        coming_.for_each(
+            [&](std::size_t i) { at(i, [&](const PathContact<Real>& contact) { paths.hide(contact); }); });
     records.put_off_delays();
     return impacts;
+}
+
+template <class Real>
+std::size_t ShapeImpacts<Real>::bytes() const {
+    const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
+    return of(bouncing_) + of(at_place_) + of(first_of_row_) + of(of_row_) + due_.bytes() + coming_.bytes() +
+           start_.bytes() + of(deflected_);
 }
 
 template class ShapeImpacts<float>;

@@ -233,6 +233,8 @@ void ShapeTunnelling<Real>::look_at_edges(const Inputs& in, const Way& way, cons
         in.world.edges.for_each_near(
             body, 0.5 * (seen.from + seen.to), kWiderCircle * (half + seen.radius), [&](std::int32_t number) {
                 const Edge& edge = in.world.edges[number];
+                const double wider = kWiderCircle * (half + (1 + 2 * kMeetingTarget) * seen.radius);
+                if (distance_squared(0.5 * (seen.from + seen.to), edge.a, edge.b) > wider * wider) return;
                 MovingConvex still = still_edge(edge);
                 const double time = sinks_in(seen, edge)
                                         ? 0

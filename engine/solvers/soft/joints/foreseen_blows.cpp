@@ -92,7 +92,8 @@ bool ForeseenBlows<Real>::find_risen(const JointStep<Real>& step, const StepLoop
 
 template <class Real>
 bool ForeseenBlows<Real>::find(const JointStep<Real>& step, const StepView<Real>& contacts,
-                               const PathSolver<Real>& paths, const std::vector<std::uint8_t>& touches) {
+                               const PathSolver<Real>& paths, const JoinedContacts& joined,
+                               const std::vector<std::uint8_t>& touches) {
     if (!find_risen(step, contacts.loops, touches)) return false;
     // Motors and springs give energy, too, and so do belts by their own motion: what counts is the work of
     // contacts.
@@ -111,29 +112,25 @@ bool ForeseenBlows<Real>::find(const JointStep<Real>& step, const StepView<Real>
         if (of_b >= 0 && of_b != of_a) work_[static_cast<std::size_t>(of_b)] += done;
     };
     const ContactRows<Real>& pairs = contacts.graph.pairs;
-    pairs.for_each([&](std::size_t i) {
-        if (!pairs.is_live[i / kContactBlock]) return;
+    for (const std::size_t i : joined.pairs)
         add(pairs.a[i], pairs.b[i], [&] {
             return StoredContact<Real>(pairs, i).work(velocities.mean(pairs.a[i]),
                                                       velocities.mean(pairs.b[i]));
         });
-    });
     const ContactRows<Real>& supports = contacts.supports;
-    supports.for_each([&](std::size_t i) {
+    for (const std::size_t i : joined.supports)
         add(supports.a[i], -1, [&] {
             return StoredContact<Real>(supports, i)
                 .work(velocities.mean(supports.a[i]), surface_at(supports, i));
         });
-    });
     const auto mean = [&](std::int32_t row) {
         const DoubleBody body = velocities.mean(row);
         return MeanVelocity{{body.record[0], body.record[1]}, body.record[2]};
     };
-    if (step.world.bodies.has_shapes)
-        paths.for_each([&](const PathContact<Real>& contact) {
-            add(contact.near, contact.far,
-                [&] { return ContactWork<Real>(contact).work(mean(contact.near), mean(contact.far)); });
-        });
+    joined.for_each_path(paths, [&](const PathContact<Real>& contact) {
+        add(contact.near, contact.far,
+            [&] { return ContactWork<Real>(contact).work(mean(contact.near), mean(contact.far)); });
+    });
     bool any = false;
     for (std::size_t group = 0; group < is_thrown_.size(); ++group) {
         is_thrown_[group] = is_thrown_[group] && work_[group] > least_[group];

@@ -5,6 +5,7 @@
 
 #include "solvers/joints/joint_step.hpp"
 #include "solvers/paths/path_solver.hpp"
+#include "solvers/soft/joints/joined_contacts.hpp"
 #include "solvers/soft/step_view.hpp"
 
 namespace carom {
@@ -22,11 +23,13 @@ class ForeseenBlows {
     /// @param group_of  by row; -1: none
     void set_groups(const std::vector<std::int32_t>& group_of, std::size_t groups);
     /// To be called when joints are solved for what contacts foresee.
+    /// @param joined  those contacts that groups have
     /// @param touches  [groups], not 0 for those that can touch something
     /// @return whether there are such groups
-    /// Cost: 2 ns a joined body; 10 ns a contact if a group has more energy than free flight gave it.
+    /// Cost: 2 ns a joined body; 10 ns a contact of these if a group has more energy than free flight gave
+    /// it.
     bool find(const JointStep<Real>& step, const StepView<Real>& contacts, const PathSolver<Real>& paths,
-              const std::vector<std::uint8_t>& touches);
+              const JoinedContacts& joined, const std::vector<std::uint8_t>& touches);
     bool is_thrown(std::size_t group) const { return is_thrown_[group] != 0; }
     /// Takes back what the contacts of these groups foresaw.
     void take_back(const StepView<Real>& contacts, PathSolver<Real>& paths) const;

@@ -55,10 +55,9 @@ void HeavyLoads<Real>::weigh_groups(const HeldContacts<Real>& contacts, const Bo
     weight_.resize(joints.exact_groups());
     for (std::size_t group = 0; group < weight_.size(); ++group)
         weight_[group] = joints.exact_group(static_cast<std::int32_t>(group)).heaviest();
-    const auto is_held = [&](std::int32_t row) { return joints.exact_group_of(row) >= 0; };
     constexpr int kRounds = 2;
     for (int round = 0; round < kRounds; ++round)
-        contacts.for_each_of(bodies, is_held, [&](const HeldContact& contact) {
+        contacts.for_each(joints.contacts(), bodies, [&](const HeldContact& contact) {
             for (std::size_t side = 0; side < 2; ++side) {
                 const std::int32_t row = contact.row[side], other = contact.row[1 - side];
                 if (row == HeldContact::kNothing || other == HeldContact::kNothing) continue;
@@ -96,8 +95,7 @@ void HeavyLoads<Real>::find(const HeldContacts<Real>& contacts, const JointStep<
     const Bodies<Real>& bodies = step.world.bodies;
     weigh_groups(contacts, bodies, joints);
     std::size_t work = 0, motors = 0;
-    const auto is_held = [&](std::int32_t row) { return joints.exact_group_of(row) >= 0; };
-    contacts.for_each_of(bodies, is_held, [&](const HeldContact& contact) {
+    contacts.for_each(joints.contacts(), bodies, [&](const HeldContact& contact) {
         if (!is_heavy(contact, bodies, joints)) return;
         std::size_t more = 0;
         const auto for_each_group = [&](const auto& fn) {

@@ -30,8 +30,7 @@ namespace carom {
 template <class Real>
 class HeavyLoads {
   public:
-    /// Finds the contacts of a step. Cost: O(contacts) where a group that is solved exactly touches
-    /// something.
+    /// Finds the contacts of a step. Cost: O(contacts of groups that are solved exactly).
     void find(const HeldContacts<Real>& contacts, const JointStep<Real>& step, SoftJoints<Real>& joints);
     /// Whether none may press in this substep.
     bool empty() const { return contacts_.empty(); }

@@ -5,6 +5,7 @@
 
 #include "math/vec2_math.hpp"
 #include "solvers/paths/path_solver.hpp"
+#include "solvers/soft/joints/joined_contacts.hpp"
 #include "solvers/soft/step_view.hpp"
 
 namespace carom {
@@ -43,25 +44,16 @@ class HeldContacts {
   public:
     HeldContacts(const StepView<Real>& step, PathSolver<Real>& paths) : step_(step), paths_(paths) {}
 
-    /// Calls fn(contact) for all that can touch in the step and have a body with is_theirs(row), in an order
-    /// that rows alone decide.
-    template <class IsTheirs, class Fn>
-    void for_each_of(const Bodies<Real>& bodies, const IsTheirs& is_theirs, const Fn& fn) const {
-        if (bodies.has_shapes) {
-            std::size_t number = 0;
-            paths_.for_each([&](const PathContact<Real>& contact) {
-                if (is_theirs(contact.near) || is_theirs(contact.far)) fn(of_path(contact, number, bodies));
-                ++number;
+    /// Calls fn(contact) for each of some, in an order that rows alone decide.
+    template <class Fn>
+    void for_each(const JoinedContacts& some, const Bodies<Real>& bodies, const Fn& fn) const {
+        for (const std::size_t number : some.paths)
+            paths_.for_each_of(number, number + 1, [&](const PathContact<Real>& contact) {
+                fn(of_path(contact, number, bodies));
             });
-        }
-        const ContactRows<Real>& pairs = step_.graph.pairs;
-        pairs.for_each([&](std::size_t i) {
-            if (pairs.is_live[i / kContactBlock] && (is_theirs(pairs.a[i]) || is_theirs(pairs.b[i])))
-                fn(of_discs(pairs, i, HeldContact::Store::pair));
-        });
-        step_.supports.for_each([&](std::size_t i) {
-            if (is_theirs(step_.supports.a[i])) fn(of_discs(step_.supports, i, HeldContact::Store::support));
-        });
+        for (const std::size_t i : some.pairs) fn(of_discs(step_.graph.pairs, i, HeldContact::Store::pair));
+        for (const std::size_t i : some.supports)
+            fn(of_discs(step_.supports, i, HeldContact::Store::support));
     }
     /// Separation of a point by what the bodies have come in this step [m].
     double separation(const HeldContact& contact, std::size_t point) const;

@@ -146,11 +146,12 @@ bool SoftJoints<Real>::is_fit_for_crowd(const WorldState<Real>& world,
     return most <= kLargestMassRatio * least;
 }
 
-/// Marks groups of which a body can touch something in this step.
+/// Lists the contacts of groups, and marks those of which a body can touch something in this step.
 template <class Real>
 void SoftJoints<Real>::find_touching(const JointStep<Real>& step, const StepView<Real>& contacts,
                                      const PathSolver<Real>& paths, double dt) {
-    group_touches_.assign(first_beside_, 0);
+    group_touches_.assign(first_beside_, 0), contacts_.clear();
+    if (first_beside_ == 0) return;
     const Bodies<Real>& bodies = step.world.bodies;
     const auto speed_of = [&](std::size_t row) {
         return std::fabs(static_cast<double>(bodies.velocity_x[row])) +
@@ -166,34 +167,38 @@ void SoftJoints<Real>::find_touching(const JointStep<Real>& step, const StepView
     };
     const ContactRows<Real>& pairs = contacts.graph.pairs;
     pairs.for_each([&](std::size_t i) {
-        if (pairs.is_live[i / kContactBlock]) look(pairs, i, pairs.a[i], pairs.b[i]);
+        if (!pairs.is_live[i / kContactBlock] || !are_joined(pairs.a[i], pairs.b[i])) return;
+        contacts_.pairs.push_back(i), look(pairs, i, pairs.a[i], pairs.b[i]);
     });
-    contacts.supports.for_each(
-        [&](std::size_t i) { look(contacts.supports, i, contacts.supports.a[i], -1); });
-    if (bodies.has_shapes)
-        paths.for_each(
-            [&](const PathContact<Real>& contact) { mark(contact.near, contact.far, group_touches_); });
+    contacts.supports.for_each([&](std::size_t i) {
+        if (!are_joined(contacts.supports.a[i], -1)) return;
+        contacts_.supports.push_back(i), look(contacts.supports, i, contacts.supports.a[i], -1);
+    });
+    if (!bodies.has_shapes) return;
+    std::size_t number = 0;
+    paths.for_each([&](const PathContact<Real>& contact) {
+        if (are_joined(contact.near, contact.far)) {
+            contacts_.paths.push_back(number);
+            mark(contact.near, contact.far, group_touches_);
+        }
+        ++number;
+    });
 }
 
 /// Marks groups on which a contact presses, beside those that are marked.
 template <class Real>
-void SoftJoints<Real>::find_pressed(const JointStep<Real>& step, const StepView<Real>& contacts,
-                                    const PathSolver<Real>& paths, std::vector<std::uint8_t>& groups) const {
+void SoftJoints<Real>::find_pressed(const StepView<Real>& contacts, const PathSolver<Real>& paths,
+                                    std::vector<std::uint8_t>& groups) const {
     groups.resize(first_beside_);
-    const ContactRows<Real>& pairs = contacts.graph.pairs;
-    pairs.for_each([&](std::size_t i) {
-        if (pairs.is_live[i / kContactBlock] && pairs.normal_impulse[i] > 0)
-            mark(pairs.a[i], pairs.b[i], groups);
-    });
-    const ContactRows<Real>& supports = contacts.supports;
-    supports.for_each([&](std::size_t i) {
+    const ContactRows<Real>&pairs = contacts.graph.pairs, &supports = contacts.supports;
+    for (const std::size_t i : contacts_.pairs)
+        if (pairs.normal_impulse[i] > 0) mark(pairs.a[i], pairs.b[i], groups);
+    for (const std::size_t i : contacts_.supports)
         if (supports.normal_impulse[i] > 0) mark(supports.a[i], -1, groups);
+    contacts_.for_each_path(paths, [&](const PathContact<Real>& contact) {
+        if (contact.link.normal1[contact.lane] + contact.link.normal2[contact.lane] > 0)
+            mark(contact.near, contact.far, groups);
     });
-    if (step.world.bodies.has_shapes)
-        paths.for_each([&](const PathContact<Real>& contact) {
-            if (contact.link.normal1[contact.lane] + contact.link.normal2[contact.lane] > 0)
-                mark(contact.near, contact.far, groups);
-        });
 }
 
 template <class Real>
@@ -209,7 +214,7 @@ void SoftJoints<Real>::begin_step(const JointStep<Real>& step, const StepView<Re
         direct_[i].begin_step(step, touches, is_beside, is_rattle);
     }
     is_pressed_.clear();
-    if (touches_) find_pressed(step, contacts, paths, is_pressed_);
+    if (touches_) find_pressed(contacts, paths, is_pressed_);
     if (!swept_.empty()) swept_.begin_step(step, contacts.loops);
 }
 
@@ -236,7 +241,7 @@ DirectJoints<Real>* SoftJoints<Real>::small_group_of(std::int32_t row) {
 template <class Real>
 void SoftJoints<Real>::forget_blows(const JointStep<Real>& step, const StepView<Real>& contacts,
                                     PathSolver<Real>& paths) {
-    if (!blows_.find(step, contacts, paths, group_touches_)) return;
+    if (!blows_.find(step, contacts, paths, contacts_, group_touches_)) return;
     blows_.take_back(contacts, paths);
     for (std::size_t i = 0; i < first_beside_; ++i)
         if (blows_.is_thrown(i)) direct_[i].solve_again(step);
@@ -287,7 +292,7 @@ bool SoftJoints<Real>::end_step(const JointStep<Real>& step, const StepView<Real
                                 const PathSolver<Real>& paths, Books& books, double dt) {
     JointStore& joints = step.world.joints;
     if (touches_) {
-        find_pressed(step, contacts, paths, is_pressed_);
+        find_pressed(contacts, paths, is_pressed_);
         for (std::size_t i = 0; i < first_beside_; ++i)
             if (!is_pressed_[i]) direct_[i].leave();
     }
@@ -363,6 +368,7 @@ std::string SoftJoints<Real>::describe() const {
 template <class Real>
 std::size_t SoftJoints<Real>::bytes() const {
     std::size_t bytes = swept_.bytes() + springs_.bytes() + joined_.bytes() + blows_.bytes() +
+                        contacts_.bytes() +
                         (group_of_.capacity() + first_of_group_.capacity()) * sizeof(std::int32_t) +
                         group_touches_.capacity();
     for (const DirectJoints<Real>& group : direct_) bytes += group.bytes() + sizeof(group);

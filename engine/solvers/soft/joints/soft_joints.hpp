@@ -9,6 +9,7 @@
 #include "solvers/joints/swept_joints.hpp"
 #include "solvers/paths/path_solver.hpp"
 #include "solvers/soft/joints/foreseen_blows.hpp"
+#include "solvers/soft/joints/joined_contacts.hpp"
 #include "solvers/soft/step_view.hpp"
 
 namespace carom {
@@ -51,6 +52,8 @@ class SoftJoints {
                                                                 : -1;
     }
     DirectJoints<Real>& exact_group(std::int32_t number) { return direct_[static_cast<std::size_t>(number)]; }
+    /// The contacts of the step that these groups have.
+    const JoinedContacts& contacts() const { return contacts_; }
     /// The group of a body if it has few joints, else null.
     DirectJoints<Real>* small_group_of(std::int32_t row);
     /// Whether contacts and joints are to be solved in turns in this step.
@@ -97,8 +100,12 @@ class SoftJoints {
     static JointBreak break_of(const JointStep<Real>& step, std::size_t slot, double dt);
     void find_touching(const JointStep<Real>& step, const StepView<Real>& contacts,
                        const PathSolver<Real>& paths, double dt);
-    void find_pressed(const JointStep<Real>& step, const StepView<Real>& contacts,
-                      const PathSolver<Real>& paths, std::vector<std::uint8_t>& groups) const;
+    void find_pressed(const StepView<Real>& contacts, const PathSolver<Real>& paths,
+                      std::vector<std::uint8_t>& groups) const;
+    /// Whether one of two rows is of such a group; below zero or beyond the bodies: none is.
+    bool are_joined(std::int32_t a, std::int32_t b) const {
+        return exact_group_of(a) >= 0 || exact_group_of(b) >= 0;
+    }
     /// Marks the groups of two rows; below zero or beyond the bodies: none.
     void mark(std::int32_t a, std::int32_t b, std::vector<std::uint8_t>& groups) const {
         for (const std::int32_t row : {a, b})
@@ -120,6 +127,7 @@ class SoftJoints {
     // The next members are of groups that are solved exactly, in the order of direct_.
     std::vector<std::int32_t> group_of_;  // by row; -1: none
     std::vector<std::uint8_t> group_touches_, is_pressed_;
+    JoinedContacts contacts_;  // of the step
     ForeseenBlows<Real> blows_;
 };
 
