@@ -15,11 +15,13 @@ class FreeRows {
     /// Softness has little part in a pivot below this share of it.
     static constexpr double kLittle = 1. / 3;
 
-    /// Factors the matrix with some softness on its diagonal. Cost: count³ / 6.
+    /// Factors the matrix with some softness on its diagonal. Cost: count³ / 6; if the list of rows begins as
+    /// the one before did, count² / 2 for each row behind that.
     /// @param matrix  [stride][stride]  @param rows  of it, ascending
     /// @param alone  by row of the matrix: of what softness is a share
+    /// @param is_same_matrix  whether all but the rows are those of the call before
     void factor(std::span<const double> matrix, std::size_t stride, std::span<const std::size_t> rows,
-                std::span<const double> alone, double softness);
+                std::span<const double> alone, double softness, bool is_same_matrix = false);
     /// Whether softness has little part in all pivots.
     bool are_independent() const { return are_independent_; }
     std::span<const std::size_t> rows() const { return rows_; }
@@ -32,7 +34,8 @@ class FreeRows {
     void solve_one(double* x) const;
 
     std::vector<std::size_t> rows_;
-    std::vector<double> columns_;  // of L, [count][count], below the diagonal
+    std::size_t stride_ = 0;
+    std::vector<double> columns_;  // of L, [stride][stride], below the diagonal
     std::vector<double> across_;   // its rows, likewise
     std::vector<double> pivot_;    // D
     std::vector<double> by_softness_;

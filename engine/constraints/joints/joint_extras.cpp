@@ -51,7 +51,7 @@ void JointSystem::list_extras() {
 void JointSystem::couple_extras() {
     const std::size_t count = extras_.size();
     taut_.clear();
-    for (Factors& factors : factors_) factors.are_known = false;
+    for (Factors& factors : factors_) factors.are_known = factors.is_filter_known = false;
     if (count == 0) return;
     extra_rhs_.assign(count, 0), low_.assign(count, 0), high_.assign(count, 0);
     state_.assign(count, End::none);
@@ -178,29 +178,21 @@ void JointSystem::part_motors_from_limits() {
 /// The impulses x of the extra rows, low <= x <= high, where their residual A x - b is zero between the ends,
 /// >= 0 at the low and <= 0 at the high one: block principal pivoting (Júdice & Pires 1994), one row at a
 /// time once blocks have not come to an end. Projected sweeps over this matrix do not converge.
+///
+/// Rows that are not independent may be at an end and not in turns for ever, since what is filtered is not
+/// what was solved. Whole turns of such a cycle are left out: docs/decisions/0086-steps-that-stall.md.
 void JointSystem::solve_bounded(Use use) {
     constexpr int kMostRounds = 64, kBlockRounds = 12;
     const std::size_t count = extras_.size();
     solution_.assign(count, 0);
+    cycle_.begin();
     for (int round = 0; round < kMostRounds; ++round) {
+        const bool is_of_blocks = round < kBlockRounds;
+        if (round == kBlockRounds) cycle_.begin();
         part_motors_from_limits();
         solve_free(use);
-        bool any = false;
-        for (std::size_t i = 0; i < count && !(any && round >= kBlockRounds); ++i) {
-            End next = state_[i];
-            if (state_[i] == End::none) {
-                if (solution_[i] < low_[i]) next = End::low;
-                if (solution_[i] > high_[i]) next = End::high;
-            } else {
-                double off = -extra_rhs_[i];
-                for (std::size_t k = 0; k < count; ++k) off += matrix_[i * count + k] * solution_[k];
-                if (state_[i] == End::low ? off < 0 : off > 0) next = End::none;
-                if (low_[i] == high_[i]) next = End::low;
-            }
-            any = any || next != state_[i];
-            state_[i] = next;
-        }
-        if (!any) return;
+        if (!change_ends(is_of_blocks)) return;
+        round = cycle_.same_at(state_, round, (is_of_blocks ? kBlockRounds : kMostRounds) - 1);
     }
     // A cycle: what is beyond its ends is at them, and what has none is held all the same.
     for (std::size_t i = 0; i < count; ++i)
@@ -208,6 +200,28 @@ void JointSystem::solve_bounded(Use use) {
             state_[i] = solution_[i] < low_[i] ? End::low : End::high;
     solve_free(use);
     for (std::size_t i = 0; i < count; ++i) solution_[i] = std::clamp(solution_[i], low_[i], high_[i]);
+}
+
+/// Rows that break their law go to an end, or leave it: all of them, or the first.
+/// @return whether any does
+bool JointSystem::change_ends(bool all) {
+    const std::size_t count = extras_.size();
+    bool any = false;
+    for (std::size_t i = 0; i < count && (all || !any); ++i) {
+        End next = state_[i];
+        if (state_[i] == End::none) {
+            if (solution_[i] < low_[i]) next = End::low;
+            if (solution_[i] > high_[i]) next = End::high;
+        } else {
+            double off = -extra_rhs_[i];
+            for (std::size_t k = 0; k < count; ++k) off += matrix_[i * count + k] * solution_[k];
+            if (state_[i] == End::low ? off < 0 : off > 0) next = End::none;
+            if (low_[i] == high_[i]) next = End::low;
+        }
+        any = any || next != state_[i];
+        state_[i] = next;
+    }
+    return any;
 }
 
 /// Those that are at no end.
@@ -238,10 +252,12 @@ void JointSystem::solve_free(Use use) {
 const JointSystem::Factors& JointSystem::factor_free(Use use) {
     Factors& factors = factors_[static_cast<std::size_t>(use)];
     if (factors.are_known && std::ranges::equal(factors.softened.rows(), free_)) return factors;
+    const std::size_t count = extras_.size();
+    factors.softened.factor(matrix_, count, free_, alone_, kLoopSoftness, factors.are_known);
     factors.are_known = true;
-    factors.softened.factor(matrix_, extras_.size(), free_, alone_, kLoopSoftness);
-    if (!factors.softened.are_independent())
-        factors.filtered.factor(matrix_, extras_.size(), free_, alone_, kFilter);
+    if (factors.softened.are_independent()) return factors;
+    factors.filtered.factor(matrix_, count, free_, alone_, kFilter, factors.is_filter_known);
+    factors.is_filter_known = true;
     return factors;
 }
 

@@ -10,6 +10,7 @@
 #include "constraints/free_rows.hpp"
 #include "constraints/joints/joint_rows.hpp"
 #include "constraints/joints/spring_law.hpp"
+#include "math/cycle_finder.hpp"
 
 namespace carom {
 
@@ -240,7 +241,7 @@ class JointSystem {
     /// Factors of free rows.
     struct Factors {
         FreeRows softened, filtered;
-        bool are_known = false;  // of matrix_ as it is
+        bool are_known = false, is_filter_known = false;  // of matrix_ as it is
     };
     enum class End : std::uint8_t { none, low, high };  // where the impulse of an extra row is
 
@@ -336,6 +337,7 @@ class JointSystem {
     /// What for: which rows are free differs.
     enum class Use : std::uint8_t { solve, answer };
     void solve_bounded(Use use);
+    bool change_ends(bool all);
     bool follow_curves(int rounds, double least);
     void follow_tangents();
     void take_back_gain(double before);
@@ -410,6 +412,7 @@ class JointSystem {
     std::vector<Blow> blows_;                  // of all of them
     std::vector<std::size_t> loaded_;          // bodies that they press on
     std::vector<End> kept_state_;              // by extra row: before a blow is answered
+    CycleFinder<std::vector<End>> cycle_;      // of state_
 };
 
 template <class Fn>

@@ -28,6 +28,7 @@ struct Profile {
     std::int64_t contacts = 0;              ///< that could touch in the last step (solver `soft`)
     std::int64_t colours = 0;               ///< groups of contacts that share no body (solver `soft`)
     std::int64_t overflow = 0;              ///< contacts that found no colour and are solved one by one
+    std::int64_t path_solves = 0;           ///< times that contacts of shapes were solved along paths
     std::int64_t path_cuts = 0;             ///< steps that cut contacts of shapes into paths anew
     std::int64_t bounces = 0;               ///< impacts with restitution (solver `soft`)
     std::int64_t touching = 0;  ///< contacts that push in the last step (solver `impulse`: that are at rest)

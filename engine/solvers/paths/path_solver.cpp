@@ -333,38 +333,62 @@ void PathSolver<Real>::warm_start(const SubstepTerms& terms, BodyRecords<Real>& 
     rolling_.warm_start(records);
 }
 
+/// @param turns_of_rolling  in each of which all paths are solved once more
 template <class Real>
-void PathSolver<Real>::solve(const SubstepTerms& terms, BodyRecords<Real>& records,
-                             const StepLoops<Real>& loops, int passes, bool sweeps, Bundles which) {
-    if (manifolds.live().empty()) return;
-    const PathKernels<Real>& kernels = loops.kernels->convex->paths;
-    SolvePaths<Real> k = arguments(terms, records);
-    if (which == Bundles::restless && rolling_.empty())
-        k.resting_speed = static_cast<Real>(kRestingSpeed * terms.fall_speed());
-    const auto none = static_cast<Real>(kNoPoint);
-    for (const Hidden& h : hidden_)
-        links_[h.link].separation1[h.lane] = links_[h.link].separation2[h.lane] = none;
-    for (int pass = 0; pass < passes; ++pass) run(kernels.solve, k, loops, which);
+void PathSolver<Real>::solve(SolvePaths<Real> k, BodyRecords<Real>& records, const StepLoops<Real>& loops,
+                             int passes, int turns_of_rolling, bool sweeps, Bundles which) {
+    const auto solve_all = [&] {
+        ++counters.solves;
+        run(loops.kernels->convex->paths.solve, k, loops, which);
+    };
+    for (int pass = 0; pass < passes; ++pass) solve_all();
     solve_watched(k, loops, which, false);
-    choice_.note_solved(static_cast<std::int64_t>(cut().paths()) * passes);
-    for (int turn = 0; turn < kTurnsOfRolling && !rolling_.empty(); ++turn) {
+    choice_.note_solved(static_cast<std::int64_t>(cut().paths()) * std::max(passes, 1));
+    for (int turn = 0; turn < turns_of_rolling && !rolling_.empty(); ++turn) {
         rolling_.solve(records, [&](std::size_t n) {
             const PathCut::Place place = cut().places()[n];
             return links_[place.link].normal1[place.lane] + links_[place.link].normal2[place.lane];
         });
-        run(kernels.solve, k, loops, which);
+        solve_all();
     }
     // In a crowd paths are short, and what they hand on to each other is more than what is left in them:
     // docs/decisions/0058-large-heaps.md.
-    if (sweeps || (manifolds.is_crowd() && rolling_.empty())) {
-        k.resting_speed = sweeps ? Real(0) : static_cast<Real>(kRestingSpeed * terms.fall_speed());
-        run(kernels.sweep, k, loops, which);
-        solve_watched(k, loops, which, rolling_.empty());  // else displacements have changed
-    }
-    for (const Hidden& h : hidden_) {
-        links_[h.link].separation1[h.lane] = h.separation1;
-        links_[h.link].separation2[h.lane] = h.separation2;
-    }
+    if (!sweeps && !(manifolds.is_crowd() && rolling_.empty())) return;
+    k.resting_speed = sweeps ? Real(0) : static_cast<Real>(kRestingSpeed) * k.fall;
+    run(loops.kernels->convex->paths.sweep, k, loops, which);
+    solve_watched(k, loops, which, rolling_.empty());  // else displacements have changed
+}
+
+template <class Real>
+void PathSolver<Real>::solve(const SubstepTerms& terms, BodyRecords<Real>& records,
+                             const StepLoops<Real>& loops, int passes, bool sweeps, Bundles which) {
+    if (manifolds.live().empty()) return;
+    SolvePaths<Real> k = arguments(terms, records);
+    if (which == Bundles::restless && rolling_.empty())
+        k.resting_speed = static_cast<Real>(kRestingSpeed) * k.fall;
+    without_hidden([&] { solve(k, records, loops, passes, kTurnsOfRolling, sweeps, which); });
+}
+
+/// A turn of rolling resistance ends with a solve of the paths: that is the only one.
+template <class Real>
+void PathSolver<Real>::solve_again(const SubstepTerms& terms, BodyRecords<Real>& records,
+                                   const StepLoops<Real>& loops, bool sweeps, Bundles which) {
+    if (manifolds.live().empty()) return;
+    SolvePaths<Real> k = arguments(terms, records);
+    k.tries_pieces = false;
+    without_hidden([&] { solve(k, records, loops, rolling_.empty() ? 1 : 0, 1, sweeps, which); });
+}
+
+template <class Real>
+void PathSolver<Real>::sweep(const SubstepTerms& terms, BodyRecords<Real>& records,
+                             const StepLoops<Real>& loops, Bundles which) {
+    if (manifolds.live().empty()) return;
+    const SolvePaths<Real> k = arguments(terms, records);
+    without_hidden([&] {
+        solve_watched(k, loops, which, false);
+        run(loops.kernels->convex->paths.sweep, k, loops, which);
+        solve_watched(k, loops, which, true);
+    });
 }
 
 template <class Real>

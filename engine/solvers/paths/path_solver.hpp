@@ -25,6 +25,7 @@ struct PathCounters {
     std::int64_t links = 0;      ///< of bundles: kPathLanes times as many places for contacts
     std::int64_t unsettled = 0;  ///< paths whose active set did not settle, in all substeps
     std::int64_t impacts = 0;    ///< so far
+    std::int64_t solves = 0;     ///< of all paths, or of those near bodies in turns, so far
     std::int64_t cuts = 0;       ///< steps that cut the contacts into paths anew, so far
 };
 
@@ -56,11 +57,19 @@ class PathSolver {
     /// alone that are near bodies in turns.
     enum class Bundles : std::uint8_t { all, restless, near_turns };
     /// Solves a substep.
-    /// @param passes  times that the paths are solved; more than one where there are no impulses to start
-    /// from
+    /// @param passes  times that the paths are solved, at least once; more where there are no impulses to
+    /// start from
     /// @param sweeps  whether to sweep over all contacts at the end
     void solve(const SubstepTerms& terms, BodyRecords<Real>& records, const StepLoops<Real>& loops,
                int passes, bool sweeps, Bundles which = Bundles::all);
+    /// Sweeps over all contacts once.
+    void sweep(const SubstepTerms& terms, BodyRecords<Real>& records, const StepLoops<Real>& loops,
+               Bundles which = Bundles::all);
+    /// Solves once more what is solved already, since something else has changed velocities: a turn of many,
+    /// so rolling resistance takes one in each, and what does not settle is swept in place of solved in
+    /// pieces.
+    void solve_again(const SubstepTerms& terms, BodyRecords<Real>& records, const StepLoops<Real>& loops,
+                     bool sweeps, Bundles which);
     TurnRows turns;  ///< whose contacts are solved in turns
     /// The bundles of a turn.
     Bundles near_turns() const { return turns.are_known() ? Bundles::near_turns : Bundles::all; }
@@ -175,6 +184,11 @@ class PathSolver {
     }
     static void give(const PathLink<Real>& link, std::size_t lane, std::size_t near, std::size_t far,
                      Real sign, Column<Real>& velocity);
+    /// Calls fn() while the contacts that are hidden have no points.
+    template <class Fn>
+    void without_hidden(const Fn& fn);
+    void solve(SolvePaths<Real> arguments, BodyRecords<Real>& records, const StepLoops<Real>& loops,
+               int passes, int turns_of_rolling, bool sweeps, Bundles which);
     void solve_watched(const SolvePaths<Real>& arguments, const StepLoops<Real>& loops, Bundles which,
                        bool has_floors);
     void lay_out(const WorldState<Real>& world, const EdgeCandidates<Real>& edges, const SubstepTerms& terms,
@@ -232,6 +246,19 @@ void PathSolver<Real>::scale(const ShareOf& share_of) {
             *impulse = share > 0 ? share * *impulse : Real(0);
     }
     rolling_.scale(share_of);
+}
+
+template <class Real>
+template <class Fn>
+void PathSolver<Real>::without_hidden(const Fn& fn) {
+    const auto none = static_cast<Real>(kNoPoint);
+    for (const Hidden& h : hidden_)
+        links_[h.link].separation1[h.lane] = links_[h.link].separation2[h.lane] = none;
+    fn();
+    for (const Hidden& h : hidden_) {
+        links_[h.link].separation1[h.lane] = h.separation1;
+        links_[h.link].separation2[h.lane] = h.separation2;
+    }
 }
 
 extern template class PathSolver<float>;

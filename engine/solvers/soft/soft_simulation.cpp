@@ -138,6 +138,7 @@ void SoftSimulation<Real>::report(Profile& profile) const {
     profile.overflow = counters.overflow;
     const ImpactCounters& impacts = soft.impacts.counters;
     profile.impacts += soft.paths.counters.impacts, profile.path_cuts += soft.paths.counters.cuts;
+    profile.path_solves += soft.paths.counters.solves;
     profile.impacts += impacts.impacts, profile.wall_impacts += impacts.of_walls;
     profile.bounces += impacts.impacts - impacts.inelastic;
     const SolveQuality solve = soft.quality();

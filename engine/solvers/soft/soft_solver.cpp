@@ -142,8 +142,11 @@ bool SoftSolver<Real>::solve_turn(WorldState<Real>& world, double settled, bool 
         using Bundles = typename PathSolver<Real>::Bundles;
         paths.turns.begin();
         const bool has_asked = joints.ask_turns(settled, paths.turns);
-        paths.solve(terms_, records_, loops_, 1, true,
-                    is_near && has_asked ? paths.near_turns() : Bundles::all);
+        const Bundles which = is_near && has_asked ? paths.near_turns() : Bundles::all;
+        if (is_near)
+            paths.solve_again(terms_, records_, loops_, true, which);
+        else
+            paths.solve(terms_, records_, loops_, 1, true, which);
     }
     sweeps_.run(view(), {next.data(), next.size()});
     return false;

@@ -51,7 +51,7 @@ void LoadCorrection<Real>::correct(const StepView<Real>& step, const StepFlight<
     if (is_corrected_) {
         sweeps.run(step, {&scale, 1}, on_pairs, on_supports);
         paths.run_loads(&PathPasses::scale_loads, on_paths, step.terms, step.records, step.loops);
-        paths.solve(step.terms, step.records, step.loops, 0, true);
+        paths.sweep(step.terms, step.records, step.loops);
     }
     sweeps.run(step, ContactSweeps<Real>::next(step, ContactSweeps<Real>::Blocks::all,
                                                step.settings.iterations - 1));

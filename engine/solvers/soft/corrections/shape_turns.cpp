@@ -17,6 +17,9 @@ namespace {
 /// touch, and whatever that is. docs/decisions/0064-uneven-masses-in-sweeps.md has what fewer leave.
 constexpr double kTurnsOfRatio = 0.05;
 constexpr int kMostTurns = 31;
+/// And in a step: where it has many substeps each begins with what the one before came to, and falls less.
+/// docs/decisions/0086-steps-that-stall.md.
+constexpr double kMostTurnsOfStep = 4 * kMostTurns;
 /// They end when a sweep changes no velocity by more than this share of what gravity adds in a substep, and
 /// after a few where the change has not become less.
 constexpr double kSettled = 0.2;
@@ -60,7 +63,8 @@ void ShapeTurns<Real>::begin_step(const WorldState<Real>& world, const PathSolve
         const ManifoldList<Real>& list = manifolds.list_of(live[n]);
         const std::size_t i = Manifolds<Real>::place_of(live[n]);
         const Partner partner(list.b[i]);
-        if (!partner.is_body()) continue;
+        // Sleepers have rows beyond those that masses are known of; nothing moves them in this step.
+        if (!partner.is_body() || index(partner.row()) >= world.bodies.count) continue;
         const Real of_a = std::fabs(inverse[index(list.a[i])]),
                    of_b = std::fabs(inverse[index(partner.row())]);
         if (!(of_a > 0 && of_b > 0)) continue;
@@ -111,6 +115,8 @@ void ShapeTurns<Real>::settle(const StepView<Real>& step, ContactSweeps<Real>& s
     const bool has_discs = step.graph.pairs.contacts() > 0;
     const auto settled = static_cast<Real>(settled_ * step.terms.fall_speed());
     const auto struck = static_cast<Real>(kStruck * step.terms.fall_speed());
+    const double share = std::ceil(kMostTurnsOfStep * step.terms.substep_dt / step.terms.dt);
+    const int most = std::min(most_, static_cast<int>(share));
     Real first = 0;  // change [m/s]
     paths.turns.begin();
     for (const Uneven& contact : uneven_) paths.turns.ask(contact.heavy);
@@ -121,7 +127,7 @@ void ShapeTurns<Real>::settle(const StepView<Real>& step, ContactSweeps<Real>& s
         Column<Real>& velocity = step.records.velocity;
         before_.resize_for_overwrite(velocity.size());
         std::copy(velocity.begin(), velocity.end(), before_.begin());
-        paths.solve(step.terms, step.records, step.loops, 0, true, which);
+        paths.sweep(step.terms, step.records, step.loops, which);
         if (has_discs) sweeps.run(step, next);
         std::array<Real, 4> changes{};  // vx, vy, rim speed, and the masses, which stay: a register's lanes
         for (std::size_t i = 0; i < velocity.size(); i += changes.size())
@@ -130,10 +136,10 @@ void ShapeTurns<Real>::settle(const StepView<Real>& step, ContactSweeps<Real>& s
         const Real change = *std::max_element(changes.begin(), changes.end());
         if (!(change > settled)) return;
         if (turn == 1) first = change;
-        is_last = turn == most_ || (turn >= most_of_struck_ && change > struck) ||
+        is_last = turn == most || (turn >= most_of_struck_ && change > struck) ||
                   (turn == kFewTurns && change > first);
         which = change > struck ? paths.near_turns() : Bundles::all;
-        paths.solve(step.terms, step.records, step.loops, 1, false, which);
+        paths.solve_again(step.terms, step.records, step.loops, false, which);
     }
 }
 
