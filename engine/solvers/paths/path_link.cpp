@@ -67,9 +67,29 @@ void write_link(const LinkPlace<Real>& to, ManifoldList<Real>& list, std::size_t
     link.friction[lane] = list.friction[i], link.thickness[lane] = list.thickness[i];
 }
 
+template <class Real>
+void give_impulses(const PathLink<Real>& link, std::size_t lane, std::size_t near, std::size_t far, Real sign,
+                   Column<Real>& velocity) {
+    const Real normal1 = sign * link.normal1[lane], normal2 = sign * link.normal2[lane],
+               tangent = sign * link.tangent[lane], normal = normal1 + normal2;
+    const Real jx = normal * link.normal_x[lane] - tangent * link.normal_y[lane],
+               jy = normal * link.normal_y[lane] + tangent * link.normal_x[lane];
+    const auto change = [&](std::size_t row, Real side, Real spin) {
+        Real* record = &velocity[4 * row];
+        const Real w = side * std::fabs(record[3]), w2 = 2 * side * std::max(record[3], Real(0));
+        record[0] += w * jx, record[1] += w * jy, record[2] += w2 * spin;
+    };
+    change(near, -1, link.near1[lane] * normal1 + link.near2[lane] * normal2 + link.near_t[lane] * tangent);
+    change(far, 1, link.far1[lane] * normal1 + link.far2[lane] * normal2 + link.far_t[lane] * tangent);
+}
+
 template void write_link(const LinkPlace<float>&, ManifoldList<float>&, std::size_t, bool,
                          const Bodies<float>&, const BodyRecords<float>&);
 template void write_link(const LinkPlace<double>&, ManifoldList<double>&, std::size_t, bool,
                          const Bodies<double>&, const BodyRecords<double>&);
+template void give_impulses(const PathLink<float>&, std::size_t, std::size_t, std::size_t, float,
+                            Column<float>&);
+template void give_impulses(const PathLink<double>&, std::size_t, std::size_t, std::size_t, double,
+                            Column<double>&);
 
 }  // namespace carom

@@ -25,4 +25,10 @@ template <class Real>
 void write_link(const LinkPlace<Real>& to, ManifoldList<Real>& list, std::size_t i, bool found,
                 const Bodies<Real>& bodies, const BodyRecords<Real>& records);
 
+/// Gives the bodies of a contact its impulses, times `sign`.
+/// @param near, far  rows of its bodies in the records
+template <class Real>
+void give_impulses(const PathLink<Real>& link, std::size_t lane, std::size_t near, std::size_t far, Real sign,
+                   Column<Real>& velocity);
+
 }  // namespace carom

@@ -326,8 +326,8 @@ void PathSolver<Real>::warm_start(const SubstepTerms& terms, BodyRecords<Real>& 
             const PathCut::Place place = cut().places()[n];
             const PathLink<Real>& link = links_[place.link];
             if (link.normal1[place.lane] + link.normal2[place.lane] > 0)
-                give(link, place.lane, static_cast<std::size_t>(near_row(place)),
-                     static_cast<std::size_t>(link.body[place.lane]), 1, records.velocity);
+                give_impulses(link, place.lane, static_cast<std::size_t>(near_row(place)),
+                              static_cast<std::size_t>(link.body[place.lane]), Real(1), records.velocity);
         }
     }
     rolling_.warm_start(records);
@@ -432,23 +432,6 @@ void PathSolver<Real>::advance(const SubstepTerms& terms, BodyRecords<Real>& rec
     turning_edges_.advance(terms.substep_dt, records);
 }
 
-/// Gives the bodies of a contact its impulses.
-template <class Real>
-void PathSolver<Real>::give(const PathLink<Real>& link, std::size_t lane, std::size_t near, std::size_t far,
-                            Real sign, Column<Real>& velocity) {
-    const Real normal1 = sign * link.normal1[lane], normal2 = sign * link.normal2[lane],
-               tangent = sign * link.tangent[lane], normal = normal1 + normal2;
-    const Real jx = normal * link.normal_x[lane] - tangent * link.normal_y[lane],
-               jy = normal * link.normal_y[lane] + tangent * link.normal_x[lane];
-    const auto change = [&](std::size_t row, Real side, Real spin) {
-        Real* record = &velocity[4 * row];
-        const Real w = side * std::fabs(record[3]), w2 = 2 * side * std::max(record[3], Real(0));
-        record[0] += w * jx, record[1] += w * jy, record[2] += w2 * spin;
-    };
-    change(near, -1, link.near1[lane] * normal1 + link.near2[lane] * normal2 + link.near_t[lane] * tangent);
-    change(far, 1, link.far1[lane] * normal1 + link.far2[lane] * normal2 + link.far_t[lane] * tangent);
-}
-
 template <class Real>
 void PathSolver<Real>::add_impulses(std::size_t number, const std::array<double, 3>& more) {
     const PathCut::Place place = cut().places()[number];
@@ -465,7 +448,7 @@ void PathSolver<Real>::take_from(const std::vector<std::uint8_t>& is_of, Column<
         const PathLink<Real>& link = links_[place.link];
         const auto near = static_cast<std::size_t>(near_row(place)),
                    far = static_cast<std::size_t>(link.body[place.lane]);
-        if ((is_of[near] | is_of[far]) != 0) give(link, place.lane, near, far, -1, velocity);
+        if ((is_of[near] | is_of[far]) != 0) give_impulses(link, place.lane, near, far, Real(-1), velocity);
     }
     rolling_.take_from(is_of, velocity);
 }

@@ -182,8 +182,6 @@ class PathSolver {
         return is_first ? heads_[kPathLanes * place.bundle + place.lane]
                         : links_[place.link - 1].body[place.lane];
     }
-    static void give(const PathLink<Real>& link, std::size_t lane, std::size_t near, std::size_t far,
-                     Real sign, Column<Real>& velocity);
     /// Calls fn() while the contacts that are hidden have no points.
     template <class Fn>
     void without_hidden(const Fn& fn);
