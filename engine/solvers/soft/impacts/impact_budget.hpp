@@ -32,9 +32,10 @@ class ImpactBudget {
     /// @param joints  that answer it
     void spend(std::int32_t row, double restitution, double speed, std::size_t joints) {
         Tally& tally = tally_of(row);
-        double cost = std::fmin(1, kCostOfLoss * (1 - restitution)) +
-                      kCostOfOne * (1 + kTimeOfJoint * static_cast<double>(joints));
+        const double time = 1 + kTimeOfJoint * static_cast<double>(joints);  // 1: that of free bodies
+        double cost = std::fmin(1, kCostOfLoss * (1 - restitution)) + kCostOfOne * time;
         if (speed > kFastShare * static_cast<double>(tally.fastest)) cost *= kCostOfFast;
+        if (tally.spent >= kBudget + kOverdraft) cost = std::fmax(cost, kCostOnCredit * time);
         tally.spent += static_cast<float>(cost);
         tally.fastest = std::max(tally.fastest, static_cast<float>(speed));
     }
@@ -45,8 +46,10 @@ class ImpactBudget {
     static constexpr float kCollapsing = 1;
     /// Spent beyond the budget, on impacts without restitution.
     static constexpr float kOverdraft = 8;
-    /// Likewise on those that would be deep: docs/decisions/0088-what-falls-on-heaps.md.
+    /// Likewise on those that would be deep, and the least that each of these costs of free bodies, however
+    /// elastic it is: docs/decisions/0088-what-falls-on-heaps.md.
     static constexpr float kOverdraftOfDeep = 64;
+    static constexpr double kCostOnCredit = 0.3;
     /// The cost for each unit of 1 - e, but at most 1; and what every impact costs besides.
     static constexpr double kCostOfLoss = 10, kCostOfOne = 0.002;
     /// What an impact takes longer by each joint that answers it, in times of an impact of free bodies.
