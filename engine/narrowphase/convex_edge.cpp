@@ -20,7 +20,6 @@ constexpr double kEndOn = 0.1;
 constexpr double kDeeperAlongOwn = 2;
 /// Normals this much shorter than 1 along the edge's own are its own: 1e-6 rad.
 constexpr double kOwnNormal = 1e-12;
-constexpr double kWiderCircle = 1 + 1e-9;  // against rounding
 
 /// An edge, the body's frame and what the body sees of it.
 struct SeenEdge {
@@ -221,14 +220,6 @@ void take_extremes(Line& line, const Manifold<double>& m, std::int32_t edge) {
     }
 }
 
-/// The radius of the disc around a shape, about its centre [m].
-double circle_around(const ConvexShape<double>& shape) {
-    double farthest = 0;
-    for (int i = 0; i < shape.count; ++i)
-        farthest = std::fmax(farthest, shape.x[i] * shape.x[i] + shape.y[i] * shape.y[i]);
-    return std::sqrt(farthest) + shape.radius;
-}
-
 /// Two points that are one.
 void join_points(Manifold<double>& m, double size) {
     if (m.separation2 >= kNoPoint || m.lever_b1 - m.lever_b2 > kNoLength * size) return;
@@ -260,7 +251,7 @@ void find_chain_manifolds(const PlacedConvex& body, std::span<const Edge> edges,
                           std::span<const std::int32_t> near, double margin,
                           std::vector<ChainManifold>& found) {
     std::vector<Line> lines;
-    const double size = body.shape.inradius, reach = kWiderCircle * (circle_around(body.shape) + margin);
+    const double size = body.shape.inradius, reach = kWiderCircle * (body.shape.extent + margin);
     for (const std::int32_t number : near) {
         const Edge& edge = edges[static_cast<std::size_t>(number)];
         if (distance_squared(body.centre, edge.a, edge.b) > reach * reach) continue;

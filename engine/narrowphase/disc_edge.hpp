@@ -11,6 +11,9 @@
 
 namespace carom {
 
+/// Circles in which edges are looked for are so much wider, against rounding of lengths in single precision.
+inline constexpr double kWiderCircle = 1 + 1e-6;
+
 /// Share of the way from a to b at which the line comes nearest to p; 0 and 1 at and beyond its ends.
 inline double nearest_share(Vec2 p, Vec2 a, Vec2 b) {
     const Vec2 along = b - a;

@@ -12,7 +12,7 @@ import shutil
 import subprocess
 import sys
 
-COPIED = ("CMakeLists.txt", "engine", "tests/physics", "tests/support", "tools", "docs")
+COPIED = ("CMakeLists.txt", "engine", "tests/physics", "tests/support", "tools", "docs/scene.schema.json")
 
 
 def added_by(patch):

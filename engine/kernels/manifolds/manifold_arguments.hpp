@@ -67,11 +67,12 @@ struct FindApproached {
 /// Contacts that were found, of which some have to be looked at one by one: solvers/manifolds/gaps.hpp.
 template <class Real>
 struct QuestionGaps {
-    const std::int32_t *a, *b;                   // rows
-    const Real *velocity_x, *velocity_y, *spin;  // m/s, m/s, rad/s, by row; spin is null where nothing turns
-    const Real* radius;                          // m, by row; null where one value serves all
-    Real uniform_radius;                         // m
-    const Real *thickness, *restitution;         // m, no unit, by contact
+    static constexpr std::size_t kContacts = 16;  // of a block: kRowPadding
+    const std::int32_t *a, *b;                    // rows
+    const Real *velocity_x, *velocity_y, *spin;   // m/s, m/s, rad/s, by row; spin is null where nothing turns
+    const Real* radius;                           // m, by row; null where one value serves all
+    Real uniform_radius;                          // m
+    const Real *thickness, *restitution;          // m, no unit, by contact
     ManifoldColumns<Real> found;
     Real dt;             // s
     Real share, fall;    // ContactDistance

@@ -18,12 +18,11 @@ std::uint32_t question_gaps(const QuestionGaps<Real>& k, std::size_t first) {
     using L = simd::Lanes<Real, Isa>;
     using F = typename L::Batch;
     using simd::abs, simd::max, simd::min, simd::sqrt;
-    constexpr std::size_t kContacts = 16;
     // No velocity or way is the end of more than a dozen sums and products, each off by half of this at most.
     constexpr Real kRounding = 8 * std::numeric_limits<Real>::epsilon();
     const F zero(0), none(static_cast<Real>(kNoPoint)), dt(k.dt), more(1 + kRounding), less(1 - kRounding);
     std::uint32_t found = 0;
-    for (std::size_t lane = 0; lane < kContacts; lane += L::size) {
+    for (std::size_t lane = 0; lane < k.kContacts; lane += L::size) {
         const std::size_t i = first + lane;
         const auto column = [&](const Real* of) { return L::load(of + i); };
         const F s1 = column(k.found.separation1), s2 = column(k.found.separation2),

@@ -22,6 +22,7 @@ constexpr double kRoundingOfGaps = 16 * static_cast<double>(std::numeric_limits<
 /// Most of a crowd touch, or stand beside each other: a kernel tells the others from these.
 template <class Real>
 void Gaps<Real>::look_at(std::size_t first, std::size_t last) {
+    static_assert(QuestionGaps<Real>::kContacts == kRowPadding);
     std::uint32_t left = in_.kernels.question_gaps(arguments(), first);
     // The kernel takes bodies to fly as they do: what is held flies otherwise, beside what stands.
     if (in_.flights.hold_any())

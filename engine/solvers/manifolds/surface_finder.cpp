@@ -19,7 +19,6 @@ namespace {
 constexpr double kNanosecondsToLook = 1;  // a row, on one thread, for the executor
 /// Share by which a reach may be off through rounding.
 constexpr double kRoundingOfReach = 1e-6;
-constexpr double kWiderCircle = 1 + 1e-9;  // against rounding, in double precision
 
 /// How far a body can come in a step [m].
 template <class Real>

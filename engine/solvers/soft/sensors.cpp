@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "narrowphase/disc_edge.hpp"
 #include "shapes/convex_geometry.hpp"
 #include "solvers/soft/stages.hpp"
 #include "state/edges/edge_tracks.hpp"
@@ -14,8 +15,6 @@ namespace {
 constexpr double kPassingThicknesses = 0.5;
 /// As near as this share of the thickness counts as met on the way.
 constexpr double kSensedTarget = 1e-3;
-/// Edges are looked for in the circle around a sensor, this much wider against rounding.
-constexpr double kWiderCircle = 1 + 1e-9;
 
 }  // namespace
 

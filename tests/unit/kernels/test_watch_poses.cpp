@@ -2,32 +2,21 @@
 // instruction set against the definitions, row by row in double precision.
 #include "isa/select_isa.hpp"
 #include "state/columns/column.hpp"
+#include "support/draw.hpp"
 
 #include <doctest/doctest.h>
 
 #include <array>
 #include <cmath>
-#include <random>
 #include <vector>
 
 using namespace carom;
+using carom::test::Draw;
 
 namespace {
 
 constexpr std::size_t kRows = 1000;
 constexpr double kStep = 1.0 / 64, kShare = 1e-3, kArc = 1e-6, kWay = 0.25;
-
-class Draw {
-  public:
-    explicit Draw(std::uint32_t seed) : random_(seed) {}
-    double between(double low, double high) {
-        return low + (high - low) * static_cast<double>(random_()) / 4294967296.0;
-    }
-    bool chance(double share) { return between(0, 1) < share; }
-
-  private:
-    std::mt19937 random_;
-};
 
 /// Rows of which some stand, some move by much, some turn alone, and some have just come.
 template <class Real>

@@ -1,13 +1,6 @@
 #include "parallel/executor.hpp"
 
-#if defined(__linux__) && defined(_OPENMP) && defined(__GNUC__) && !defined(__clang__)
-#define CAROM_TEST_ONE_PROCESSOR
-#include <sched.h>
-#endif
-
 #include <doctest/doctest.h>
-
-#include <chrono>
 #include <vector>
 
 namespace {
@@ -57,30 +50,4 @@ TEST_SUITE("parallel/executor") {
         chunks_of(executor, 1000, 100);
         CHECK(calls == 1);
     }
-
-#ifdef CAROM_TEST_ONE_PROCESSOR
-    // As in a container that may use a part of one processor: OpenMP does not know, and its threads wait by
-    // looking again and again. It does so only where no more threads than processors were started, so this
-    // runs in a program of its own (tests/CMakeLists.txt).
-    TEST_CASE("two threads on one processor do not wait for each other in each loop" * doctest::skip()) {
-        cpu_set_t all, one;
-        REQUIRE(sched_getaffinity(0, sizeof all, &all) == 0);
-        CPU_ZERO(&one);
-        for (int i = 0; i < CPU_SETSIZE && CPU_COUNT(&one) == 0; ++i)
-            if (CPU_ISSET(i, &all)) CPU_SET(i, &one);
-        REQUIRE(sched_setaffinity(0, sizeof one, &one) == 0);
-        // A loop takes microseconds, unless it waits for a thread that the processor does not run: then it
-        // takes time slices of milliseconds. Few may, which tell that the machine is busy.
-        constexpr int kLoops = 1000;
-        constexpr std::chrono::milliseconds kStall{1};
-        int stalled = 0;
-        const carom::Executor executor(2);
-        for (int loop = 0; loop < kLoops; ++loop) {
-            const auto start = std::chrono::steady_clock::now();
-            executor.for_each_task(2, 10 * carom::kShortestParallelLoop, [](std::size_t) {});
-            stalled += std::chrono::steady_clock::now() - start > kStall;
-        }
-        CHECK(stalled < kLoops / 4);
-    }
-#endif
 }

@@ -218,7 +218,6 @@ bool ShapeTunnelling<Real>::sinks_in(const Core& core, const Edge& edge) {
 template <class Real>
 void ShapeTunnelling<Real>::look_at_edges(const Inputs& in, const Way& way, const Core& core, bool is_last,
                                           Passed& first) {
-    constexpr double kWiderCircle = 1 + 1e-9;  // against rounding
     // An impact is found a little before the core is there.
     const double reach =
         (1 + 2 * kMeetingTarget) * core.radius + 0.5 * std::sqrt(length_squared(core.to - core.from));

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "math/vec2_math.hpp"
+#include "narrowphase/disc_edge.hpp"
 #include "narrowphase/line_crossing.hpp"
 
 namespace carom {
@@ -16,9 +17,6 @@ constexpr double kSmallestWay = 0.5;
 
 /// A disc is looked at by itself if the fastest body moves more than this share of the disc's radius.
 constexpr double kFastWay = 0.25;
-
-/// Edges are looked for in the circle around the way of a disc, this much wider against rounding.
-constexpr double kWiderCircle = 1 + 1e-9;
 
 constexpr double kNanosecondsToLook = 3;  // a disc, on one thread, for the executor
 

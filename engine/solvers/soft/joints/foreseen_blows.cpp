@@ -127,7 +127,7 @@ bool ForeseenBlows<Real>::find(const JointStep<Real>& step, const StepView<Real>
         const DoubleBody body = velocities.mean(row);
         return MeanVelocity{{body.record[0], body.record[1]}, body.record[2]};
     };
-    joined.for_each_path(paths, [&](const PathContact<Real>& contact) {
+    joined.for_each_path(paths, [&](const PathContact<Real>& contact, std::size_t) {
         add(contact.near, contact.far,
             [&] { return ContactWork<Real>(contact).work(mean(contact.near), mean(contact.far)); });
     });

@@ -47,10 +47,9 @@ class HeldContacts {
     /// Calls fn(contact) for each of some, in an order that rows alone decide.
     template <class Fn>
     void for_each(const JoinedContacts& some, const Bodies<Real>& bodies, const Fn& fn) const {
-        for (const std::size_t number : some.paths)
-            paths_.for_each_of(number, number + 1, [&](const PathContact<Real>& contact) {
-                fn(of_path(contact, number, bodies));
-            });
+        some.for_each_path(paths_, [&](const PathContact<Real>& contact, std::size_t number) {
+            fn(of_path(contact, number, bodies));
+        });
         for (const std::size_t i : some.pairs) fn(of_discs(step_.graph.pairs, i, HeldContact::Store::pair));
         for (const std::size_t i : some.supports)
             fn(of_discs(step_.supports, i, HeldContact::Store::support));

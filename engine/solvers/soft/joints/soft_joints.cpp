@@ -195,7 +195,7 @@ void SoftJoints<Real>::find_pressed(const StepView<Real>& contacts, const PathSo
         if (pairs.normal_impulse[i] > 0) mark(pairs.a[i], pairs.b[i], groups);
     for (const std::size_t i : contacts_.supports)
         if (supports.normal_impulse[i] > 0) mark(supports.a[i], -1, groups);
-    contacts_.for_each_path(paths, [&](const PathContact<Real>& contact) {
+    contacts_.for_each_path(paths, [&](const PathContact<Real>& contact, std::size_t) {
         if (contact.link.normal1[contact.lane] + contact.link.normal2[contact.lane] > 0)
             mark(contact.near, contact.far, groups);
     });
