@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 // As the tumbler and the spinner of Box2D's benchmarks, at 2,026 and 3,039 bodies.
@@ -15,13 +16,15 @@ namespace {
 constexpr double kGravity = 10;  // m/s²
 constexpr int kFalls = 300;      // steps, in which boxes have fallen on each other
 
-/// A body on a hinge of the world at its centre, with a motor.
-BodyId add_driven(Scene& scene, Body body, double speed, double torque) {
+/// A body on a hinge at its centre, with a motor.
+/// @param holder  has the hinge, and does not touch the body; left out: the world
+void add_driven(Scene& scene, std::optional<BodyId> holder, Body body, double speed, double torque) {
     const Vec2 centre = body.position;
     const BodyId id = scene.add(std::move(body));
-    scene.add(Joint{
-        .b = id, .kind = RevoluteJoint{.anchor = centre, .motor_speed = speed, .max_motor_torque = torque}});
-    return id;
+    scene.add(
+        Joint{.a = holder,
+              .b = id,
+              .kind = RevoluteJoint{.anchor = centre, .motor_speed = speed, .max_motor_torque = torque}});
 }
 
 /// What the spinner stirs, a third each.
@@ -45,7 +48,7 @@ BenchScene driven_drum(std::int64_t bodies) {
         drum.pieces.push_back({.shape = Box{wall, 2 * half}, .position = {side * half, 0}});
         drum.pieces.push_back({.shape = Box{2 * half, wall}, .position = {0, side * half}});
     }
-    add_driven(scene, {.shape = drum, .material = {.density = kDensity, .friction = kFriction}},
+    add_driven(scene, {}, {.shape = drum, .material = {.density = kDensity, .friction = kFriction}},
                kSpeed * std::numbers::pi / 180, 1e8);
     Lattice boxes;
     boxes.count_x = across, boxes.count_y = across;
@@ -72,8 +75,11 @@ BenchScene spinner(std::int64_t bodies) {
         const double angle = -2 * std::numbers::pi * k / kSides;
         vessel.points.push_back({radius * std::cos(angle), radius * std::sin(angle)});
     }
+    // The vessel holds the bar, so they do not touch: the bar's corners reach beyond it by 5 mm.
+    const BodyId holder =
+        scene.add({.type = BodyType::static_body, .shape = vessel, .material = {.friction = kFriction}});
     const double low = -0.5 * radius;  // m, of the bar's hinge
-    add_driven(scene, {.shape = Box{width, length}, .position = {0, low}}, 5, torque);
+    add_driven(scene, holder, {.shape = Box{width, length}, .position = {0, low}}, 5, torque);
     const auto half_row = static_cast<std::int64_t>(0.6 * radius);  // bodies, on either side of the bar
     for (std::int64_t i = 0; i < bodies - 2; ++i) {
         Body body{.shape = grain(i)};
@@ -84,7 +90,6 @@ BenchScene spinner(std::int64_t bodies) {
                          -0.75 * radius + static_cast<double>(row)};
         scene.add(std::move(body));
     }
-    scene.add({.type = BodyType::static_body, .shape = vessel, .material = {.friction = kFriction}});
     return {"spinner", std::move(scene), {}, 0, kFalls};
 }
 
