@@ -106,7 +106,7 @@ struct SolvePaths {
 };
 
 /// Bytes that a link needs while its path is solved; those of the widest batch.
-inline constexpr std::size_t kPathScratchBytes = 64 * 40;
+inline constexpr std::size_t kPathScratchBytes = 64 * 56;
 inline constexpr std::size_t path_scratch_bytes(std::size_t longest) {
     return (longest + 1) * kPathScratchBytes;
 }

@@ -77,6 +77,7 @@ template <class F>
 struct LinkMass {
     F k11, k12, k22, k1t, k2t, ktt;
 
+    LinkMass() = default;
     template <class Lanes, class Real>
     LinkMass(const LinkLanes<Lanes, Real>& l, F near_w, F near_w2, F far_w, F far_w2) {
         const F w = near_w + far_w, a1 = near_w2 * l.near1, a2 = near_w2 * l.near2, b1 = far_w2 * l.far1,

@@ -50,6 +50,8 @@ struct LinkScratch {
     PathBody<Lanes> body;  // the far one
     F w, w2;               // its masses
     F v1, v2, vt, floor1, floor2;
+    LinkMass<F> mass;           // with what the diagonal grows by
+    F next[9];                  // coupling with the next link: rows of this one, columns of that one
     F upper[9], right[3];       // the eliminated system: x[i] = right - upper x[i + 1]
     F change[3];                // of the impulses
     F dvx, dvy, du;             // of the far body's velocity
@@ -69,7 +71,20 @@ void store_changed(typename Lanes::Number* velocity, const std::int32_t* rows, t
     Lanes::store_rows4(velocity, rows, record);
 }
 
-/// Relative velocities of the links and a first guess of the active set.
+/// The coupling of a link with the next one, through the body between them.
+/// @param w, w2  its inverse masses
+template <class Lanes, class Real>
+void couple(const LinkLanes<Lanes, Real>& l, const LinkLanes<Lanes, Real>& q, typename Lanes::Batch w,
+            typename Lanes::Batch w2, typename Lanes::Batch next[9]) {
+    using F = typename Lanes::Batch;
+    const F nn = -w * (l.nx * q.nx + l.ny * q.ny), nt = -w * (l.ny * q.nx - l.nx * q.ny), c1 = -w2 * l.far1,
+            c2 = -w2 * l.far2, ct = -w2 * l.far_t;
+    next[0] = nn + c1 * q.near1, next[1] = nn + c1 * q.near2, next[2] = nt + c1 * q.near_t;
+    next[3] = nn + c2 * q.near1, next[4] = nn + c2 * q.near2, next[5] = nt + c2 * q.near_t;
+    next[6] = -nt + ct * q.near1, next[7] = -nt + ct * q.near2, next[8] = nn + ct * q.near_t;
+}
+
+/// Masses and couplings of the links, their relative velocities and a first guess of the active set.
 /// @param restless  becomes what SolvePaths::restless says of each lane
 /// @param inverse_mass  becomes that of the heaviest body of each lane [1/kg]
 /// @param drive  becomes the largest speed of what drives each lane, as nothing moves it; 0: nothing does
@@ -82,7 +97,8 @@ typename Lanes::Batch begin_paths(const PathBatch<Real>& p, LinkScratch<Lanes>* 
     using F = typename Lanes::Batch;
     const SolvePaths<Real>& k = p.k;
     const F zero(0), tolerance(k.velocity_tolerance);
-    const F one(1), thinnest(static_cast<Real>(1e-30));  // m
+    const F one(1), grown(static_cast<Real>(1 + kRegularisation)),
+        thinnest(static_cast<Real>(1e-30));  // m
     F fastest(0);
     restless = zero;
     PathBody<Lanes> a{Lanes::load_rows4(k.velocity, p.head)};
@@ -104,6 +120,11 @@ typename Lanes::Batch begin_paths(const PathBatch<Real>& p, LinkScratch<Lanes>* 
         const LinkLanes<Lanes, Real> l(link, p.lane);
         const PathBody<Lanes> b{Lanes::load_rows4(k.velocity, p.far_rows(i))};
         s.body = b, s.w = b.inverse_mass(), s.w2 = b.inverse_rim_mass();
+        s.mass = LinkMass<F>(l, a.inverse_mass(), a.inverse_rim_mass(), s.w, s.w2);
+        s.mass.k11 *= grown, s.mass.k22 *= grown, s.mass.ktt *= grown;
+        if (i > 0)
+            couple(LinkLanes<Lanes, Real>(p.link[i - 1], p.lane), l, scratch[i - 1].w, scratch[i - 1].w2,
+                   scratch[i - 1].next);
         note_mass(s.w), note_drive(b, s.w);
         l.relative(b.record[0] - a.record[0], b.record[1] - a.record[1], a.record[2], b.record[2], s.v1, s.v2,
                    s.vt);
@@ -122,6 +143,7 @@ typename Lanes::Batch begin_paths(const PathBatch<Real>& p, LinkScratch<Lanes>* 
         restless = simd::max(restless, speed * simd::max(F(k.resting_thickness) / thickness, one));
         a = b;
     }
+    for (F& e : scratch[p.length - 1].next) e = zero;
     return fastest;
 }
 
@@ -130,36 +152,21 @@ template <class Lanes, class Real>
 void eliminate(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch) {
     using F = typename Lanes::Batch;
     using simd::select;
-    const F zero(0), one(1), grown(static_cast<Real>(1 + kRegularisation));
+    const F zero(0), one(1);
     F lower[9], upper[9], right[3];  // lower: rows of this link, columns of the one before
     for (int e = 0; e < 9; ++e) lower[e] = upper[e] = zero;
     for (int e = 0; e < 3; ++e) right[e] = zero;
-    F near_w = scratch[p.length].w, near_w2 = scratch[p.length].w2;
     for (std::size_t i = 0; i < p.length; ++i) {
         const PathLink<Real>& link = p.link[i];
         LinkScratch<Lanes>& s = scratch[i];
-        const LinkLanes<Lanes, Real> l(link, p.lane);
-        const LinkMass<F> mass(l, near_w, near_w2, s.w, s.w2);
-        F m[9] = {mass.k11 * grown, mass.k12, mass.k1t, mass.k12,        mass.k22 * grown,
-                  mass.k2t,         mass.k1t, mass.k2t, mass.ktt * grown};
+        F m[9] = {s.mass.k11, s.mass.k12, s.mass.k1t, s.mass.k12, s.mass.k22,
+                  s.mass.k2t, s.mass.k1t, s.mass.k2t, s.mass.ktt};
         F b[3] = {s.floor1 - s.v1, s.floor2 - s.v2, -s.vt};
         for (int r = 0; r < 3; ++r) {
             for (int c = 0; c < 3; ++c)
                 m[3 * r + c] -= lower[3 * r] * upper[c] + lower[3 * r + 1] * upper[3 + c] +
                                 lower[3 * r + 2] * upper[6 + c];
             b[r] -= lower[3 * r] * right[0] + lower[3 * r + 1] * right[1] + lower[3 * r + 2] * right[2];
-        }
-        // The coupling with the next link, through the far body: rows of this one, columns of that one.
-        F next[9];
-        if (i + 1 < p.length) {
-            const LinkLanes<Lanes, Real> q(p.link[i + 1], p.lane);
-            const F nn = -s.w * (l.nx * q.nx + l.ny * q.ny), nt = -s.w * (l.ny * q.nx - l.nx * q.ny),
-                    c1 = -s.w2 * l.far1, c2 = -s.w2 * l.far2, ct = -s.w2 * l.far_t;
-            next[0] = nn + c1 * q.near1, next[1] = nn + c1 * q.near2, next[2] = nt + c1 * q.near_t;
-            next[3] = nn + c2 * q.near1, next[4] = nn + c2 * q.near2, next[5] = nt + c2 * q.near_t;
-            next[6] = -nt + ct * q.near1, next[7] = -nt + ct * q.near2, next[8] = nn + ct * q.near_t;
-        } else {
-            for (F& e : next) e = zero;
         }
         F right_side[9];
         const F old1 = Lanes::load(link.normal1 + p.lane), old2 = Lanes::load(link.normal2 + p.lane),
@@ -176,9 +183,9 @@ void eliminate(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch) {
         m[8] = select(slips, one, m[8]);
         b[2] = select(slips, slope * (old1 + old2) - old_t, b[2]);
         for (int c = 0; c < 3; ++c) {
-            right_side[c] = select(s.pushes1, next[c], zero);
-            right_side[3 + c] = select(s.pushes2, next[3 + c], zero);
-            right_side[6 + c] = select(slips, zero, next[6 + c]);
+            right_side[c] = select(s.pushes1, s.next[c], zero);
+            right_side[3 + c] = select(s.pushes2, s.next[3 + c], zero);
+            right_side[6 + c] = select(slips, zero, s.next[6 + c]);
         }
         const F c0 = m[4] * m[8] - m[5] * m[7], c1 = m[5] * m[6] - m[3] * m[8],
                 c2 = m[3] * m[7] - m[4] * m[6];
@@ -195,8 +202,7 @@ void eliminate(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch) {
                 inverse[3 * r] * b[0] + inverse[3 * r + 1] * b[1] + inverse[3 * r + 2] * b[2];
         }
         for (int r = 0; r < 3; ++r)
-            for (int c = 0; c < 3; ++c) lower[3 * r + c] = next[3 * c + r];
-        near_w = s.w, near_w2 = s.w2;
+            for (int c = 0; c < 3; ++c) lower[3 * r + c] = s.next[3 * c + r];
     }
 }
 
