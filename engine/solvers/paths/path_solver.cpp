@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "solvers/paths/path_link.hpp"
+#include "solvers/paths/path_plan.hpp"
 
 namespace carom {
 namespace {
@@ -21,20 +22,8 @@ constexpr double kRecovery = 0.1;
 constexpr double kSlop = 0.015, kSlowShare = 0.1;
 /// Largest displacement of that kind, in thicknesses a second.
 constexpr double kPushThicknesses = 6;
-/// How paths are solved: iterations of the active set, at most, of paths that alone hold their bodies and of
-/// others; and whether those that do not settle are solved in pieces.
-struct PathPlan {
-    int most_of_slender, most;
-    bool tries_pieces;
-};
-/// By PathMood. Where contacts come and go, exact solutions are soon out of date.
-/// docs/decisions/0042-contacts-that-cannot-close.md has the measurements of the last.
-constexpr PathPlan kPlans[] = {{40, 10, true}, {8, 8, true}, {4, 4, false}};
-/// Iterations of the active set that change all of its rows that are wrong; Gauss-Seidel sweeps over paths
-/// that do not settle.
-constexpr int kBoldIterations = 4, kSweepsOfUnsettled = 4;
-/// Gauss-Seidel sweeps over contacts beside the paths, behind each solve of the paths.
-constexpr int kSweepsOfWatched = 2;
+/// Iterations of the active set that change all of its rows that are wrong.
+constexpr int kBoldIterations = 4;
 /// By which a contact may miss its law, in shares of what gravity adds to a speed in a substep.
 constexpr double kTolerance = 2e-3;
 /// Paths whose contacts all were slower than this may rest for a substep, in shares of the same,
@@ -240,10 +229,10 @@ SolvePaths<Real> PathSolver<Real>::arguments(const SubstepTerms& terms, BodyReco
     k.restless = restless_.data(), k.is_slender = cut().is_slender().data(), k.resting_speed = 0;
     k.resting_thickness =
         static_cast<Real>(kRestingSpeed * terms.fall_speed() * terms.substep_dt / kRestingShare);
-    const PathPlan& plan = kPlans[static_cast<std::size_t>(choice_.mood_of_cut())];
+    const PathPlan& plan = plan_of(choice_.mood_of_cut(), manifolds.is_crowd());
     k.bold_iterations = kBoldIterations;
     k.most_iterations = plan.most, k.most_of_slender = plan.most_of_slender;
-    k.tries_pieces = plan.tries_pieces, k.sweeps_of_unsettled = kSweepsOfUnsettled;
+    k.tries_pieces = plan.tries_pieces, k.sweeps_of_unsettled = plan.sweeps_of_unsettled;
     return k;
 }
 
@@ -306,7 +295,8 @@ void PathSolver<Real>::solve_watched(const SolvePaths<Real>& arguments, const St
     const std::size_t begin = cut().first_watched(),
                       end = which == Bundles::near_turns ? cut().end_of_watched_turns() : cut().bundles();
     const PathKernels<Real>& kernels = loops.kernels->convex->paths;
-    for (int sweep = 0; sweep < kSweepsOfWatched && begin < end; ++sweep) {
+    const int sweeps = plan_of(choice_.mood_of_cut(), manifolds.is_crowd()).sweeps_of_watched;
+    for (int sweep = 0; sweep < sweeps && begin < end; ++sweep) {
         const Pass watch = has_floors || sweep > 0 ? kernels.watch_again : kernels.watch;
         loops.executor->for_each_chunk(end - begin, kWatchedPerTask, kNanosecondsToSolve * kPathLanes,
                                        [&](std::size_t, std::size_t first, std::size_t last) {
