@@ -60,6 +60,8 @@ struct KernelTable {
     std::array<ContactKernels<Real>, 5> contacts;
     // rods between centres, between anchors; hinges; springs and ropes; what acts on angles
     std::array<JointKernels<Real>, 5> joints;
+    void (*begin_bundles)(const BeginBundles<Real>&, std::size_t first, std::size_t last);
+    void (*sweep_bundles)(const SweepBundles<Real>&, std::size_t first, std::size_t last);
     // These four: without and with rotation; then the same where some bodies have joints.
     std::array<void (*)(const BeginSubsteps<Real>&, std::size_t first, std::size_t last), 2> begin_substeps;
     std::array<void (*)(const AdvanceBodies<Real>&, std::size_t first, std::size_t last), 4> advance_bodies;

@@ -15,6 +15,8 @@
 #include "kernels/flight/begin_flight.hpp"
 #include "kernels/flight/end_flight.hpp"
 #include "kernels/flight/find_impacts.hpp"
+#include "kernels/joints/begin_bundles.hpp"
+#include "kernels/joints/sweep_bundles.hpp"
 #include "kernels/joints/sweep_drives.hpp"
 #include "kernels/joints/sweep_joints.hpp"
 #include "simd/lanes.hpp"
@@ -74,6 +76,8 @@ constexpr KernelTable<Real> make_table(std::string_view isa, const ConvexKernels
               {&give_hinges<Real, Isa>, &sweep_hinges<true, Real, Isa>, &sweep_hinges<false, Real, Isa>},
               {&give_springs<Real, Isa>, &sweep_springs<true, Real, Isa>, &sweep_springs<false, Real, Isa>},
               {&give_angles<Real, Isa>, &sweep_angles<true, Real, Isa>, &sweep_angles<false, Real, Isa>}}},
+        .begin_bundles = &begin_bundles<Real, Isa>,
+        .sweep_bundles = &sweep_bundles<Real, Isa>,
         .begin_substeps = {&begin_substeps<false, Real, Isa>, &begin_substeps<true, Real, Isa>},
         .advance_bodies = {&advance_bodies<false, false, Real, Isa>, &advance_bodies<true, false, Real, Isa>,
                            &advance_bodies<false, true, Real, Isa>, &advance_bodies<true, true, Real, Isa>},

@@ -157,6 +157,7 @@ void JointStore::remove(std::size_t slot) {
 
 void JointStore::set_limits(std::size_t slot, double low, double high) {
     StoredJoint& joint = slots_[slot].joint;
+    ++settings;
     if (joint.turns_sign()) low = -std::exchange(high, -low);
     const auto set = [&](bool& has, JointLimit& limit, double value) {
         if (has)

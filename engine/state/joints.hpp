@@ -75,6 +75,8 @@ class JointStore {
   public:
     /// Counts changes after which what was derived from joints is to be made anew.
     std::int64_t version = 0;
+    /// Counts changes of motors and limits, which the solver may have copies of.
+    std::int64_t settings = 0;
 
     bool empty() const { return count_ == 0; }
     std::size_t count() const { return count_; }

@@ -118,6 +118,7 @@ void WorldJoints<Real>::set_motor(JointId joint, double speed, double most) {
         refuse(kWhere, "motor", "revolute, prismatic or wheel");
     own_.wake_joint(slot);
     if (stored.has_motor != (most > 0)) ++own_.world().joints.version;
+    ++own_.world().joints.settings;
     stored.has_motor = most > 0, stored.motor_speed = stored.as_kept(speed), stored.max_motor = most;
 }
 

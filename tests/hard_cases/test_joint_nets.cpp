@@ -276,6 +276,41 @@ TEST_SUITE("hard cases: nets of joints") {
         CHECK(many.overlaps().mean < 0.02);
     }
 
+    TEST_CASE_TEMPLATE("motors and limits that are set drive a crowd from the next step on", Real, float,
+                       double) {
+        constexpr double kTorque = 100;  // N m, more than any limb needs
+        Scene scene = figures(20);
+        scene.gravity = {}, scene.walls.reset();
+        for (Joint& joint : scene.joints) {
+            auto& hinge = std::get<RevoluteJoint>(joint.kind);
+            hinge.lower = -20, hinge.upper = 20;
+            hinge.motor_speed = 2, hinge.max_motor_torque = kTorque;
+        }
+        BasicWorld<Real> world(scene);
+        REQUIRE(world.plan().joints.find("20 of a crowd") != std::string::npos);
+        const auto joints = static_cast<std::uint32_t>(scene.joints.size());
+        const auto step = [&](int steps) {
+            for (int i = 0; i < steps; ++i) world.step(kStep);
+        };
+        const auto check_speeds = [&](double speed) {
+            CAPTURE(speed);
+            for (const Joint& joint : scene.joints)
+                CHECK(world.state(*joint.b).angular_velocity - world.state(*joint.a).angular_velocity ==
+                      doctest::Approx(speed).epsilon(0.01));
+        };
+        step(30);
+        check_speeds(2);
+        for (std::uint32_t j = 0; j < joints; ++j) world.set_motor(JointId::of(j), -3, kTorque);
+        step(30);
+        check_speeds(-3);
+        for (std::uint32_t j = 0; j < joints; ++j) world.set_limits(JointId::of(j), -1.25, 1.25);
+        step(60);
+        for (const Joint& joint : scene.joints)
+            CHECK(world.state(*joint.b).angle - world.state(*joint.a).angle ==
+                  doctest::Approx(-1.25).epsilon(0.01));
+        check_speeds(0);
+    }
+
     TEST_CASE_TEMPLATE(
         "a net with a disc that turns faster than a substep can follow loses none of its bodies", Real, float,
         double) {

@@ -24,8 +24,8 @@ enum class RowOrder : std::uint8_t { any, runs, pairs };
 /// Joints of one kind, sorted by group and colour: a body that moves is in one joint of a colour.
 template <class Real>
 struct JointColumns {
-    std::int32_t* a;        // row
-    std::int32_t* b;        // row
+    const std::int32_t* a;  // row
+    const std::int32_t* b;  // row
     const RowOrder* order;  // of each kJointBlock places
     Real* start_x;          // m, from a's centre to b's at the start of the step
     Real* start_y;          //
@@ -65,9 +65,50 @@ struct SweepJoints {
     Real per_h;          // 1/s
     Real until_end;      // s, from the start of the substep to the end of the step
     bool ends_move;      // whether some do
+    bool has_springs;    // whether some of these joints do spring; if not, their impulses are zero
+    bool has_motors;     // likewise
     Real recovery;       // share of an error that the first sweep takes away, by displacement
     Real most;           // largest correction, in lengths of the rod; of hinges, m; of angles, rad
     Real over_relaxation;
+};
+
+/// Most bodies of a mechanism that is swept in a bundle: what a batch of them needs is in the first cache.
+inline constexpr std::size_t kMostBodiesOfBundle = 32;
+
+/// Mechanisms of hinges that are joined alike, a lane each; lanes beyond `mechanisms` have a row at rest. The
+/// joint number j of each of them is in the places first + kJointBlock j ... of the columns of its kind.
+struct JointBundle {
+    std::size_t mechanisms;           // 1 ... kJointBlock
+    std::size_t bodies, first_body;   // of a mechanism; of all bundles, in SweepBundles::rows
+    std::size_t hinges, first_hinge;  // of a mechanism; place
+    std::size_t angles, first_angle;  // likewise
+};
+
+/// Gauss-Seidel sweeps over mechanisms, each on its own: over its hinges, then over what acts on its angles.
+template <class Real>
+struct SweepBundles {
+    // Of these a and b are numbers of bodies within their bundle; other members as in any sweep.
+    SweepJoints<Real> hinges, angles;
+    const JointBundle* bundles;
+    const std::int32_t* rows;  // [bodies of all bundles][kJointBlock]
+    bool gives;                // first the impulses that joints had at the end of the step before
+    bool begins;               // whether the first of two sweeps is that of a substep
+};
+
+/// Mechanisms at the start of a step. Of joints a and b are numbers of bodies within their bundle, and
+/// impulses are those of the step before; the start_ and seen_ columns are written.
+template <class Real>
+struct BeginBundles {
+    JointColumns<Real> hinges, angles;
+    const JointBundle* bundles;
+    const std::int32_t* rows;                     // [bodies of all bundles][kJointBlock]
+    const Real *position_x, *position_y, *angle;  // m, rad, of bodies by row; angle is null without rotation
+    const double* inertia;                        // kg m², [bodies of all bundles][kJointBlock]
+    const double *anchor_a_x, *anchor_a_y;        // m, in the frame of the body, by the place of the hinge
+    const double *anchor_b_x, *anchor_b_y;        //
+    const double* angle_at_zero;                  // rad, at which an angle counts as 0, by its place
+    double least_inertia;                         // s: times how joints turn a body back [N s m]
+    double* longest;                              // [bundles], out: m, the longest component of an arm
 };
 
 }  // namespace carom

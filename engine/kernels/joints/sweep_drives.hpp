@@ -30,15 +30,19 @@ struct DriveRows {
     F solve(const SweepJoints<Real>& k, std::size_t c, F off, F at, F v, F inverse) {
         const F one(1), zero(0), per_h(k.per_h);
         const F mass = simd::select(inverse > zero, one / inverse, zero), before = sum();
-        const F alpha = Lanes::load(k.joints.alpha + c), gamma = Lanes::load(k.joints.gamma + c);
         const auto take = [&](F& impulse, F now) {
             v += inverse * (now - impulse);
             impulse = now;
         };
         // The row of constraints/joints/spring_law.hpp: (1 + gamma) v' + alpha C + l / m = v before it.
-        take(spring, spring - mass * (gamma * v + alpha * off + inverse * spring) / (one + gamma));
-        const F most = Lanes::load(k.joints.most + c);
-        take(motor, clamp_to(motor + mass * (Lanes::load(k.joints.speed + c) - v), most));
+        if (k.has_springs) {
+            const F alpha = Lanes::load(k.joints.alpha + c), gamma = Lanes::load(k.joints.gamma + c);
+            take(spring, spring - mass * (gamma * v + alpha * off + inverse * spring) / (one + gamma));
+        }
+        if (k.has_motors) {
+            const F most = Lanes::load(k.joints.most + c);
+            take(motor, clamp_to(motor + mass * (Lanes::load(k.joints.speed + c) - v), most));
+        }
         const Ends ends(k, c);
         const F to_lower = simd::max(at - ends.lower, zero), to_upper = simd::max(ends.upper - at, zero);
         take(low, simd::max(low - mass * (per_h * to_lower + (v - ends.lower_rate)), zero));
@@ -136,52 +140,57 @@ void give_springs(const SweepJoints<Real>& arguments, std::size_t first, std::si
 }
 
 /// Limits, motors and springs of angles.
+template <class Lanes, bool kFirst, class Real>
+[[gnu::always_inline]] inline void sweep_batch_of_angles(const SweepJoints<Real>& k, std::size_t c) {
+    using F = typename Lanes::Batch;
+    const F zero(0);
+    JointSide<Lanes, true> a, b;
+    load_velocities<Lanes>(k, c, a, b);
+    load_rims<Lanes>(k, c, a, b);
+    const F inverse = a.inverse_inertia() + b.inverse_inertia();
+    F angle;
+    if constexpr (kFirst) {
+        angle = Lanes::load(k.joints.start_x + c) + (Lanes::gather_at(k.turn, k.joints.b + c) * b.per_rim -
+                                                     Lanes::gather_at(k.turn, k.joints.a + c) * a.per_rim);
+        const F off = clamp_to(DriveRows<Lanes, Real>::beyond(k, c, angle), F(k.most));
+        const F by = -F(k.recovery) * off, p = simd::select(inverse > zero, by / inverse, zero);
+        turn_by_displacement<Lanes>(k.turn, k.joints.a + c, a, -p);
+        turn_by_displacement<Lanes>(k.turn, k.joints.b + c, b, p);
+        angle += by;
+        Lanes::store(k.joints.value + c, angle);
+    } else {
+        angle = Lanes::load(k.joints.value + c);
+    }
+    DriveRows<Lanes, Real> rows(k.joints, c);
+    const F added = rows.solve(k, c, angle, angle, b.spin() - a.spin(), inverse);
+    rows.store(k.joints, c);
+    a.turn(-added), b.turn(added);
+    store_velocities<Lanes>(k, c, a, b);
+}
+
 template <bool kFirst, class Real, class Isa>
 void sweep_angles(const SweepJoints<Real>& arguments, std::size_t first, std::size_t last) {
     using Lanes = simd::Lanes<Real, Isa>;
-    using F = typename Lanes::Batch;
     const SweepJoints<Real> k = arguments;  // a copy: no store can change it
-    const F zero(0);
-    for (std::size_t c = first; c < last; c += Lanes::size) {
-        JointSide<Lanes, true> a, b;
-        load_velocities<Lanes>(k, c, a, b);
-        load_rims<Lanes>(k, c, a, b);
-        const F inverse = a.inverse_inertia() + b.inverse_inertia();
-        F angle;
-        if constexpr (kFirst) {
-            angle =
-                Lanes::load(k.joints.start_x + c) + (Lanes::gather_at(k.turn, k.joints.b + c) * b.per_rim -
-                                                     Lanes::gather_at(k.turn, k.joints.a + c) * a.per_rim);
-            const F off = clamp_to(DriveRows<Lanes, Real>::beyond(k, c, angle), F(k.most));
-            const F by = -F(k.recovery) * off, p = simd::select(inverse > zero, by / inverse, zero);
-            turn_by_displacement<Lanes>(k.turn, k.joints.a + c, a, -p);
-            turn_by_displacement<Lanes>(k.turn, k.joints.b + c, b, p);
-            angle += by;
-            Lanes::store(k.joints.value + c, angle);
-        } else {
-            angle = Lanes::load(k.joints.value + c);
-        }
-        DriveRows<Lanes, Real> rows(k.joints, c);
-        const F added = rows.solve(k, c, angle, angle, b.spin() - a.spin(), inverse);
-        rows.store(k.joints, c);
-        a.turn(-added), b.turn(added);
-        store_velocities<Lanes>(k, c, a, b);
-    }
+    for (std::size_t c = first; c < last; c += Lanes::size) sweep_batch_of_angles<Lanes, kFirst>(k, c);
+}
+
+template <class Lanes, class Real>
+[[gnu::always_inline]] inline void give_batch_of_angles(const SweepJoints<Real>& k, std::size_t c) {
+    using F = typename Lanes::Batch;
+    JointSide<Lanes, true> a, b;
+    load_velocities<Lanes>(k, c, a, b);
+    load_rims<Lanes>(k, c, a, b);
+    const F l = DriveRows<Lanes, Real>(k.joints, c).sum();
+    a.turn(-l), b.turn(l);
+    store_velocities<Lanes>(k, c, a, b);
 }
 
 template <class Real, class Isa>
 void give_angles(const SweepJoints<Real>& arguments, std::size_t first, std::size_t last) {
     using Lanes = simd::Lanes<Real, Isa>;
-    using F = typename Lanes::Batch;
     const SweepJoints<Real> k = arguments;  // a copy: no store can change it
-    for (std::size_t c = first; c < last; c += Lanes::size) {
-        JointSide<Lanes, true> a, b;
-        load_velocities<Lanes>(k, c, a, b);
-        load_rims<Lanes>(k, c, a, b);
-        const F l = DriveRows<Lanes, Real>(k.joints, c).sum();
-        a.turn(-l), b.turn(l);
-        store_velocities<Lanes>(k, c, a, b);
-    }
+    for (std::size_t c = first; c < last; c += Lanes::size) give_batch_of_angles<Lanes>(k, c);
 }
 
 }  // namespace

@@ -232,11 +232,13 @@ template <class Lanes, class Real, bool kArms>
                                                         const JointSide<Lanes, kArms>& side,
                                                         typename Lanes::Batch torque) {
     using F = typename Lanes::Batch;
-    const F turning = simd::max(side.record[3], F(0));
-    alignas(64) Real added[Lanes::size];
-    Lanes::store(added, (turning + turning) * side.per_rim * side.seen * torque);
+    const F turning = simd::max(side.record[3], F(0)),
+            added = (turning + turning) * side.per_rim * side.seen * torque;
+    if constexpr (requires { &Lanes::add_at; }) return Lanes::add_at(turn, rows, added);
+    alignas(64) Real numbers[Lanes::size];
+    Lanes::store(numbers, added);
     for (std::size_t lane = 0; lane < Lanes::size; ++lane)
-        if (added[lane] != Real(0)) turn[rows[lane]] += added[lane];
+        if (numbers[lane] != Real(0)) turn[rows[lane]] += numbers[lane];
 }
 
 /// Displaces the bodies by an impulse (px, py) [kg m] on b, and the other way on a.
@@ -352,56 +354,55 @@ void sweep_rods(const SweepJoints<Real>& arguments, std::size_t first, std::size
 }
 
 /// Hinges.
+template <class Lanes, bool kFirst, class Real>
+[[gnu::always_inline]] inline void sweep_batch_of_hinges(const SweepJoints<Real>& k, std::size_t c) {
+    using F = typename Lanes::Batch;
+    const F one(1), zero(0), h(k.h);
+    JointSide<Lanes, true> a, b;
+    load_velocities<Lanes>(k, c, a, b);
+    load_arms<Lanes, true>(k, c, a, b);
+    F lx = Lanes::load(k.joints.impulse_x + c), ly = Lanes::load(k.joints.impulse_y + c);
+    F torque_a = zero, torque_b = zero;
+    if constexpr (kFirst) {
+        torque_a = a.arm.x * ly - a.arm.y * lx, torque_b = b.arm.x * ly - b.arm.y * lx;
+        turn_arms<Lanes>(k, c, a, b);
+    }
+    // The inverse mass at the anchor, 2 × 2, and its inverse.
+    const F ia = a.inverse_inertia(), ib = b.inverse_inertia(), w = a.inverse_mass() + b.inverse_mass();
+    const F xx = w + ia * a.arm.y * a.arm.y + ib * b.arm.y * b.arm.y,
+            xy = -(ia * a.arm.x * a.arm.y + ib * b.arm.x * b.arm.y),
+            yy = w + ia * a.arm.x * a.arm.x + ib * b.arm.x * b.arm.x;
+    const F determinant = xx * yy - xy * xy;
+    const F per = simd::select(determinant > zero, one / determinant, zero);
+    const auto solve = [&](F x, F y) { return Pair2<F>{per * (yy * x - xy * y), per * (xx * y - xy * x)}; };
+    if constexpr (kFirst) {
+        simd::forget_loads();
+        auto moved_a = Lanes::load_rows2(k.displacement, k.joints.a + c);
+        auto moved_b = Lanes::load_rows2(k.displacement, k.joints.b + c);
+        const Pair2<F> d = between<Lanes, true>(k, c, moved_a, moved_b, a, b);
+        const F most(k.most), recovery = -F(k.recovery);
+        displace<Lanes, true>(k, c, moved_a, moved_b, a, b,
+                              solve(recovery * clamp_to(d.x, most), recovery * clamp_to(d.y, most)));
+        a.turn(torque_a - (a.arm.x * ly - a.arm.y * lx));
+        b.turn((b.arm.x * ly - b.arm.y * lx) - torque_b);
+    }
+    const auto share_of = [&](const JointSide<Lanes, true>& side) {
+        const F strain = F(4) * h * simd::abs(side.arm.x * lx + side.arm.y * ly) * side.own_inverse_inertia();
+        return side.seen / (one + strain * strain);
+    };
+    const Pair2<F> v = parting<Lanes, true>(a, b, h, share_of(a), share_of(b));
+    const F relax = -F(k.over_relaxation);
+    const Pair2<F> added = solve(relax * v.x, relax * v.y);
+    Lanes::store(k.joints.impulse_x + c, lx + added.x), Lanes::store(k.joints.impulse_y + c, ly + added.y);
+    a.push(added.x, added.y, F(-1)), b.push(added.x, added.y, one);
+    store_velocities<Lanes>(k, c, a, b);
+}
+
 template <bool kFirst, class Real, class Isa>
 void sweep_hinges(const SweepJoints<Real>& arguments, std::size_t first, std::size_t last) {
     using Lanes = simd::Lanes<Real, Isa>;
-    using F = typename Lanes::Batch;
     const SweepJoints<Real> k = arguments;  // a copy: no store can change it
-    const F one(1), zero(0), h(k.h);
-    for (std::size_t c = first; c < last; c += Lanes::size) {
-        JointSide<Lanes, true> a, b;
-        load_velocities<Lanes>(k, c, a, b);
-        load_arms<Lanes, true>(k, c, a, b);
-        F lx = Lanes::load(k.joints.impulse_x + c), ly = Lanes::load(k.joints.impulse_y + c);
-        F torque_a = zero, torque_b = zero;
-        if constexpr (kFirst) {
-            torque_a = a.arm.x * ly - a.arm.y * lx, torque_b = b.arm.x * ly - b.arm.y * lx;
-            turn_arms<Lanes>(k, c, a, b);
-        }
-        // The inverse mass at the anchor, 2 × 2, and its inverse.
-        const F ia = a.inverse_inertia(), ib = b.inverse_inertia(), w = a.inverse_mass() + b.inverse_mass();
-        const F xx = w + ia * a.arm.y * a.arm.y + ib * b.arm.y * b.arm.y,
-                xy = -(ia * a.arm.x * a.arm.y + ib * b.arm.x * b.arm.y),
-                yy = w + ia * a.arm.x * a.arm.x + ib * b.arm.x * b.arm.x;
-        const F determinant = xx * yy - xy * xy;
-        const F per = simd::select(determinant > zero, one / determinant, zero);
-        const auto solve = [&](F x, F y) {
-            return Pair2<F>{per * (yy * x - xy * y), per * (xx * y - xy * x)};
-        };
-        if constexpr (kFirst) {
-            simd::forget_loads();
-            auto moved_a = Lanes::load_rows2(k.displacement, k.joints.a + c);
-            auto moved_b = Lanes::load_rows2(k.displacement, k.joints.b + c);
-            const Pair2<F> d = between<Lanes, true>(k, c, moved_a, moved_b, a, b);
-            const F most(k.most), recovery = -F(k.recovery);
-            displace<Lanes, true>(k, c, moved_a, moved_b, a, b,
-                                  solve(recovery * clamp_to(d.x, most), recovery * clamp_to(d.y, most)));
-            a.turn(torque_a - (a.arm.x * ly - a.arm.y * lx));
-            b.turn((b.arm.x * ly - b.arm.y * lx) - torque_b);
-        }
-        const auto share_of = [&](const JointSide<Lanes, true>& side) {
-            const F strain =
-                F(4) * h * simd::abs(side.arm.x * lx + side.arm.y * ly) * side.own_inverse_inertia();
-            return side.seen / (one + strain * strain);
-        };
-        const Pair2<F> v = parting<Lanes, true>(a, b, h, share_of(a), share_of(b));
-        const F relax = -F(k.over_relaxation);
-        const Pair2<F> added = solve(relax * v.x, relax * v.y);
-        Lanes::store(k.joints.impulse_x + c, lx + added.x),
-            Lanes::store(k.joints.impulse_y + c, ly + added.y);
-        a.push(added.x, added.y, F(-1)), b.push(added.x, added.y, one);
-        store_velocities<Lanes>(k, c, a, b);
-    }
+    for (std::size_t c = first; c < last; c += Lanes::size) sweep_batch_of_hinges<Lanes, kFirst>(k, c);
 }
 
 /// Gives the bodies of rods the impulses that these had at the end of the step before, along what they are
@@ -432,20 +433,23 @@ void give_rods(const SweepJoints<Real>& arguments, std::size_t first, std::size_
 }
 
 /// Likewise of hinges.
+template <class Lanes, class Real>
+[[gnu::always_inline]] inline void give_batch_of_hinges(const SweepJoints<Real>& k, std::size_t c) {
+    using F = typename Lanes::Batch;
+    JointSide<Lanes, true> a, b;
+    load_velocities<Lanes>(k, c, a, b);
+    load_arms<Lanes, true>(k, c, a, b);
+    turn_arms<Lanes>(k, c, a, b);
+    const F lx = Lanes::load(k.joints.impulse_x + c), ly = Lanes::load(k.joints.impulse_y + c);
+    a.push(lx, ly, F(-1)), b.push(lx, ly, F(1));
+    store_velocities<Lanes>(k, c, a, b);
+}
+
 template <class Real, class Isa>
 void give_hinges(const SweepJoints<Real>& arguments, std::size_t first, std::size_t last) {
     using Lanes = simd::Lanes<Real, Isa>;
-    using F = typename Lanes::Batch;
     const SweepJoints<Real> k = arguments;  // a copy: no store can change it
-    for (std::size_t c = first; c < last; c += Lanes::size) {
-        JointSide<Lanes, true> a, b;
-        load_velocities<Lanes>(k, c, a, b);
-        load_arms<Lanes, true>(k, c, a, b);
-        turn_arms<Lanes>(k, c, a, b);
-        const F lx = Lanes::load(k.joints.impulse_x + c), ly = Lanes::load(k.joints.impulse_y + c);
-        a.push(lx, ly, F(-1)), b.push(lx, ly, F(1));
-        store_velocities<Lanes>(k, c, a, b);
-    }
+    for (std::size_t c = first; c < last; c += Lanes::size) give_batch_of_hinges<Lanes>(k, c);
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ namespace carom {
 /// strains itself ever more. docs/decisions/0034-cases-of-shapes-and-joints.md has the measurements.
 class JointStiffness {
   public:
+    static constexpr double kStiffness = 4;
     /// Forgets all. @param rows  of bodies; rows beyond have no stiffness
     void begin(std::size_t rows) { sum_.assign(rows, 0); }
     /// @param moment  arm times impulse of a substep [N s m]
@@ -28,10 +29,15 @@ class JointStiffness {
     double seen(const Bodies<Real>& bodies, std::int32_t number, double h) const {
         const auto row = static_cast<std::size_t>(number);
         if (row >= sum_.size() || !(sum_[row] > 0)) return 1;
-        constexpr double kStiffness = 4;
         const double least = kStiffness * h * sum_[row];  // k = sum / h
-        const double rim = rim_of(bodies, row), inertia = 0.5 * rim * rim / bodies.inverse_mass(row);
+        const double inertia = inertia_of(bodies, row);
         return least > inertia ? inertia / least : 1;
+    }
+    /// Of a body that impulses move [kg m²].
+    template <class Real>
+    static double inertia_of(const Bodies<Real>& bodies, std::size_t row) {
+        const double rim = rim_of(bodies, row);
+        return 0.5 * rim * rim / bodies.inverse_mass(row);
     }
     std::size_t bytes() const { return sum_.capacity() * sizeof(double); }
 

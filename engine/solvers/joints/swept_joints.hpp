@@ -6,6 +6,7 @@
 #include "constraints/task_groups.hpp"
 #include "kernels/joints/joint_arguments.hpp"
 #include "parallel/phases.hpp"
+#include "solvers/joints/joint_bundles.hpp"
 #include "solvers/joints/joint_step.hpp"
 #include "solvers/joints/joint_stiffness.hpp"
 
@@ -18,6 +19,9 @@ namespace carom {
 /// They have task groups of their own (constraints/task_groups.hpp), by rows alone: bodies in the order of
 /// their rows. In each the joints of a kind are sorted by colour, and a run over a group is one call of a
 /// kernel.
+///
+/// Mechanisms of a crowd share no bodies: those of hinges are swept each on its own, a lane each
+/// (joint_bundles.hpp). Their joints come last in the columns.
 template <class Real>
 class SweptJoints {
   public:
@@ -28,15 +32,18 @@ class SweptJoints {
     static bool knows(const StoredJoint& joint);
 
     /// Sorts the joints. @param slots  of those that the kernels know
+    /// @param crowd  slots of each group of a crowd, of bodies that move
     /// @return slots of joints that found no colour, or hang on what moves by itself. Cost: O(joints)
-    std::vector<std::size_t> sort(const WorldState<Real>& world, const std::vector<std::size_t>& slots);
-    /// Rows beyond the bodies that joints name: the world, and what never moves, once for each group, so that
-    /// no two tasks write to one.
-    std::size_t rows_beyond() const { return groups_.count(); }
+    std::vector<std::size_t> sort(const WorldState<Real>& world, std::vector<std::size_t> slots,
+                                  const std::vector<std::vector<std::size_t>>& crowd);
+    /// Rows beyond the bodies that joints name: the world, and what never moves, once for each group and each
+    /// bundle, so that no two tasks write to one.
+    std::size_t rows_beyond() const { return groups_.count() + bundles_.bundles.size(); }
     bool empty() const { return parts_of_joints_ == 0; }
     std::size_t joints() const { return joints_; }
     std::size_t colours() const { return colours_; }
-    const TaskGroups& groups() const { return groups_; }
+    /// Whether sweeps are long enough for more than one thread.
+    bool has_long_loops() const { return groups_.chunks > 1 || bundles_.bundles.size() > 1; }
 
     /// Where the joints are at the start of a step.
     void begin_step(const JointStep<Real>& step, const StepLoops<Real>& loops);
@@ -87,7 +94,8 @@ class SweptJoints {
     /// The joints of one kernel, by group and colour; padding has the slot -1.
     struct Kind {
         Column<std::int32_t> a, b, slot;
-        Column<RowOrder> order;  // of each kJointBlock places
+        Column<std::int32_t> of_bundle_a, of_bundle_b;  // numbers of bodies in their bundle; before bundles 0
+        Column<RowOrder> order;                         // of each kJointBlock places
         Column<Real> start_x, start_y, length, impulse_x, impulse_y, normal_x, normal_y, per_length;
         Column<Real> start_arm_a_x, start_arm_a_y, start_arm_b_x, start_arm_b_y;
         Column<Real> arm_a_x, arm_a_y, arm_b_x, arm_b_y, per_rim_a, per_rim_b, seen_a, seen_b;
@@ -101,6 +109,14 @@ class SweptJoints {
             double angle;               // rad, at which the angle counts as 0
         };
         std::vector<Source> sources;
+        /// What drives a joint.
+        struct Drive {
+            double most = 0;       // N s or N m s, of its motor in a substep
+            bool springs = false;  // softly
+        };
+        std::vector<Drive> drives;
+        // Of those in bundles: anchors in the frames of their bodies [m], angles that count as 0 [rad].
+        Column<double> anchor_a_x, anchor_a_y, anchor_b_x, anchor_b_y, angle_at_zero;
 
         /// @param needs  which columns, bits of Needs
         void resize(std::size_t places, unsigned needs);
@@ -116,6 +132,8 @@ class SweptJoints {
     static std::size_t kind_of(const StoredJoint& joint);
     static bool has_angle_part(const StoredJoint& joint);
     Real* turn_of(BodyRecords<Real>& records);
+    void add_bundles();
+    void sweep_bundles(const StepLoops<Real>& loops, Begin begin) const;
     void load(const WorldState<Real>& world);
     void begin_joints(const JointStep<Real>& step, Kind& own, std::size_t kind, std::size_t first,
                       std::size_t last);
@@ -123,9 +141,14 @@ class SweptJoints {
                      const std::array<Rotation, 2>& turns);
     void begin_rods(const JointStep<Real>& step, Kind& own, std::size_t first, std::size_t last);
     void begin_drive(const JointStep<Real>& step, Kind& own, std::size_t kind, std::size_t i);
-    void add_stiffness(const Kind& own);
-    static void store_joint(StoredJoint& joint, const Kind& own, std::size_t kind, std::size_t i,
-                            double substep_dt);
+    void share_out(Kind& own, std::size_t i, double impulse);
+    void begin_bundles(const JointStep<Real>& step, const StepLoops<Real>& loops);
+    void load_bundles(const WorldState<Real>& world);
+    /// Places of a kind that are in no bundle.
+    std::size_t places_before_bundles(std::size_t kind) const { return kinds_[kind].begin.back(); }
+    void add_stiffness(const Kind& own, std::size_t places);
+    [[gnu::always_inline]] static inline void store_joint(StoredJoint& joint, const Kind& own,
+                                                          std::size_t kind, std::size_t i, double substep_dt);
     /// The impulse of a spring, a rope or an angle: along the length [N s] or about the angle [N m s].
     static double sum_of_impulses(const Kind& own, std::size_t i) {
         return static_cast<double>(own.impulse_x[i]) + static_cast<double>(own.impulse_y[i]) +
@@ -152,11 +175,21 @@ class SweptJoints {
 
     std::array<Kind, kKinds> kinds_;
     TaskGroups groups_;
+    JointBundles bundles_;
+    Column<double> inertia_of_bundles_, longest_of_bundle_;  // kernels/joints/joint_arguments.hpp
     std::size_t joints_ = 0, parts_of_joints_ = 0, colours_ = 0;
-    std::int32_t first_beyond_ = 0;  // row
-    bool is_loaded_ = false;         // whether columns have what the store keeps
-    bool ends_move_ = false;         // in this step, of some joint
-    double longest_ = 0;             // m, arm of hinges
+    std::int32_t first_beyond_ = 0;      // row
+    bool has_joints_of_groups_ = false;  // whether some joint is in no bundle
+    bool is_loaded_ = false;             // whether columns have what the store keeps
+    bool ends_move_ = false;             // in this step, of some joint
+    // What drives of all joints were made of: JointStore::settings, s of a substep; -1: they may have
+    // changed.
+    std::int64_t settings_ = -1;
+    double substep_of_drives_ = 0;
+    bool keeps_drives_ = false;  // in this step: they are those of the step before
+    bool has_springs_ = false;   // some joint springs
+    bool has_motors_ = false;    // some joint has a motor
+    double longest_ = 0;         // m, arm of hinges
     JointStiffness stiffness_;
     /// How far joints turn their bodies back: arm times impulse of a substep [N s m].
     struct Moments {

@@ -36,44 +36,85 @@ double angle_of(const Bodies<Real>& bodies, std::int32_t row) {
 template <class Real>
 void SweptJoints<Real>::begin_step(const JointStep<Real>& step, const StepLoops<Real>& loops) {
     const auto real = [](double value) { return static_cast<Real>(value); };
-    const auto for_each_task = [&](const Kind& own, const auto& fn) {
+    const auto for_each_task = [&](std::size_t kind, const auto& fn) {
         loops.executor->for_each_chunk(
-            own.slot.size(), kPlacesPerTask, kNanosecondsToBegin,
+            places_before_bundles(kind), kPlacesPerTask, kNanosecondsToBegin,
             [&](std::size_t, std::size_t first, std::size_t last) { fn(first, last); });
     };
+    const double h = step.terms.substep_dt;
     kernels_ = loops.kernels;
     ends_move_ = step.world.joints.may_move_limits();
     for (Breakable& joint : breakable_) joint.force = {}, joint.torque = 0;
+    keeps_drives_ =
+        is_loaded_ && !has_springs_ && settings_ == step.world.joints.settings && substep_of_drives_ == h;
+    settings_ = ends_move_ ? -1 : step.world.joints.settings, substep_of_drives_ = h;
     if (!is_loaded_) load(step.world);
     arguments_.assign(kKinds, {});
     stiffness_.begin(static_cast<std::size_t>(first_beyond_));
-    const double h = step.terms.substep_dt;
     for (std::size_t kind = 0; kind < kKinds; ++kind) {
         Kind& own = kinds_[kind];
-        moments_.resize(std::max(moments_.size(), own.slot.size()));
-        for_each_task(own, [&](std::size_t first, std::size_t last) {
+        moments_.resize(std::max(moments_.size(), places_before_bundles(kind)));
+        for_each_task(kind, [&](std::size_t first, std::size_t last) {
             if (kind == kRods) return begin_rods(step, own, first, last);
             begin_joints(step, own, kind, first, last);
         });
-        if ((needs_of(kind) & kArms) != 0) add_stiffness(own);
+        if ((needs_of(kind) & kArms) != 0) add_stiffness(own, places_before_bundles(kind));
         SweepJoints<Real>& k = arguments_[kind];
         k.joints = own.columns();
         k.velocity = step.records.velocity.data(), k.displacement = step.records.displacement.data();
         k.turn = turn_of(step.records);
         k.h = real(h), k.half_h = real(h / 2), k.per_h = real(1 / h);
         k.recovery = real(kRecovery);
-        k.most = real(kind == kHinges   ? kLargestCorrection * longest_
-                      : kind == kAngles ? kLargestTurn
-                                        : kLargestCorrection);
+        k.has_springs = has_springs_, k.has_motors = has_motors_;
     }
-    for (Kind& own : kinds_) {
+    if (!bundles_.empty()) begin_bundles(step, loops);
+    for (std::size_t kind = 0; kind < kKinds; ++kind) {
+        Kind& own = kinds_[kind];
+        arguments_[kind].most = real(kind == kHinges   ? kLargestCorrection * longest_
+                                     : kind == kAngles ? kLargestTurn
+                                                       : kLargestCorrection);
         if (own.seen_a.empty()) continue;
         const auto seen = [&](std::int32_t row) { return real(stiffness_.seen(step.world.bodies, row, h)); };
-        for_each_task(own, [&](std::size_t first, std::size_t last) {
+        for_each_task(kind, [&](std::size_t first, std::size_t last) {
             for (std::size_t i = first; i < last; ++i)
                 own.seen_a[i] = seen(own.a[i]), own.seen_b[i] = seen(own.b[i]);
         });
     }
+}
+
+/// Joints of crowds, and what drives them.
+template <class Real>
+void SweptJoints<Real>::begin_bundles(const JointStep<Real>& step, const StepLoops<Real>& loops) {
+    const Bodies<Real>& bodies = step.world.bodies;
+    Kind &hinges = kinds_[kHinges], &angles = kinds_[kAngles];
+    longest_of_bundle_.resize(bundles_.bundles.size());
+    BeginBundles<Real> k{};
+    const auto of_bundles = [](Kind& own) {
+        JointColumns<Real> columns = own.columns();
+        columns.a = own.of_bundle_a.data(), columns.b = own.of_bundle_b.data();
+        return columns;
+    };
+    k.hinges = of_bundles(hinges), k.angles = of_bundles(angles);
+    k.bundles = bundles_.bundles.data(), k.rows = bundles_.rows.data();
+    k.position_x = bodies.position_x.data(), k.position_y = bodies.position_y.data();
+    k.angle = bodies.has_rotation ? bodies.angle.data() : nullptr;
+    k.inertia = inertia_of_bundles_.data();
+    k.anchor_a_x = hinges.anchor_a_x.data(), k.anchor_a_y = hinges.anchor_a_y.data();
+    k.anchor_b_x = hinges.anchor_b_x.data(), k.anchor_b_y = hinges.anchor_b_y.data();
+    k.angle_at_zero = angles.angle_at_zero.data();
+    k.least_inertia = JointStiffness::kStiffness * step.terms.substep_dt;
+    k.longest = longest_of_bundle_.data();
+    loops.executor->for_each_task(bundles_.bundles.size(),
+                                  kNanosecondsToBegin * static_cast<double>(parts_of_joints_),
+                                  [&](std::size_t number) {
+                                      loops.kernels->begin_bundles(k, number, number + 1);
+                                      const JointBundle& bundle = bundles_.bundles[number];
+                                      for (std::size_t i = 0; i < kJointBlock * bundle.angles; ++i)
+                                          if (angles.slot[bundle.first_angle + i] >= 0)
+                                              begin_drive(step, angles, kAngles, bundle.first_angle + i);
+                                  });
+    for (const double longest : longest_of_bundle_)
+        longest_ = std::max(longest_, static_cast<double>(static_cast<Real>(longest)));
 }
 
 /// Does what begin_joint does for rods between centres, without a look at their sources where both bodies
@@ -169,8 +210,8 @@ void SweptJoints<Real>::begin_joint(const JointStep<Real>& step, Kind& own, std:
 
 /// Adds up how joints with arms turn their bodies, in the order of their places, and notes the longest arm.
 template <class Real>
-void SweptJoints<Real>::add_stiffness(const Kind& own) {
-    for (std::size_t i = 0; i < own.slot.size(); ++i) {
+void SweptJoints<Real>::add_stiffness(const Kind& own, std::size_t places) {
+    for (std::size_t i = 0; i < places; ++i) {
         if (own.slot[i] < 0) continue;
         stiffness_.add(own.a[i], moments_[i].of_a), stiffness_.add(own.b[i], moments_[i].of_b);
         for (const Column<Real>* arm :
@@ -186,25 +227,61 @@ void SweptJoints<Real>::load(const WorldState<Real>& world) {
     const auto row_of = [&](BodyId id) {
         return id == BodyId{} ? -1 : static_cast<std::int32_t>(world.handles.row_of_slot(id.index));
     };
-    is_loaded_ = true;
+    is_loaded_ = true, has_springs_ = has_motors_ = false;
     for (std::size_t kind = 0; kind < kKinds; ++kind) {
         Kind& own = kinds_[kind];
         own.sources.resize(own.slot.size());
+        own.drives.assign((needs_of(kind) & kDrives) != 0 ? own.slot.size() : 0, {});
         for (std::size_t i = 0; i < own.slot.size(); ++i) {
             if (own.slot[i] < 0) continue;
             const StoredJoint& joint = world.joints[static_cast<std::size_t>(own.slot[i])];
+            has_springs_ = has_springs_ || joint.is_spring();
+            has_motors_ = has_motors_ || joint.has_motor;
             own.sources[i] = {row_of(joint.a), row_of(joint.b), joint.anchor_a, joint.anchor_b, joint.angle};
             if ((needs_of(kind) & kPoints) != 0) own.length[i] = real(joint.length);
             if ((needs_of(kind) & kDrives) == 0)
                 own.impulse_x[i] = real(joint.impulse[0]), own.impulse_y[i] = real(joint.impulse[1]);
         }
     }
+    load_bundles(world);
 }
 
-/// What springs, drives and bounds a length or an angle. Of its impulses the store keeps the sum: a motor has
-/// as much of it as it can, the rest is of the end that pushes that way.
+template <class Real>
+void SweptJoints<Real>::load_bundles(const WorldState<Real>& world) {
+    for (const std::size_t kind : {kHinges, kAngles}) {
+        Kind& own = kinds_[kind];
+        const std::size_t places = bundles_.empty() ? 0 : own.slot.size();
+        for (Column<double>* column : {&own.anchor_a_x, &own.anchor_a_y, &own.anchor_b_x, &own.anchor_b_y})
+            column->resize(kind == kHinges ? places : 0);
+        own.angle_at_zero.resize(kind == kAngles ? places : 0);
+        for (std::size_t i = places_before_bundles(kind); i < places; ++i) {
+            if (own.slot[i] < 0) continue;
+            const typename Kind::Source& source = own.sources[i];
+            const auto per_rim = [&](std::int32_t row) {
+                return static_cast<Real>(1 / rim_of(world.bodies, static_cast<std::size_t>(row)));
+            };
+            own.per_rim_a[i] = per_rim(source.row_a), own.per_rim_b[i] = per_rim(source.row_b);
+            if (kind == kAngles) {
+                own.angle_at_zero[i] = source.angle;
+                continue;
+            }
+            own.anchor_a_x[i] = source.anchor_a.x, own.anchor_a_y[i] = source.anchor_a.y;
+            own.anchor_b_x[i] = source.anchor_b.x, own.anchor_b_y[i] = source.anchor_b.y;
+        }
+    }
+    inertia_of_bundles_.resize(bundles_.rows.size());
+    for (std::size_t i = 0; i < bundles_.rows.size(); ++i)
+        inertia_of_bundles_[i] =
+            bundles_.rows[i] < first_beyond_
+                ? JointStiffness::inertia_of(world.bodies, static_cast<std::size_t>(bundles_.rows[i]))
+                : 0;
+}
+
+/// What springs, drives and bounds a length or an angle. The store is looked at only if something may have
+/// changed there: joints lie apart in it.
 template <class Real>
 void SweptJoints<Real>::begin_drive(const JointStep<Real>& step, Kind& own, std::size_t kind, std::size_t i) {
+    if (keeps_drives_) return share_out(own, i, sum_of_impulses(own, i));
     const auto real = [](double value) { return static_cast<Real>(value); };
     const auto slot = static_cast<std::size_t>(own.slot[i]);
     const StoredJoint& joint = step.world.joints[slot];
@@ -225,13 +302,21 @@ void SweptJoints<Real>::begin_drive(const JointStep<Real>& step, Kind& own, std:
     own.alpha[i] = real(terms.alpha), own.gamma[i] = real(terms.gamma);
     const double most = joint.has_motor ? joint.max_motor * h : 0;
     own.speed[i] = real(joint.motor_speed), own.most[i] = real(most);
-    double rest = joint.impulse[kind == kAngles ? 2 : 0];
-    own.impulse_x[i] = real(springs ? rest : 0);
-    if (springs) rest = 0;
-    const double of_motor = std::clamp(rest, -most, most);
-    rest -= of_motor;
-    own.impulse_y[i] = real(of_motor);
-    own.impulse_z[i] = real(std::fmax(rest, 0)), own.impulse_w[i] = real(std::fmin(rest, 0));
+    own.drives[i] = {most, springs};
+    share_out(own, i, joint.impulse[kind == kAngles ? 2 : 0]);
+}
+
+/// Of the impulses of a joint the store keeps the sum: a motor has as much of it as it can, the rest is of
+/// the end that pushes that way.
+template <class Real>
+void SweptJoints<Real>::share_out(Kind& own, std::size_t i, double impulse) {
+    const auto [most, springs] = own.drives[i];
+    own.impulse_x[i] = static_cast<Real>(springs ? impulse : 0);
+    if (springs) impulse = 0;
+    const double of_motor = std::clamp(impulse, -most, most), of_end = impulse - of_motor;
+    own.impulse_y[i] = static_cast<Real>(of_motor);
+    own.impulse_z[i] = static_cast<Real>(std::fmax(of_end, 0));
+    own.impulse_w[i] = static_cast<Real>(std::fmin(of_end, 0));
 }
 
 template <class Real>
@@ -249,16 +334,29 @@ void SweptJoints<Real>::note_forces() {
 template <class Real>
 void SweptJoints<Real>::store(JointStore& joints, double substep_dt, double dt,
                               const Executor& executor) const {
+    const auto store = [&](const Kind& own, std::size_t kind, std::size_t i) {
+        if (own.slot[i] >= 0)
+            store_joint(joints[static_cast<std::size_t>(own.slot[i])], own, kind, i, substep_dt);
+    };
     for (std::size_t kind = 0; kind < kKinds; ++kind) {
         const Kind& own = kinds_[kind];
-        executor.for_each_chunk(own.slot.size(), kPlacesPerTask, kNanosecondsToStore,
+        executor.for_each_chunk(places_before_bundles(kind), kPlacesPerTask, kNanosecondsToStore,
                                 [&](std::size_t, std::size_t first, std::size_t last) {
-                                    for (std::size_t i = first; i < last; ++i)
-                                        if (own.slot[i] >= 0)
-                                            store_joint(joints[static_cast<std::size_t>(own.slot[i])], own,
-                                                        kind, i, substep_dt);
+                                    for (std::size_t i = first; i < last; ++i) store(own, kind, i);
                                 });
     }
+    // The joints of a mechanism lie side by side, those of its neighbours do not.
+    executor.for_each_task(
+        bundles_.bundles.size(), kNanosecondsToStore * static_cast<double>(parts_of_joints_),
+        [&](std::size_t number) {
+            const JointBundle& bundle = bundles_.bundles[number];
+            for (std::size_t lane = 0; lane < bundle.mechanisms; ++lane) {
+                for (std::size_t j = 0; j < bundle.hinges; ++j)
+                    store(kinds_[kHinges], kHinges, bundle.first_hinge + kJointBlock * j + lane);
+                for (std::size_t j = 0; j < bundle.angles; ++j)
+                    store(kinds_[kAngles], kAngles, bundle.first_angle + kJointBlock * j + lane);
+            }
+        });
     for (const Breakable& part : breakable_) {
         StoredJoint& joint = joints[static_cast<std::size_t>(kinds_[part.kind].slot[part.place])];
         if (part.kind == kAngles)
@@ -269,8 +367,9 @@ void SweptJoints<Real>::store(JointStore& joints, double substep_dt, double dt,
 }
 
 template <class Real>
-void SweptJoints<Real>::store_joint(StoredJoint& joint, const Kind& own, std::size_t kind, std::size_t i,
-                                    double substep_dt) {
+[[gnu::always_inline]] inline void SweptJoints<Real>::store_joint(StoredJoint& joint, const Kind& own,
+                                                                  std::size_t kind, std::size_t i,
+                                                                  double substep_dt) {
     if (kind == kAngles) {
         joint.impulse[2] = sum_of_impulses(own, i);
         joint.torque = joint.impulse[2] / substep_dt;

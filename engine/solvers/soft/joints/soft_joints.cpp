@@ -69,7 +69,8 @@ void SoftJoints<Real>::find_groups(const WorldState<Real>& world) {
                           of_right = first_slot[static_cast<std::size_t>(right.island)];
         return of_left != of_right ? of_left < of_right : left.slot < right.slot;
     });
-    std::vector<std::size_t> to_sweep, slots, of_crowd;
+    std::vector<std::size_t> to_sweep, slots;
+    std::vector<std::vector<std::size_t>> of_crowd;  // slots of each of its groups
     std::vector<DirectJoints<Real>> beside;
     std::vector<std::size_t> crowd;  // of direct_
     std::size_t work = 0;
@@ -81,7 +82,7 @@ void SoftJoints<Real>::find_groups(const WorldState<Real>& world) {
         if (is_rattle || group.is_small_enough()) {
             if (!is_rattle && is_fit_for_crowd(world, slots)) {
                 crowd.push_back(direct_.size()), work += group.work();
-                of_crowd.insert(of_crowd.end(), slots.begin(), slots.end());
+                of_crowd.push_back(slots);
             }
             direct_.push_back(std::move(group));
             continue;
@@ -111,9 +112,10 @@ void SoftJoints<Real>::find_groups(const WorldState<Real>& world) {
     if (crowd_groups_ > 0) {
         for (std::size_t i = crowd.size(); i-- > 0;)
             direct_.erase(direct_.begin() + static_cast<std::ptrdiff_t>(crowd[i]));
-        to_sweep.insert(to_sweep.end(), of_crowd.begin(), of_crowd.end());
+    } else {
+        of_crowd.clear();
     }
-    for (const std::size_t slot : swept_.sort(world, to_sweep))
+    for (const std::size_t slot : swept_.sort(world, to_sweep, of_crowd))
         beside.emplace_back(world, std::vector<std::size_t>{slot});
     first_beside_ = direct_.size();
     for (DirectJoints<Real>& joint : beside) direct_.push_back(std::move(joint));

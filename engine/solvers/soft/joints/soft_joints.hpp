@@ -89,7 +89,7 @@ class SoftJoints {
     const Real* joined() const { return joined_.data(); }
     /// Whether there are groups with many loops, which want more substeps.
     bool has_nets() const { return swept_groups_ > 0; }
-    bool has_long_loops() const { return swept_.groups().chunks > 1; }
+    bool has_long_loops() const { return swept_.has_long_loops(); }
     std::size_t bytes() const;
 
     /// How many joints are solved in which way, in words, for `explain`.

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "kernels/joints/joint_arguments.hpp"
+#include "state/world_state.hpp"
+
+namespace carom {
+
+/// A part of a joint of a mechanism, that of its points or that of its angle.
+struct MechanismPart {
+    std::size_t slot;
+    std::int32_t a, b;  // numbers of bodies of the mechanism
+};
+
+/// Bodies that hinges and welds join to each other alone, ready to be swept: each part in the order of the
+/// colours, of which no two parts share a body.
+struct Mechanism {
+    std::vector<std::int32_t> rows;             // of its bodies
+    std::vector<MechanismPart> hinges, angles;  // by colour
+    std::size_t colours = 0;
+
+    /// What a lane of a bundle has to have in common with the others: how the bodies are joined.
+    std::vector<std::int32_t> shape() const;
+};
+
+/// A group of joints as a mechanism; one without bodies if it has too many of them, or other joints.
+/// @param has_angle_part  of each slot, whether something acts on the joint's angle
+template <class Real>
+Mechanism mechanism_of(const WorldState<Real>& world, const std::vector<std::size_t>& slots,
+                       bool (*has_angle_part)(const StoredJoint&));
+
+/// Mechanisms that are joined alike, side by side: who shares a bundle, in which order.
+///
+/// They are sorted by how they are joined, then by where their bodies are in memory. What a mechanism does
+/// does not depend on its bundle.
+struct JointBundles {
+    std::vector<JointBundle> bundles;
+    std::vector<Mechanism> mechanisms;  // kJointBlock at most of each bundle, in their order
+    std::vector<std::int32_t> rows;     // [bodies of all bundles][kJointBlock]
+
+    void clear() { bundles.clear(), mechanisms.clear(), rows.clear(); }
+    bool empty() const { return bundles.empty(); }
+    /// Sorts the mechanisms and cuts them into bundles.
+    /// @param first_still  row at rest for the lanes that the first bundle does not need; each has its own
+    /// @param first_hinge, first_angle  places of the first parts in their columns
+    void arrange(std::int32_t first_still, std::size_t first_hinge, std::size_t first_angle);
+    std::size_t bytes() const;
+};
+
+}  // namespace carom
