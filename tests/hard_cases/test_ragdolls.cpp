@@ -150,6 +150,35 @@ TEST_SUITE("hard cases: joints") {
                 }
     }
 
+    // docs/decisions/0090-crowds-of-mechanisms.md. Limbs are from .24 to .36 m long.
+    TEST_CASE("a large heap of ragdolls takes one solve of its paths a substep, lies and holds together") {
+        const Scene scene = heap_of_ragdolls(240, 0, 1);
+        World world(scene);
+        const double start = world.ledger().energy.total();
+        double before = start, rise = 0;
+        for (int i = 0; i < 8 * 60; ++i) {
+            world.step(kStep);
+            const double now = world.ledger().energy.total();
+            rise = std::max(rise, (now - before) / start), before = now;
+        }
+        constexpr int kSteps = 60;
+        const Profile then = world.profile();
+        for (int i = 0; i < kSteps; ++i) world.step(kStep);
+        const Profile profile = world.profile();
+        CHECK(profile.contacts > 1024);
+        CHECK(profile.path_solves - then.path_solves == kSteps * world.plan().substeps);
+        const JointErrors gaps = world.joint_errors();
+        const OverlapReport overlaps = world.overlaps();
+        const Energy energy = world.ledger().energy;
+        report("240 ragdolls in a heap: energy rose by ", rise, " of it in a step, gaps ", gaps.mean,
+               " m, at most ", gaps.max, " m, overlaps ", overlaps.mean, ", at most ", overlaps.max,
+               " inradii, kinetic energy ", (energy.kinetic + energy.rotational) / start);
+        CHECK(rise < 3e-3);
+        CHECK(gaps.mean < 2e-3);
+        CHECK(overlaps.mean < 0.05);
+        CHECK((energy.kinetic + energy.rotational) / start < 1e-4);
+    }
+
     TEST_CASE("what moves on in a heap of ragdolls without friction in their hinges hangs and swings") {
         for (const unsigned seed : {1u, 2u, 3u}) {
             CAPTURE(seed);

@@ -16,6 +16,8 @@ namespace {
 /// Share of an overlap that a substep takes away. Pushes do work on the loads that they lift: at 0.4 heaps of
 /// boxes shake for ever.
 constexpr double kRecovery = 0.1;
+/// What two such substeps take away, where turns of joints and contacts sweep.
+constexpr double kRecoveryOfTwo = 1 - (1 - kRecovery) * (1 - kRecovery);
 /// Overlaps of contacts that hardly move are left, up to this share of the thickness: what one push parts
 /// another one closes, so a heap that lies still would creep for ever. Slow is less than this share of what
 /// gravity adds to a speed in a substep. docs/decisions/0037-heaps-that-lie-still.md.
@@ -221,7 +223,8 @@ SolvePaths<Real> PathSolver<Real>::arguments(const SubstepTerms& terms, BodyReco
     k.velocity = records.velocity.data(), k.displacement = records.displacement.data();
     k.turn = records.turn();
     k.h = static_cast<Real>(terms.substep_dt), k.inverse_h = static_cast<Real>(1 / terms.substep_dt);
-    k.recovery = static_cast<Real>(kRecovery), k.push = static_cast<Real>(kPushThicknesses);
+    k.recovery = static_cast<Real>(pushes_twice ? kRecoveryOfTwo : kRecovery),
+    k.push = static_cast<Real>(kPushThicknesses);
     k.slop = static_cast<Real>(kSlop), k.slow = static_cast<Real>(kSlowShare * terms.fall_speed());
     k.fall = static_cast<Real>(terms.fall_speed());
     k.velocity_tolerance = static_cast<Real>(kTolerance * terms.fall_speed());

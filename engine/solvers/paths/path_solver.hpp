@@ -70,7 +70,8 @@ class PathSolver {
     /// pieces.
     void solve_again(const SubstepTerms& terms, BodyRecords<Real>& records, const StepLoops<Real>& loops,
                      bool sweeps, Bundles which);
-    TurnRows turns;  ///< whose contacts are solved in turns
+    TurnRows turns;             ///< whose contacts are solved in turns
+    bool pushes_twice = false;  ///< whether a solve takes as much from overlaps as two would
     /// The bundles of a turn.
     Bundles near_turns() const { return turns.are_known() ? Bundles::near_turns : Bundles::all; }
     /// Hides a contact from `solve` until `unhide`: it is to have an impact in a later substep.

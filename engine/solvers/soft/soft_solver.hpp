@@ -139,6 +139,7 @@ class SoftSolver {
 
     void begin_joints(WorldState<Real>& world, double dt) {
         joints.begin_step(joint_step(world), view(), paths, dt);
+        paths.pushes_twice = sweeps_turns();
         impacts.held.begin_joints(joints);
         heavy_.find(held_contacts(), joint_step(world), joints);
     }
@@ -210,7 +211,15 @@ class SoftSolver {
   private:
     using Sweeps = ContactSweeps<Real>;
 
-    bool solve_turn(WorldState<Real>& world, double settled, bool is_near);
+    /// Contacts of shapes in a turn: all are solved; those near bodies that joints have changed; or all are
+    /// swept.
+    enum class Turn : std::uint8_t { all, near, swept };
+    bool solve_turn(WorldState<Real>& world, double settled, Turn of_shapes);
+    /// Whether turns of joints and contacts sweep: a crowd of mechanisms that are swept, and so many contacts
+    /// that paths are short.
+    bool sweeps_turns() const {
+        return joints.touches() && !joints.touches_exactly() && paths.manifolds.is_crowd();
+    }
     JointStep<Real> joint_step(WorldState<Real>& world) {
         return {world, records_, terms_, books_.gravity_work, joints.springs()};
     }
