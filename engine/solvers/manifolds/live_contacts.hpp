@@ -31,6 +31,8 @@ class LiveContacts {
 
     /// @param blocks  of contacts of two bodies in this step; new ones come behind the others
     void begin(std::size_t blocks) { masks_.resize(blocks), changes_.assign(blocks, 0); }
+    /// Which contacts of a block could touch when it was found last, a bit each.
+    std::uint16_t mask(std::size_t block) const { return block < masks_.size() ? masks_[block] : 0; }
     /// Tells of a block that was found which of its contacts can touch. Threads may tell of several at once.
     void set(std::size_t block, std::uint16_t mask) {
         changes_[block] =

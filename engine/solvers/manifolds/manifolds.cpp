@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -298,16 +299,23 @@ bool Manifolds<Real>::find(const WorldState<Real>& world, const EdgeCandidates<R
            std::equal(surfaces_.a.begin(), surfaces_.a.end(), old_surfaces_.a.begin(), old_surfaces_.a.end());
 }
 
+/// Which contacts of a block could touch when it was found last, a bit each; all where that is not known.
+/// Others carry nothing.
+template <class Real>
+std::uint32_t Manifolds<Real>::live_then(std::size_t block) const {
+    return block < first_new_block_ ? live_.mask(block) : 0xffffu;
+}
+
 template <class Real>
 void Manifolds<Real>::note_live(std::size_t block) {
     const auto none = static_cast<Real>(kNoPoint);
     std::uint32_t mask = 0;
     const std::size_t first = block * kRowPadding, last = std::min(bodies_.count(), first + kRowPadding);
-    for (std::size_t i = first; i < last; ++i) {
-        if (bodies_.separation1[i] < none)
-            mask |= 1u << (i - first);
-        else
-            bodies_.memory[i] = {};
+    for (std::size_t i = first; i < last; ++i)
+        mask |= std::uint32_t{bodies_.separation1[i] < none} << (i - first);
+    for (std::uint32_t gone = live_then(block) & ~mask; gone != 0; gone &= gone - 1) {
+        const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(gone));
+        if (i < last) bodies_.memory[i] = {};
     }
     live_.set(block, static_cast<std::uint16_t>(mask));
 }
@@ -448,7 +456,7 @@ void Manifolds<Real>::find_pairs(const WorldState<Real>& world, const SubstepTer
     ahead.come = ahead_.come.data(), ahead.a = ahead_.a.data(), ahead.b = ahead_.b.data();
     const std::size_t first = block * kRowPadding;
     const auto find = blocks_are_boxes_[block] != 0 ? kernels.find_box_manifolds : kernels.find_manifolds;
-    const bool are_ahead = ahead_.place(world, terms, bodies_, block < first_new_block_, first);
+    const bool are_ahead = ahead_.place(world, terms, bodies_, live_then(block), first);
     find(are_ahead ? ahead : now, first, first + kRowPadding);
 }
 

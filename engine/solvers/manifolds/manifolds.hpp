@@ -139,6 +139,7 @@ class Manifolds {
                     const ConvexKernels<Real>& kernels, std::size_t block);
     /// Tells live_ of a block that was found, and forgets the impulses of what cannot touch.
     void note_live(std::size_t block);
+    std::uint32_t live_then(std::size_t block) const;
 
     PieceItems<Real> items_;
     DistantPairs<Real> distant_;

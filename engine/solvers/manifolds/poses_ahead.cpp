@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <utility>
 
 namespace carom {
@@ -168,7 +169,7 @@ void PosesAhead<Real>::resize_places(std::size_t contacts) {
 
 template <class Real>
 bool PosesAhead<Real>::place(const WorldState<Real>& world, const SubstepTerms& terms,
-                             const ManifoldList<Real>& contacts, bool were_found, std::size_t first) {
+                             const ManifoldList<Real>& contacts, std::uint32_t may_press, std::size_t first) {
     if (empty()) return false;
     const Bodies<Real>& bodies = world.bodies;
     const bool all_rows = contacts.item_a.empty();
@@ -178,9 +179,9 @@ bool PosesAhead<Real>::place(const WorldState<Real>& world, const SubstepTerms& 
     std::array<Lead, kRowPadding> leads{};
     const auto has_round = [&](std::int32_t item) { return is_round(shape[static_cast<std::size_t>(item)]); };
     bool any = false;
-    for (std::size_t i = first; i < last; ++i) {
-        // What was none then carries nothing.
-        if (were_found && !(contacts.separation1[i] < static_cast<Real>(kNoPoint))) continue;
+    for (std::uint32_t left = may_press; left != 0; left &= left - 1) {
+        const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(left));
+        if (i >= last) break;
         if (!contacts.memory[i].is_loaded()) continue;
         const auto row_a = static_cast<std::size_t>(contacts.a[i]),
                    row_b = static_cast<std::size_t>(contacts.b[i]);

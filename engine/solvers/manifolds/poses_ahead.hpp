@@ -67,10 +67,11 @@ class PosesAhead {
     void resize_places(std::size_t contacts);
     /// Chooses how far ahead each contact of a block of two bodies is looked for, and notes its places.
     /// @param first       of the block, a multiple of kRowPadding
-    /// @param were_found  whether the contacts were found in the step before
+    /// @param may_press   of its contacts, a bit each: those that could touch when they were found last, or
+    /// all
     /// @return whether some are looked for ahead; if not, nothing is noted
     bool place(const WorldState<Real>& world, const SubstepTerms& terms, const ManifoldList<Real>& contacts,
-               bool were_found, std::size_t first);
+               std::uint32_t may_press, std::size_t first);
 
     std::size_t bytes() const;
 

@@ -55,6 +55,10 @@ TEST_SUITE("solvers/manifolds/live contacts") {
             }
             REQUIRE(std::ranges::equal(live.numbers(), expected));
             REQUIRE(std::ranges::equal(live.found(), expected_found));
+            for (std::size_t block = 0; block < blocks; ++block)
+                for (std::size_t k = 0; k < kRowPadding; ++k)
+                    REQUIRE((live.mask(block) >> k & 1) == int{can_touch[kRowPadding * block + k]});
+            REQUIRE(live.mask(blocks) == 0);
             REQUIRE(is_same == (expected == before));
             same += is_same;
             if (before.empty() || expected.empty()) {
