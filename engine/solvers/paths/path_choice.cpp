@@ -21,6 +21,9 @@ constexpr int kStepsOfWildCut = 4;
 /// Others of many contacts are kept for kStepsOfCut, too, while no larger share of the contacts than this
 /// stands beside them. docs/decisions/0083-cuts-that-are-kept.md.
 constexpr double kMostBeside = 0.003;
+/// In crowds of mechanisms more may: their limbs swing on, and paths are no worse for it.
+/// docs/decisions/0090-crowds-of-mechanisms.md.
+constexpr double kMostBesideOfCrowd = 0.01;
 
 template <class Real>
 bool is_nothing(const Bodies<Real>& bodies, std::int32_t b) {
@@ -61,14 +64,18 @@ template <class Real>
 typename PathChoice<Real>::Change PathChoice<Real>::choose(const WorldState<Real>& world,
                                                            Manifolds<Real>& manifolds, double dt,
                                                            bool is_same, std::int64_t unsettled,
-                                                           TurnRows& turns, const Executor& executor) {
+                                                           TurnRows& turns, bool is_of_crowd,
+                                                           const Executor& executor) {
     judge_mood(manifolds, unsettled);
     ++since_cut_;
     const bool is_wild = is_wild_crowd(manifolds);
     if (mood_of_cut_ == mood_ && since_cut_ < (is_wild ? kStepsOfWildCut : kStepsOfCut)) {
         if (is_same && !is_wild) return Change::none;
         if (manifolds.is_crowd() && !is_cut_forgotten_ &&
-            keep_paths(world, manifolds, turns, is_wild ? 1 : kMostBeside))
+            keep_paths(world, manifolds, turns,
+                       is_wild       ? 1
+                       : is_of_crowd ? kMostBesideOfCrowd
+                                     : kMostBeside))
             return Change::contacts;
     }
     cut_paths(world, manifolds, dt, turns, executor);

@@ -25,8 +25,9 @@ class PathChoice {
     /// @param is_same    whether the contacts are those of the step before
     /// @param unsettled  paths whose active set did not settle in the step before
     /// @param turns  bodies whose contacts are solved in turns; paths are cut for them
+    /// @param is_of_crowd  whether the world has a crowd of mechanisms
     Change choose(const WorldState<Real>& world, Manifolds<Real>& manifolds, double dt, bool is_same,
-                  std::int64_t unsettled, TurnRows& turns, const Executor& executor);
+                  std::int64_t unsettled, TurnRows& turns, bool is_of_crowd, const Executor& executor);
     /// To be called with the number of paths that were solved.
     void note_solved(std::int64_t paths) { solved_ += paths; }
     /// To be called when bodies may have become others, that move or do not: paths are cut anew.

@@ -63,8 +63,8 @@ void PathSolver<Real>::find(const WorldState<Real>& world, const EdgeCandidates<
     counters.contacts = static_cast<std::int64_t>(manifolds.live().size());
     if (manifolds.live().empty()) return rolling_.clear();
     using Change = typename PathChoice<Real>::Change;
-    const Change change =
-        choice_.choose(world, manifolds, terms.dt, is_same, counters.unsettled, turns, *loops.executor);
+    const Change change = choice_.choose(world, manifolds, terms.dt, is_same, counters.unsettled, turns,
+                                         is_of_crowd, *loops.executor);
     if (change != Change::none) links_hold_ = false;
     if (change == Change::paths) ++counters.cuts;
     lay_out(world, edges, terms, records, loops);

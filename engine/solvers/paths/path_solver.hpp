@@ -71,6 +71,7 @@ class PathSolver {
     void solve_again(const SubstepTerms& terms, BodyRecords<Real>& records, const StepLoops<Real>& loops,
                      bool sweeps, Bundles which);
     TurnRows turns;             ///< whose contacts are solved in turns
+    bool is_of_crowd = false;   ///< whether the world has a crowd of mechanisms
     bool pushes_twice = false;  ///< whether a solve takes as much from overlaps as two would
     /// The bundles of a turn.
     Bundles near_turns() const { return turns.are_known() ? Bundles::near_turns : Bundles::all; }

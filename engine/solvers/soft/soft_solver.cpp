@@ -82,7 +82,7 @@ void SoftSolver<Real>::find_contacts(WorldState<Real>& world, const EdgeCandidat
 template <class Real>
 void SoftSolver<Real>::find_manifolds(const WorldState<Real>& world, const EdgeCandidates<Real>& edges) {
     paths.rescale(warm_start_.kept());
-    paths.pushes_twice = false;
+    paths.pushes_twice = false, paths.is_of_crowd = !world.joints.empty() && joints.has_crowd();
     paths.find(world, edges, terms_, {kNearFraction, settings_.fall}, records_, loops_);
     impacts.shapes.begin_step();
     corrections_.shape_turns.begin_step(world, paths, masses_);

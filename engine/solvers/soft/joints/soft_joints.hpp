@@ -58,6 +58,8 @@ class SoftJoints {
     DirectJoints<Real>* small_group_of(std::int32_t row);
     /// Whether contacts and joints are to be solved in turns in this step.
     bool touches() const { return touches_ || crowd_groups_ > 0; }
+    /// Whether there are so many small groups that they are swept.
+    bool has_crowd() const { return crowd_groups_ > 0; }
     /// Whether a group that is solved exactly touches something.
     bool touches_exactly() const { return touches_; }
     void end_substep(const JointStep<Real>& step, Books& books);
