@@ -2,6 +2,7 @@
 // of threads, and after a snapshot. New hashes are printed as those of test_same_bits.cpp are.
 #include "determinism/golden_scenes.hpp"
 #include "support/joints.hpp"
+#include "support/ragdoll.hpp"
 
 #include <string>
 
@@ -16,6 +17,18 @@ constexpr double kStep = 1.0 / 60;
 
 constexpr int kSteps = 60;
 
+/// Mechanisms of two kinds, more of one than are swept side by side, which fall on a floor and each other.
+Scene crowd_of_ragdolls() {
+    Scene scene;
+    scene.name = "crowd of ragdolls", scene.gravity = {0, -10};
+    scene.walls.emplace();
+    scene.walls->max = {4.2, 100}, scene.walls->top = false;
+    for (int i = 0; i < 28; ++i)
+        add_ragdoll(scene, {0.6 * (i % 7) + 0.3, 1.2 + 1.9 * (i / 7)}, 0.02 * (i % 5), -1 - i,
+                    {.has_limits = i % 3 != 0});
+    return scene;
+}
+
 std::vector<Scene> scenes_with_joints() {
     Scene every = every_joint(), chain = weighted_chain(10, 100, {1, 0}), net = hanging_net(12);
     Scene grid = net, hinges = net;
@@ -23,7 +36,7 @@ std::vector<Scene> scenes_with_joints() {
     grid.name = "net of rods beside centres", hinges.name = "net of hinges";
     for (Joint& joint : grid.joints) std::get<DistanceJoint>(joint.kind).anchor_b = {0.05, 0.02};
     for (Joint& joint : hinges.joints) joint.kind = RevoluteJoint{};
-    return {every, chain, net, grid, hinges};
+    return {every, chain, net, grid, hinges, crowd_of_ragdolls()};
 }
 
 constexpr Golden kGolden[] = {
@@ -32,6 +45,7 @@ constexpr Golden kGolden[] = {
     {"net of rods", 0xc9766baaa9013493, 0xcc473225a7d37df},
     {"net of rods beside centres", 0xaf184cf7d115621, 0x20acc8a1a91d08aa},
     {"net of hinges", 0xb085cbbfb070441c, 0x5748400fa6290ac},
+    {"crowd of ragdolls", 0xb31a144494bd6a0, 0xac08e215b51d6081},
 };
 
 }  // namespace
