@@ -18,7 +18,7 @@ struct PathPlan {
 /// docs/decisions/0042-contacts-that-cannot-close.md has the measurements of the last,
 /// 0091-wild-and-restless-crowds.md those of crowds.
 inline constexpr PathPlan kPlans[] = {{40, 10, true, 4, 2}, {8, 8, true, 4, 2}, {4, 4, false, 4, 2}},
-                          kPlansOfCrowds[] = {{40, 10, true, 4, 2}, {8, 5, true, 4, 2}, {2, 2, false, 2, 1}};
+                          kPlansOfCrowds[] = {{40, 10, true, 4, 2}, {8, 5, true, 4, 2}, {3, 3, false, 2, 1}};
 
 inline const PathPlan& plan_of(PathMood mood, bool is_crowd) {
     return (is_crowd ? kPlansOfCrowds : kPlans)[static_cast<std::size_t>(mood)];
