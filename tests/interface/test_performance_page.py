@@ -48,6 +48,15 @@ class PerformancePageTest(unittest.TestCase):
         self.assertEqual([what for what, holds in held.items() if holds], [])
         self.assertEqual(list(held), [what for what, _, _ in make.bars(self.results)])
 
+    def test_a_scene_that_another_machine_ran_says_which(self):
+        results = copy.deepcopy(self.results)
+        scene = results.parts["peers"]["scenes"][-1]
+        scene["machine"] = scene["machine"] | {"processor": "Another"}
+        scene["date"] = "2000-01-02"
+        lines = [line for line in make.page(results).splitlines() if "Another" in line]
+        self.assertEqual(len(lines), 1)
+        self.assertRegex(lines[0], rf"^{scene['scene']}, .* steps, on Another with a last cache of \d+ MiB, 2000-01-02:$")
+
     def test_ratios_on_the_page_are_those_of_the_rounds(self):
         for scene in self.results.parts["peers"]["scenes"]:
             ours = scene["engines"][0]
