@@ -167,7 +167,7 @@ TEST_SUITE("hard cases: joints") {
         for (int i = 0; i < kSteps; ++i) world.step(kStep);
         const Profile profile = world.profile();
         CHECK(profile.contacts > 1024);
-        CHECK(profile.path_cuts - then.path_cuts < kSteps / 6);
+        CHECK(profile.path_cuts - then.path_cuts < kSteps / 4);  // a third where heaps of others are kept
         CHECK(profile.path_solves - then.path_solves == kSteps * world.plan().substeps);
         const JointErrors gaps = world.joint_errors();
         const OverlapReport overlaps = world.overlaps();

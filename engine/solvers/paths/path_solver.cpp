@@ -367,6 +367,7 @@ template <class Real>
 void PathSolver<Real>::solve_again(const SubstepTerms& terms, BodyRecords<Real>& records,
                                    const StepLoops<Real>& loops, bool sweeps, Bundles which) {
     if (manifolds.live().empty()) return;
+    if (is_wild_crowd() && rolling_.empty()) return sweep(terms, records, loops, which);
     SolvePaths<Real> k = arguments(terms, records);
     k.tries_pieces = false;
     without_hidden([&] { solve(k, records, loops, rolling_.empty() ? 1 : 0, 1, sweeps, which); });

@@ -67,9 +67,11 @@ class PathSolver {
                Bundles which = Bundles::all);
     /// Solves once more what is solved already, since something else has changed velocities: a turn of many,
     /// so rolling resistance takes one in each, and what does not settle is swept in place of solved in
-    /// pieces.
+    /// pieces. Wild crowds are swept, but for rolling resistance.
     void solve_again(const SubstepTerms& terms, BodyRecords<Real>& records, const StepLoops<Real>& loops,
                      bool sweeps, Bundles which);
+    /// Whether contacts come and go among so many that a solution is soon out of date.
+    bool is_wild_crowd() const { return choice_.mood_of_cut() == PathMood::wild && manifolds.is_crowd(); }
     TurnRows turns;             ///< whose contacts are solved in turns
     bool is_of_crowd = false;   ///< whether the world has a crowd of mechanisms
     bool pushes_twice = false;  ///< whether a solve takes as much from overlaps as two would

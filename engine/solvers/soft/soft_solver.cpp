@@ -128,9 +128,10 @@ void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
 
 /// Joints, then contacts. @return whether contacts are left as they are, since neither joints nor what
 /// weighs on them have changed a velocity by more than `settled` [m/s]; below zero: never.
-/// @param of_shapes  which contacts of shapes are solved, and how
+/// @param is_near  whether those of shapes are solved alone that are near bodies which joints have changed by
+/// more than that
 template <class Real>
-bool SoftSolver<Real>::solve_turn(WorldState<Real>& world, double settled, Turn of_shapes) {
+bool SoftSolver<Real>::solve_turn(WorldState<Real>& world, double settled, bool is_near) {
     const auto next = Sweeps::next(view(), Sweeps::Blocks::all, 1);
     if (!world.joints.empty()) {
         double change = joints.solve_again(joint_step(world), loops_);
@@ -142,10 +143,10 @@ bool SoftSolver<Real>::solve_turn(WorldState<Real>& world, double settled, Turn 
         using Bundles = typename PathSolver<Real>::Bundles;
         paths.turns.begin();
         const bool has_asked = joints.ask_turns(settled, paths.turns);
-        const Bundles which = of_shapes == Turn::near && has_asked ? paths.near_turns() : Bundles::all;
-        if (of_shapes == Turn::swept)
-            paths.sweep(terms_, records_, loops_);
-        else if (of_shapes == Turn::near)
+        const Bundles which = is_near && has_asked ? paths.near_turns() : Bundles::all;
+        if (sweeps_turns())
+            paths.sweep(terms_, records_, loops_, which);
+        else if (is_near)
             paths.solve_again(terms_, records_, loops_, true, which);
         else
             paths.solve(terms_, records_, loops_, 1, true, which);
@@ -159,13 +160,8 @@ bool SoftSolver<Real>::solve_turn(WorldState<Real>& world, double settled, Turn 
 template <class Real>
 void SoftSolver<Real>::solve_joints_and_contacts(WorldState<Real>& world) {
     const double settled = kJointsSettled * terms_.fall_speed();
-    if (sweeps_turns()) {
-        solve_turn(world, settled, Turn::swept);
-        return;
-    }
     const int turns = joints.touches_exactly() ? kTurns : kTurnsOfCrowd;
-    for (int turn = 0; turn < turns && !solve_turn(world, settled, turn > 0 ? Turn::near : Turn::all); ++turn)
-        continue;
+    for (int turn = 0; turn < turns && !solve_turn(world, settled, turn > 0); ++turn) continue;
 }
 
 template <class Real>
@@ -181,7 +177,7 @@ void SoftSolver<Real>::bound_energy(WorldState<Real>& world) {
         const bool becomes_less = passive_.has_scaled() || gained < before;
         if (is_last || !(gained > 0) || !becomes_less) break;
         before = gained;
-        solve_turn(world, -1, Turn::all);
+        solve_turn(world, -1, false);
     }
 }
 

@@ -211,14 +211,13 @@ class SoftSolver {
   private:
     using Sweeps = ContactSweeps<Real>;
 
-    /// Contacts of shapes in a turn: all are solved; those near bodies that joints have changed; or all are
-    /// swept.
-    enum class Turn : std::uint8_t { all, near, swept };
-    bool solve_turn(WorldState<Real>& world, double settled, Turn of_shapes);
-    /// Whether turns of joints and contacts sweep: a crowd of mechanisms that are swept, and so many contacts
-    /// that paths are short.
+    bool solve_turn(WorldState<Real>& world, double settled, bool is_near);
+    /// Whether turns of joints and contacts sweep over contacts of shapes in place of solving them: where
+    /// contacts are so many that paths are short, in a crowd of mechanisms that are swept, too, and where
+    /// contacts come and go. docs/decisions/0090-crowds-of-mechanisms.md, 0091-wild-and-restless-crowds.md.
     bool sweeps_turns() const {
-        return joints.touches() && !joints.touches_exactly() && paths.manifolds.is_crowd();
+        return joints.touches() && paths.manifolds.is_crowd() &&
+               (!joints.touches_exactly() || paths.is_wild_crowd());
     }
     JointStep<Real> joint_step(WorldState<Real>& world) {
         return {world, records_, terms_, books_.gravity_work, joints.springs()};
