@@ -17,7 +17,8 @@ void ContactRows<Real>::resize_for_step(const ContactEffects& effects) {
             column.resize_for_overwrite(rows);
     });
     const std::size_t blocks = contacts / kContactBlock;
-    is_live.resize_for_overwrite(blocks), needs_second_sweep.resize_for_overwrite(blocks);
+    is_struck.resize_for_overwrite(blocks), is_live.resize_for_overwrite(blocks),
+        needs_second_sweep.resize_for_overwrite(blocks);
     run.resize_for_overwrite(blocks);
     run_count.assign(groups(), 0), live_count.assign(groups(), 0);
 }
@@ -58,7 +59,7 @@ ContactColumns<Real> ContactRows<Real>::columns() {
 
 template <class Real>
 std::size_t ContactRows<Real>::bytes() const {
-    std::size_t bytes = is_live.bytes() + needs_second_sweep.bytes() + run.bytes() +
+    std::size_t bytes = is_struck.bytes() + is_live.bytes() + needs_second_sweep.bytes() + run.bytes() +
                         (begin.capacity() + count.capacity() + first_colour.capacity() +
                          run_count.capacity() + live_count.capacity()) *
                             sizeof(std::size_t);

@@ -124,6 +124,7 @@ struct ContactRows {
     };
     // These columns are for pairs alone.
     Column<std::uint8_t> is_live;                    // a block: kernels/contacts/contact_arguments.hpp
+    Column<std::uint8_t> is_struck;                  // a block: likewise
     Column<std::uint8_t> needs_second_sweep;         // a block: likewise
     Column<Run> run;                                 // those of a group begin at its first block
     std::vector<std::size_t> run_count, live_count;  // a group: runs, contacts that can touch

@@ -56,6 +56,8 @@ struct KernelTable {
     std::size_t (*find_impacts_near_uniform_radius)(const GridLevel<Real>&, const FindImpactsNear<Real>&);
     void (*end_flight)(const EndFlight<Real>&, std::size_t first, std::size_t last);
     std::size_t (*find_contacts)(const FindContacts<Real>&, std::size_t first, std::size_t last);
+    bool (*find_deep)(const SolveContacts<Real>&, const DeepPairs<Real>&, std::size_t first,
+                      std::size_t last);
     // smooth; rough; rough, and some bodies do not turn; the last two with rolling resistance
     std::array<ContactKernels<Real>, 5> contacts;
     // rods between centres, between anchors; hinges; springs and ropes; what acts on angles

@@ -8,6 +8,7 @@
 #include "kernels/contacts/advance_bodies.hpp"
 #include "kernels/contacts/coarse_correction.hpp"
 #include "kernels/contacts/find_contacts.hpp"
+#include "kernels/contacts/find_deep.hpp"
 #include "kernels/contacts/measure_gain.hpp"
 #include "kernels/contacts/solve_contacts.hpp"
 #include "kernels/contacts/sum_work.hpp"
@@ -64,6 +65,7 @@ constexpr KernelTable<Real> make_table(std::string_view isa, const ConvexKernels
         .find_impacts_near_uniform_radius = &find_impacts_near<true, Real, Isa>,
         .end_flight = &end_flight<Real, Isa>,
         .find_contacts = &find_contacts<Real, Isa>,
+        .find_deep = &find_deep<Real, Isa>,
         .contacts = {make_contact_kernels<0, Real, Isa>(), make_contact_kernels<kRough, Real, Isa>(),
                      make_contact_kernels<kRough | kFixedAngles, Real, Isa>(),
                      make_contact_kernels<kRough | kRolling, Real, Isa>(),

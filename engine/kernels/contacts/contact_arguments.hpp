@@ -76,6 +76,13 @@ struct SolveContacts {
     Real kept = 0;                // share
 };
 
+/// What kernels/contacts/find_deep.hpp looks for.
+template <class Real>
+struct DeepPairs {
+    Real closes;  // way in a substep: m, or of contacts.smaller
+    Real deep;    // overlap behind it: likewise
+};
+
 /// The mark of a block that has a contact of bodies which are deep in each other.
 inline constexpr std::uint8_t kDeepBlock = 2;
 
@@ -101,6 +108,9 @@ struct FindContacts {
     Real deep;  // below zero: separation of bodies that are deep in each other: m, or of `smaller`
     std::uint8_t* is_live;  // out, [last / kContactBlock]: whether a contact of the block can touch: 0, 1,
                             // or kDeepBlock
+    Real strike = 0;        // way along the normal in the step: m, or of `smaller`
+    std::uint8_t* is_struck = nullptr;  // out, [last / kContactBlock]: whether two of the block meet in this
+                                        // step and come by more than `strike`; null: not asked for
 };
 
 /// Velocities at the start of a substep. Nobody asks for those of single bodies, so they are columns.

@@ -43,7 +43,7 @@ std::size_t find_contacts(const FindContacts<Real>& k, std::size_t first, std::s
     std::size_t count = 0;
     for (std::size_t block = first; block < last; block += kContactBlock) {
         unsigned live_in_block = 0;
-        bool is_deep = false;
+        bool is_deep = false, is_struck = false;
         for (std::size_t p = block; p < block + kContactBlock; p += Lanes::size) {
             const auto a = Lanes::load_rows4(k.motion, k.a + p);
             const auto b = Lanes::load_rows4(k.motion, k.b + p);
@@ -54,12 +54,12 @@ std::size_t find_contacts(const FindContacts<Real>& k, std::size_t first, std::s
             // Each by its own speed, not by the relative one: two that fly side by side meet in this step if
             // a third body stops one of them.
             const F ways = simd::abs(a[2]) + simd::abs(a[3]) + simd::abs(b[2]) + simd::abs(b[3]);
-            F at_rest = F(k.near), deep = F(k.deep);
+            F at_rest = F(k.near), deep = F(k.deep), strike = F(k.strike);
             if (k.smaller) {
                 const F smaller = Lanes::load(k.smaller + p);
-                at_rest += F(k.near_of_smaller) * smaller, deep *= smaller;
+                at_rest += F(k.near_of_smaller) * smaller, deep *= smaller, strike *= smaller;
             }
-            const F near = reach + at_rest + F(k.dt) * ways;
+            const F flown = F(k.dt) * ways, near = reach + at_rest + flown;
             const auto is_contact = reach > F(0);
             const auto live = is_contact & (squared < near * near);
             Lanes::store(k.normal_impulse + p, simd::select(live, Lanes::load(k.normal_impulse + p), F(0)));
@@ -84,9 +84,14 @@ std::size_t find_contacts(const FindContacts<Real>& k, std::size_t first, std::s
             Lanes::store(k.separation + p, separation);
             is_deep |= simd::any(is_contact & (separation < deep));
             if (k.approach) Lanes::store(k.approach + p, dvx * nx + dvy * ny);
+            if (k.is_struck && simd::any(flown > strike)) {
+                const F way = -(dvx * nx + dvy * ny) * F(k.dt);
+                is_struck |= simd::any(is_contact & (way > strike) & (way > separation));
+            }
             live_in_block += static_cast<unsigned>(__builtin_popcount(simd::bitmask(live)));
         }
         k.is_live[block / kContactBlock] = is_deep ? kDeepBlock : live_in_block > 0;
+        if (k.is_struck) k.is_struck[block / kContactBlock] = is_struck;
         count += live_in_block;
     }
     return count;

@@ -71,6 +71,13 @@ void SoftSolver<Real>::find_contacts(WorldState<Real>& world, const EdgeCandidat
     settings_.has_uneven_sweeps = corrections_.uneven.are_swept();
     corrections_.uneven.begin_step(view(), world, masses_.are_mixed());
     corrections_.chains.begin_step(view());
+    // Sweeps would undo what corrections_.uneven does.
+    const auto& restitution = world.bodies.restitution;
+    if (masses_.are_uneven() || world.bodies.has_flags || !restitution.is_uniform() ||
+        restitution.uniform_value() != 0)
+        corrections_.deep.clear();
+    else
+        corrections_.deep.begin_step(view(), motion, finder_.pairs.struck_chunks());
     corrections_.wedged.begin_step(view(), world.bodies);
     counters.contacts = static_cast<std::int64_t>(
         std::accumulate(graph.pairs.live_count.begin(), graph.pairs.live_count.end(), supports_.contacts()));

@@ -121,6 +121,10 @@ class SoftSolver {
     void solve_wedged_bodies();
     /// Solves what the sweeps leave where masses are uneven; nothing where they are not.
     void solve_uneven_contacts(bool is_last);
+    /// Whether something may be hit in this step.
+    bool expects_hits() const { return corrections_.deep.expects_hits(); }
+    /// Sweeps on where something was hit and would come deep into its neighbours.
+    void solve_deep_contacts() { corrections_.deep.solve(view(), sweeps_); }
     /// What the impulses of this substep did; only the walls' impulses if the ledger is closed.
     void book_substep(const WorldState<Real>& world, Books& books) {
         books_.book_substep(view(), world, books);
@@ -189,7 +193,9 @@ class SoftSolver {
     void follow_rows() { masses_.follow_rows(), paths.turns.forget(); }
 
     /// Nothing can touch any more.
-    void drop_contacts() { graph.pairs = {}, graph.supports = {}, graph.lost.clear(), supports_ = {}; }
+    void drop_contacts() {
+        graph.pairs = {}, graph.supports = {}, graph.lost.clear(), supports_ = {}, corrections_.deep.clear();
+    }
 
     const BodyRecords<Real>& records() const { return records_; }
     /// How well the last step's contacts were solved. Cost: O(contacts).

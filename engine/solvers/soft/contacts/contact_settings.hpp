@@ -14,6 +14,10 @@ namespace carom {
 /// pushes one of them in the middle of a step is felt by the other.
 inline constexpr double kNearFraction = 0.04;
 
+/// What comes by this share of the smaller radius in a step, and meets another body where nothing bounces,
+/// hits it: that one is looked at as if it flew as fast itself. docs/decisions/0089-discs-that-are-hit.md.
+inline constexpr double kStrike = 0.5;
+
 /// What is the same for all contacts of a step of solver `soft`: the effects that are on, coefficients that
 /// need no column, and the lengths that contacts are judged by.
 ///

@@ -44,7 +44,7 @@ void describe_group(ContactRows<Real>& pairs, std::size_t group, const Bodies<Re
 
 /// Lists runs of blocks of a group that have contacts which can touch.
 template <class Real>
-void list_runs(ContactRows<Real>& pairs, std::size_t group) {
+[[gnu::always_inline]] inline void list_runs(ContactRows<Real>& pairs, std::size_t group) {
     typename ContactRows<Real>::Run* const list = pairs.run.data() + pairs.first_place(group) / kContactBlock;
     std::size_t runs = 0;
     for (std::size_t c = pairs.first_colour[group]; c < pairs.first_colour[group + 1]; ++c) {
@@ -62,7 +62,7 @@ void list_runs(ContactRows<Real>& pairs, std::size_t group) {
 
 template <class Real>
 FindContacts<Real> arguments(ContactRows<Real>& pairs, const ContactSettings& settings, double dt,
-                             const Column<Real>& motion) {
+                             const Column<Real>& motion, bool are_hits_swept) {
     const bool radius_varies = settings.effects.radius_varies;
     FindContacts<Real> k{};
     k.motion = motion.data();
@@ -78,6 +78,8 @@ FindContacts<Real> arguments(ContactRows<Real>& pairs, const ContactSettings& se
     k.near_of_smaller = static_cast<Real>(kNearFraction);
     k.deep = static_cast<Real>(-settings.deep_overlap(settings.radius));
     k.is_live = pairs.is_live.data();
+    if (are_hits_swept)
+        k.is_struck = pairs.is_struck.data(), k.strike = static_cast<Real>(kStrike * settings.radius);
     return k;
 }
 
@@ -121,7 +123,11 @@ bool PairFinder<Real>::find(const StepView<Real>& step, const Bodies<Real>& bodi
     // What is added between renewals changes the last group alone.
     const bool is_new = version_ != graph.version, are_all_new = renewal_ != graph.renewals;
     if (is_new) pairs.resize_for_step(step.settings.effects);
-    const FindContacts<Real> k = arguments(pairs, step.settings, step.terms.dt, motion);
+    const FindContacts<Real> k =
+        arguments(pairs, step.settings, step.terms.dt, motion,
+                  // What bounces is an impact, which looks around itself.
+                  bodies.restitution.is_uniform() && bodies.restitution.uniform_value() == 0 &&
+                      !masses.are_uneven() && !bodies.has_flags);
     frames_.clear();
     if (flies_together) frames_.find(graph, bodies, motion);
     const double work = kNanosecondsToFind * static_cast<double>(pairs.a.size());
@@ -133,10 +139,75 @@ bool PairFinder<Real>::find(const StepView<Real>& step, const Bodies<Real>& bodi
         if (!frames_.empty()) pairs.live_count[group] = leave_out_flying(k, frames_, pairs, group);
         list_runs(pairs, group);
     });
+    has_thrown_.clear();
+    if (k.is_struck && find_thrown(step, k)) reach_thrown(step, k);
     has_deep_pairs_ =
         std::find(pairs.is_live.begin(), pairs.is_live.end(), kDeepBlock) != pairs.is_live.end();
     version_ = graph.version, renewal_ = graph.renewals;
     return is_new;
+}
+
+/// Finds how fast bodies that are hit in this step are thrown at most: as fast as those come that hit them.
+/// @return whether there are any
+template <class Real>
+bool PairFinder<Real>::find_thrown(const StepView<Real>& step, const FindContacts<Real>& k) {
+    const ContactRows<Real>& pairs = step.graph.pairs;
+    const TaskGroups& groups = step.graph.groups;
+    bool any = false;
+    for (std::size_t block = 0; block < pairs.is_struck.size(); ++block) {
+        if (!k.is_struck[block]) continue;
+        if (!any) thrown_.assign(step.records.count(), Real(0)), has_thrown_.assign(groups.chunks, 0);
+        any = true;
+        for (std::size_t i = kContactBlock * block; i < kContactBlock * (block + 1); ++i) {
+            if (!(k.reach[i] > 0)) continue;  // padding
+            const auto a = static_cast<std::size_t>(k.a[i]), b = static_cast<std::size_t>(k.b[i]);
+            const Real approach = (k.motion[4 * a + 2] - k.motion[4 * b + 2]) * k.normal_x[i] +
+                                  (k.motion[4 * a + 3] - k.motion[4 * b + 3]) * k.normal_y[i];
+            const Real strike = k.smaller ? k.strike * k.smaller[i] : k.strike;
+            if (!(k.dt * approach > strike) || !(k.dt * approach > k.separation[i])) continue;
+            for (const std::size_t row : {a, b}) {
+                thrown_[row] = std::max(thrown_[row], approach);
+                has_thrown_[groups.chunk_of(static_cast<std::int32_t>(row))] = 1;
+            }
+        }
+    }
+    return any;
+}
+
+/// Takes in the blocks that bodies which are thrown may come to touch in this step.
+template <class Real>
+void PairFinder<Real>::reach_thrown(const StepView<Real>& step, const FindContacts<Real>& k) {
+    ContactRows<Real>& pairs = step.graph.pairs;
+    const TaskGroups& groups = step.graph.groups;
+    const double work = static_cast<double>(pairs.a.size());
+    step.loops.executor->for_each_task(groups.count(), work, [&](std::size_t group) {
+        const std::size_t chunk = group / 2;
+        const bool is_near = group == groups.far() || has_thrown_[chunk] != 0 ||
+                             (group % 2 == 1 && has_thrown_[chunk + 1] != 0);
+        if (!is_near) return;
+        std::size_t found = 0;
+        for (std::size_t block = pairs.first_place(group) / kContactBlock;
+             block < pairs.first_place(group + 1) / kContactBlock; ++block) {
+            if (pairs.is_live[block]) continue;
+            std::size_t live = 0;
+            for (std::size_t i = kContactBlock * block; i < kContactBlock * (block + 1); ++i) {
+                if (!(k.reach[i] > 0)) continue;
+                const auto a = static_cast<std::size_t>(k.a[i]), b = static_cast<std::size_t>(k.b[i]);
+                const Real thrown = std::max(thrown_[a], thrown_[b]);
+                if (!(thrown > 0)) continue;
+                const Real *x_a = k.motion + 4 * a, *x_b = k.motion + 4 * b;
+                const Real ways =
+                               std::fabs(x_a[2]) + std::fabs(x_a[3]) + std::fabs(x_b[2]) + std::fabs(x_b[3]),
+                           near = k.reach[i] + k.dt * (ways + thrown), dx = x_b[0] - x_a[0],
+                           dy = x_b[1] - x_a[1];
+                live += dx * dx + dy * dy < near * near;
+            }
+            if (live > 0) pairs.is_live[block] = 1, found += live;
+        }
+        if (found == 0) return;
+        pairs.live_count[group] += found;
+        list_runs(pairs, group);
+    });
 }
 
 template class PairFinder<float>;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "solvers/soft/contacts/flight_frames.hpp"
 #include "solvers/soft/step_view.hpp"
@@ -24,12 +25,24 @@ class PairFinder {
     /// Whether some pair started the step deeper than the sweeps take away soon enough.
     bool has_deep_pairs() const { return has_deep_pairs_; }
 
-    std::size_t bytes() const { return frames_.bytes(); }
+    /// Chunks of rows in which bodies are hit in the step, not 0 for each; empty where none are.
+    const std::vector<std::uint8_t>& struck_chunks() const { return has_thrown_; }
+
+    std::size_t bytes() const {
+        return frames_.bytes() + thrown_.capacity() * sizeof(Real) + has_thrown_.capacity();
+    }
 
   private:
+    bool find_thrown(const StepView<Real>& step, const FindContacts<Real>& k);
+    void reach_thrown(const StepView<Real>& step, const FindContacts<Real>& k);
+
     FlightFrames<Real> frames_;                 // of this step
     std::int64_t version_ = -1, renewal_ = -1;  // of the graph whose pairs are described
     bool has_deep_pairs_ = false;
+    // Of this step, where some are: how fast others throw bodies [m/s], by row, and whether the rows of a
+    // chunk have any.
+    std::vector<Real> thrown_;
+    std::vector<std::uint8_t> has_thrown_;
 };
 
 extern template class PairFinder<float>;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solvers/soft/corrections/contact_chains.hpp"
+#include "solvers/soft/corrections/deep_contacts.hpp"
 #include "solvers/soft/corrections/load_correction.hpp"
 #include "solvers/soft/corrections/shape_turns.hpp"
 #include "solvers/soft/corrections/uneven_contacts.hpp"
@@ -17,14 +18,16 @@ struct ContactCorrections {
     WedgedBodies<Real> wedged;     ///< bodies between supports that face each other
     UnevenContacts<Real> uneven;   ///< masses that differ much
     ShapeTurns<Real> shape_turns;  ///< likewise, of shapes
+    DeepContacts<Real> deep;       ///< hits
 
     std::size_t bytes() const {
-        return loads.bytes() + chains.bytes() + wedged.bytes() + uneven.bytes() + shape_turns.bytes();
+        return loads.bytes() + chains.bytes() + wedged.bytes() + uneven.bytes() + shape_turns.bytes() +
+               deep.bytes();
     }
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.loads, self.uneven, self.shape_turns, self.chains);
+        archive(self.loads, self.uneven, self.shape_turns, self.chains, self.deep);
     }
 };
 
