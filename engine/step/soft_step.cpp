@@ -51,10 +51,10 @@ class SoftStep final : public SoftSimulation<Real> {
     static constexpr auto has_chains = [](const Sim& sim) {
         return sim.can_touch() && sim.soft.has_chains();
     };
-    static constexpr auto has_masses_or_hits = [](const Sim& sim) {
-        return sim.can_touch() &&
-               (!sim.world.bodies.mass.is_uniform() || sim.world.bodies.has_flags || sim.soft.expects_hits());
+    static constexpr auto has_masses = [](const Sim& sim) {
+        return sim.can_touch() && (!sim.world.bodies.mass.is_uniform() || sim.world.bodies.has_flags);
     };
+    static constexpr auto has_hits = [](const Sim& sim) { return sim.soft.expects_hits(); };
     static constexpr auto shapes_bounce = [](const Sim& sim) {
         return has_shapes(sim) && sim.world.effects.restitution;
     };
@@ -71,12 +71,6 @@ class SoftStep final : public SoftSimulation<Real> {
     };
     static constexpr auto has_sensors = [](const Sim& sim) { return sim.world.sensing.is_called_for(); };
     static constexpr auto has_lost_bodies = [](const Sim& sim) { return !sim.lost.empty(); };
-
-    /// Apart, so that steps in which nothing is hit pay a comparison.
-    [[gnu::noinline]] static void solve_hits(Sim& sim, bool is_last) {
-        sim.soft.solve_uneven_contacts(is_last);
-        sim.soft.solve_deep_contacts();
-    }
 
     static constexpr Stage<Sim> kBegin[] = {
         {"follow_changes", [](Sim& sim) { sim.follow_changes(); }, has_changes, KernelChoice::none,
@@ -151,12 +145,10 @@ class SoftStep final : public SoftSimulation<Real> {
         {"solve_wedged_bodies", [](Sim& sim) { sim.soft.solve_wedged_bodies(); }, has_wedged_bodies,
          KernelChoice::scalar_f64, "contacts, velocity records", "impulses, velocity records"},
         {"solve_uneven_contacts",
-         [](Sim& sim) {
-             const bool is_last = sim.substep + 1 == sim.substep_count;
-             if (sim.soft.expects_hits()) return solve_hits(sim, is_last);
-             sim.soft.solve_uneven_contacts(is_last);
-         },
-         has_masses_or_hits, KernelChoice::scalar_f64, "contacts, velocity records, displacements",
+         [](Sim& sim) { sim.soft.solve_uneven_contacts(sim.substep + 1 == sim.substep_count); }, has_masses,
+         KernelChoice::scalar_f64, "contacts, velocity records", "impulses, velocity records, displacements"},
+        {"solve_deep_contacts", [](Sim& sim) { sim.soft.solve_deep_contacts(); }, has_hits,
+         KernelChoice::contacts, "contacts, velocity records, displacements",
          "impulses, velocity records, displacements"},
         {"solve_joints_and_contacts", [](Sim& sim) { sim.soft.solve_joints_and_contacts(sim.world); },
          has_joints_in_contact, KernelChoice::contacts, "joints, contacts, velocity records",

@@ -40,8 +40,10 @@ void run_stages(const Stage<Sim> (&stages)[kCount], std::size_t first, Sim& sim,
 }
 
 /// The same, but the step may end before the first and within each of them. @return false if it did
+/// Inlined into the step, so that the compiler knows which stages there are: .7 % of a step of 30 discs.
 template <class Sim, std::size_t kCount>
-bool run_interruptible(const Stage<Sim> (&stages)[kCount], std::size_t first, Sim& sim, StageTimes& times) {
+[[gnu::always_inline]] inline bool run_interruptible(const Stage<Sim> (&stages)[kCount], std::size_t first,
+                                                     Sim& sim, StageTimes& times) {
     if (sim.interruption.is_due_after(kCount * sim.world.bodies.count)) return false;
     for (std::size_t i = 0; i < kCount; ++i) {
         if (!stages[i].is_called_for(sim)) continue;

@@ -117,8 +117,8 @@ template <class Real>
 void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
     using Blocks = typename Sweeps::Blocks;
     const ContactKernels<Real>& kernels = *loops_.contacts;
-    const SolveContacts<Real> on_supports = Sweeps::arguments(view(), supports_),
-                              on_pairs = Sweeps::arguments(view(), graph.pairs);
+    const SolveContacts<Real> on_pairs = Sweeps::arguments(view(), graph.pairs),
+                              on_supports = Sweeps::with_rows(on_pairs, supports_);
     const bool starts_anew = number == 0 && warm_start_.starts_anew();
     // A scene that asks for more sweeps wants contacts solved better: then none is left out.
     const bool only_restless = !starts_anew && !is_last && !warm_start_.is_rebalanced() &&

@@ -54,6 +54,11 @@ class ContactSweeps {
     /// What kernels are told of contacts of one kind, in a substep.
     /// @param rows  the pairs or the supports of the step
     static SolveContacts<Real> arguments(const StepView<Real>& step, ContactRows<Real>& rows);
+    /// The same for contacts of another kind: their columns alone are others.
+    static SolveContacts<Real> with_rows(SolveContacts<Real> k, ContactRows<Real>& rows) {
+        k.contacts = rows.columns(), k.needs_second_sweep = rows.needs_second_sweep.data();
+        return k;
+    }
 
     /// To be called when the contacts of a step are found.
     /// @param contacts  how many there are: the executor wants to know how long a sweep takes
@@ -64,7 +69,8 @@ class ContactSweeps {
              const SolveContacts<Real>& on_supports);
     /// Runs sweeps with the arguments that are above.
     void run(const StepView<Real>& step, std::span<const Sweep> sweeps) {
-        run(step, sweeps, arguments(step, step.graph.pairs), arguments(step, step.supports));
+        const SolveContacts<Real> on_pairs = arguments(step, step.graph.pairs);
+        run(step, sweeps, on_pairs, with_rows(on_pairs, step.supports));
     }
 
     std::size_t bytes() const {
