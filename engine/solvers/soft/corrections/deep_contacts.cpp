@@ -12,7 +12,7 @@ namespace {
 // Shares of the smaller radius.
 
 /// Bodies are pressed into each other if they come nearer by so much in a substep than they may,
-constexpr double kPressed = 0.01;
+constexpr double kPressed = 0.012;
 /// and overlap by more than this behind it.
 constexpr double kOverlap = 0.05;
 
