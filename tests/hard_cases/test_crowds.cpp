@@ -1,4 +1,4 @@
-// B16 of docs/hard-cases.md: crowds.
+// B16 and, without restitution, B31 of docs/hard-cases.md: crowds.
 #include "support/effort.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"
