@@ -32,7 +32,7 @@ template <class Real>
 Mechanism mechanism_of(const WorldState<Real>& world, const std::vector<std::size_t>& slots,
                        bool (*has_angle_part)(const StoredJoint&));
 
-/// Mechanisms that are joined alike, side by side: who shares a bundle, in which order.
+/// Mechanisms that are joined alike, side by side: which of them share a bundle, in which order.
 ///
 /// They are sorted by how they are joined, then by where their bodies are in memory. What a mechanism does
 /// does not depend on its bundle.

@@ -104,7 +104,7 @@ template <class Real>
 void DeepContacts<Real>::solve(const StepView<Real>& step, ContactSweeps<Real>& sweeps) {
     using Sweep = typename ContactSweeps<Real>::Sweep;
     const SolveContacts<Real> on_pairs = ContactSweeps<Real>::arguments(step, step.graph.pairs),
-                              on_supports = ContactSweeps<Real>::arguments(step, step.supports);
+                              on_supports = ContactSweeps<Real>::with_rows(on_pairs, step.supports);
     if (!find_deep(step, on_pairs, is_hit_)) return;
     Sweep further{step.loops.contacts->next_pairs, step.loops.contacts->next_supports};
     further.over_relaxation = kFurtherOverRelaxation, further.of_runs = &runs_;

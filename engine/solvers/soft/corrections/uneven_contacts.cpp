@@ -211,7 +211,7 @@ template <class Real>
 void UnevenContacts<Real>::solve(const StepView<Real>& step, ContactSweeps<Real>& sweeps, bool is_last) {
     if (are_swept()) return sweep(step, sweeps, is_last);
     const SolveContacts<Real> on_pairs = ContactSweeps<Real>::arguments(step, step.graph.pairs),
-                              on_supports = ContactSweeps<Real>::arguments(step, step.supports);
+                              on_supports = ContactSweeps<Real>::with_rows(on_pairs, step.supports);
     const double fall = step.terms.fall_speed();
     if (!is_listed_) {
         const double left = local_.solve(on_pairs, on_supports, fall);
