@@ -45,6 +45,15 @@ struct TaskGroups {
         return steps < 2 ? 2 * chunk + steps : far();
     }
 
+    /// Whether a group of pairs may have bodies of chunks that are marked; far ones may be anywhere.
+    /// @param is_marked  [chunks], not 0 for those
+    template <class Marks>
+    bool touches(std::size_t group, const Marks& is_marked) const {
+        const std::size_t chunk = group / 2;
+        if (group == far()) return true;
+        return is_marked[chunk] != 0 || (group % 2 == 1 && is_marked[chunk + 1] != 0);
+    }
+
     // Groups of supports: one a chunk, and one for those that found no colour.
     std::size_t support_count() const { return chunks + 1; }
 

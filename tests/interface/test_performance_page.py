@@ -54,8 +54,10 @@ class PerformancePageTest(unittest.TestCase):
         scene["machine"] = scene["machine"] | {"processor": "Another"}
         scene["date"] = "2000-01-02"
         lines = [line for line in make.page(results).splitlines() if "Another" in line]
-        self.assertEqual(len(lines), 1)
-        self.assertRegex(lines[0], rf"^{scene['scene']}, .* steps, on Another with a last cache of \d+ MiB, 2000-01-02:$")
+        place = r", on Another with a last cache of \d+ MiB, 2000-01-02"
+        self.assertEqual(len(lines), 2)  # its bar and its table
+        self.assertRegex(lines[0], rf"^\| {scene['scene']} .* times faster than Box2D 3 \| .*{place} \|")
+        self.assertRegex(lines[1], rf"^{scene['scene']}, .* steps{place}:$")
 
     def test_ratios_on_the_page_are_those_of_the_rounds(self):
         for scene in self.results.parts["peers"]["scenes"]:

@@ -87,7 +87,7 @@ struct JointBundle {
 /// Gauss-Seidel sweeps over mechanisms, each on its own: over its hinges, then over what acts on its angles.
 template <class Real>
 struct SweepBundles {
-    // Of these a and b are numbers of bodies within their bundle; other members as in any sweep.
+    // The columns a and b are numbers of bodies within their bundle; other members are as in any sweep.
     SweepJoints<Real> hinges, angles;
     const JointBundle* bundles;
     const std::int32_t* rows;  // [bodies of all bundles][kJointBlock]

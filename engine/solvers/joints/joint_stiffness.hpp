@@ -17,6 +17,7 @@ namespace carom {
 /// strains itself ever more. docs/decisions/0034-cases-of-shapes-and-joints.md has the measurements.
 class JointStiffness {
   public:
+    /// The factor by which stiffness counts: docs/decisions/0034-cases-of-shapes-and-joints.md.
     static constexpr double kStiffness = 4;
     /// Forgets all. @param rows  of bodies; rows beyond have no stiffness
     void begin(std::size_t rows) { sum_.assign(rows, 0); }
@@ -33,7 +34,7 @@ class JointStiffness {
         const double inertia = inertia_of(bodies, row);
         return least > inertia ? inertia / least : 1;
     }
-    /// Of a body that impulses move [kg m²].
+    /// The moment of inertia of a body that impulses move [kg m²].
     template <class Real>
     static double inertia_of(const Bodies<Real>& bodies, std::size_t row) {
         const double rim = rim_of(bodies, row);

@@ -13,7 +13,8 @@ constexpr double kBodiesOfBend = 64;
 /// Factor by which the first sweep over rods goes farther. Hinges take 1: more pumps energy into them.
 constexpr double kOverRelaxation = 1.3;
 
-// A joint on one thread, for the executor.
+// ns that a sweep over a joint takes on one thread, for the executor:
+// docs/decisions/0090-crowds-of-mechanisms.md.
 constexpr double kNanosecondsToSweep = 5, kNanosecondsToSweepInBundle = 2;
 static_assert(kJointBlock == kRowPadding);
 

@@ -115,7 +115,8 @@ class SweptJoints {
             bool springs = false;  // softly
         };
         std::vector<Drive> drives;
-        // Of those in bundles: anchors in the frames of their bodies [m], angles that count as 0 [rad].
+        // Joints in bundles have their anchors in the frames of their bodies here [m], and the angles that
+        // count as 0 [rad].
         Column<double> anchor_a_x, anchor_a_y, anchor_b_x, anchor_b_y, angle_at_zero;
 
         /// @param needs  which columns, bits of Needs

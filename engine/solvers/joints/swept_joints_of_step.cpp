@@ -306,8 +306,8 @@ void SweptJoints<Real>::begin_drive(const JointStep<Real>& step, Kind& own, std:
     share_out(own, i, joint.impulse[kind == kAngles ? 2 : 0]);
 }
 
-/// Of the impulses of a joint the store keeps the sum: a motor has as much of it as it can, the rest is of
-/// the end that pushes that way.
+/// Shares the sum of the impulses of a joint out, which is what the store keeps: a motor has as much of it as
+/// it can, the rest is of the end that pushes that way.
 template <class Real>
 void SweptJoints<Real>::share_out(Kind& own, std::size_t i, double impulse) {
     const auto [most, springs] = own.drives[i];

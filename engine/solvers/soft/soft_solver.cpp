@@ -61,6 +61,7 @@ void SoftSolver<Real>::find_contacts(WorldState<Real>& world, const EdgeCandidat
                                      Column<Real>& motion, bool flies_together) {
     motion.resize(4 * padded(records_.count() + ContactGraph<Real>::padding_rows(graph.groups)));
     settings_.set_lengths(terms_);
+    settings_.sweeps_hits = !world.effects.restitution && !masses_.are_uneven() && !world.bodies.has_flags;
     warm_start_.begin_step(graph, terms_.substep_dt, terms_.dt);
     const bool is_new =
         finder_.pairs.find(view(), world.bodies, masses_, motion,
@@ -71,13 +72,10 @@ void SoftSolver<Real>::find_contacts(WorldState<Real>& world, const EdgeCandidat
     settings_.has_uneven_sweeps = corrections_.uneven.are_swept();
     corrections_.uneven.begin_step(view(), world, masses_.are_mixed());
     corrections_.chains.begin_step(view());
-    // Sweeps would undo what corrections_.uneven does.
-    const auto& restitution = world.bodies.restitution;
-    if (masses_.are_uneven() || world.bodies.has_flags || !restitution.is_uniform() ||
-        restitution.uniform_value() != 0)
-        corrections_.deep.clear();
-    else
+    if (settings_.sweeps_hits)
         corrections_.deep.begin_step(view(), motion, finder_.pairs.struck_chunks());
+    else
+        corrections_.deep.clear();
     corrections_.wedged.begin_step(view(), world.bodies);
     counters.contacts = static_cast<std::int64_t>(
         std::accumulate(graph.pairs.live_count.begin(), graph.pairs.live_count.end(), supports_.contacts()));
@@ -137,8 +135,9 @@ void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
 /// weighs on them have changed a velocity by more than `settled` [m/s]; below zero: never.
 /// @param is_near  whether those of shapes are solved alone that are near bodies which joints have changed by
 /// more than that
+/// @param sweeps  whether contacts of shapes are swept in place of solved
 template <class Real>
-bool SoftSolver<Real>::solve_turn(WorldState<Real>& world, double settled, bool is_near) {
+bool SoftSolver<Real>::solve_turn(WorldState<Real>& world, double settled, bool is_near, bool sweeps) {
     const auto next = Sweeps::next(view(), Sweeps::Blocks::all, 1);
     if (!world.joints.empty()) {
         double change = joints.solve_again(joint_step(world), loops_);
@@ -151,7 +150,7 @@ bool SoftSolver<Real>::solve_turn(WorldState<Real>& world, double settled, bool 
         paths.turns.begin();
         const bool has_asked = joints.ask_turns(settled, paths.turns);
         const Bundles which = is_near && has_asked ? paths.near_turns() : Bundles::all;
-        if (sweeps_turns())
+        if (sweeps)
             paths.sweep(terms_, records_, loops_, which);
         else if (is_near)
             paths.solve_again(terms_, records_, loops_, true, which);
@@ -168,7 +167,8 @@ template <class Real>
 void SoftSolver<Real>::solve_joints_and_contacts(WorldState<Real>& world) {
     const double settled = kJointsSettled * terms_.fall_speed();
     const int turns = joints.touches_exactly() ? kTurns : kTurnsOfCrowd;
-    for (int turn = 0; turn < turns && !solve_turn(world, settled, turn > 0); ++turn) continue;
+    for (int turn = 0; turn < turns && !solve_turn(world, settled, turn > 0, sweeps_turns()); ++turn)
+        continue;
 }
 
 template <class Real>
@@ -184,7 +184,7 @@ void SoftSolver<Real>::bound_energy(WorldState<Real>& world) {
         const bool becomes_less = passive_.has_scaled() || gained < before;
         if (is_last || !(gained > 0) || !becomes_less) break;
         before = gained;
-        solve_turn(world, -1, false);
+        solve_turn(world, -1, false, false);
     }
 }
 

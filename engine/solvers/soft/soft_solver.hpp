@@ -217,7 +217,7 @@ class SoftSolver {
   private:
     using Sweeps = ContactSweeps<Real>;
 
-    bool solve_turn(WorldState<Real>& world, double settled, bool is_near);
+    bool solve_turn(WorldState<Real>& world, double settled, bool is_near, bool sweeps);
     /// Whether turns of joints and contacts sweep over contacts of shapes in place of solving them: where
     /// contacts are so many that paths are short, in a crowd of mechanisms that are swept, too, and where
     /// contacts come and go. docs/decisions/0090-crowds-of-mechanisms.md, 0091-wild-and-restless-crowds.md.

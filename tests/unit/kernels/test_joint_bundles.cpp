@@ -20,7 +20,7 @@ namespace {
 
 enum Kind : std::size_t { kHinges = 2, kAngles = 4 };  // as KernelTable::joints has them
 
-/// Of a mechanism: a trunk with two arms of two limbs.
+/// A mechanism is a trunk with two arms of two limbs.
 constexpr std::size_t kBodies = 5, kJoints = 4;
 constexpr std::array<std::array<std::int32_t, 2>, kJoints> kJoined{{{0, 1}, {0, 3}, {1, 2}, {4, 3}}};
 constexpr std::size_t kMechanisms = 21;  // a whole bundle and a part of one

@@ -30,6 +30,10 @@ struct ContactSettings {
     bool heaves_if_slender = false;  ///< few bodies heave, too, where they are a slender pile
     int iterations = 2;              ///< sweeps a substep, >= 1
     bool has_uneven_sweeps = false;  ///< contacts of uneven masses get more of them
+    /// Sweeps go on where bodies are hit: nothing bounces, for what bounces is an impact, which looks around
+    /// itself; masses are alike, for sweeps would undo what corrections of uneven ones do; and all bodies
+    /// move and turn: docs/decisions/0089-discs-that-are-hit.md.
+    bool sweeps_hits = false;
     double friction = 0, rolling = 0;  ///< coefficients, of contacts that have none of their own
     double radius = 1;                 ///< m, of all bodies; 1 where radii vary
     double fall = 0;                   ///< m, by which gravity brings two bodies nearer in a step

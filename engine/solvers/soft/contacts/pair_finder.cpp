@@ -42,7 +42,8 @@ void describe_group(ContactRows<Real>& pairs, std::size_t group, const Bodies<Re
     });
 }
 
-/// Lists runs of blocks of a group that have contacts which can touch.
+/// Lists runs of blocks of a group that have contacts which can touch. Inlined where all groups are found: a
+/// call for each is .1 % of a step of 30 discs.
 template <class Real>
 [[gnu::always_inline]] inline void list_runs(ContactRows<Real>& pairs, std::size_t group) {
     typename ContactRows<Real>::Run* const list = pairs.run.data() + pairs.first_place(group) / kContactBlock;
@@ -62,7 +63,7 @@ template <class Real>
 
 template <class Real>
 FindContacts<Real> arguments(ContactRows<Real>& pairs, const ContactSettings& settings, double dt,
-                             const Column<Real>& motion, bool are_hits_swept) {
+                             const Column<Real>& motion) {
     const bool radius_varies = settings.effects.radius_varies;
     FindContacts<Real> k{};
     k.motion = motion.data();
@@ -78,7 +79,7 @@ FindContacts<Real> arguments(ContactRows<Real>& pairs, const ContactSettings& se
     k.near_of_smaller = static_cast<Real>(kNearFraction);
     k.deep = static_cast<Real>(-settings.deep_overlap(settings.radius));
     k.is_live = pairs.is_live.data();
-    if (are_hits_swept)
+    if (settings.sweeps_hits)
         k.is_struck = pairs.is_struck.data(), k.strike = static_cast<Real>(kStrike * settings.radius);
     return k;
 }
@@ -123,11 +124,7 @@ bool PairFinder<Real>::find(const StepView<Real>& step, const Bodies<Real>& bodi
     // What is added between renewals changes the last group alone.
     const bool is_new = version_ != graph.version, are_all_new = renewal_ != graph.renewals;
     if (is_new) pairs.resize_for_step(step.settings.effects);
-    const FindContacts<Real> k =
-        arguments(pairs, step.settings, step.terms.dt, motion,
-                  // What bounces is an impact, which looks around itself.
-                  bodies.restitution.is_uniform() && bodies.restitution.uniform_value() == 0 &&
-                      !masses.are_uneven() && !bodies.has_flags);
+    const FindContacts<Real> k = arguments(pairs, step.settings, step.terms.dt, motion);
     frames_.clear();
     if (flies_together) frames_.find(graph, bodies, motion);
     const double work = kNanosecondsToFind * static_cast<double>(pairs.a.size());
@@ -181,10 +178,7 @@ void PairFinder<Real>::reach_thrown(const StepView<Real>& step, const FindContac
     const TaskGroups& groups = step.graph.groups;
     const double work = static_cast<double>(pairs.a.size());
     step.loops.executor->for_each_task(groups.count(), work, [&](std::size_t group) {
-        const std::size_t chunk = group / 2;
-        const bool is_near = group == groups.far() || has_thrown_[chunk] != 0 ||
-                             (group % 2 == 1 && has_thrown_[chunk + 1] != 0);
-        if (!is_near) return;
+        if (!groups.touches(group, has_thrown_)) return;
         std::size_t found = 0;
         for (std::size_t block = pairs.first_place(group) / kContactBlock;
              block < pairs.first_place(group + 1) / kContactBlock; ++block) {

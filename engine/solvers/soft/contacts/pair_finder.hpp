@@ -39,8 +39,8 @@ class PairFinder {
     FlightFrames<Real> frames_;                 // of this step
     std::int64_t version_ = -1, renewal_ = -1;  // of the graph whose pairs are described
     bool has_deep_pairs_ = false;
-    // Of this step, where some are: how fast others throw bodies [m/s], by row, and whether the rows of a
-    // chunk have any.
+    // Speeds at which others throw bodies in this step [m/s], by row, and whether the rows of a chunk have
+    // any; empty where nothing is hit.
     std::vector<Real> thrown_;
     std::vector<std::uint8_t> has_thrown_;
 };

@@ -23,13 +23,6 @@ constexpr double kFurtherOverRelaxation = 1.3;
 // ns a contact on one thread, for the executor.
 constexpr double kNanosecondsToLook = 0.7;
 
-/// Whether a group of contacts has bodies of chunks that are marked.
-bool touches(const TaskGroups& groups, std::size_t group, const std::vector<std::uint8_t>& chunks) {
-    const std::size_t chunk = group / 2;
-    if (group == groups.far()) return true;
-    return chunks[chunk] != 0 || (group % 2 == 1 && chunks[chunk + 1] != 0);
-}
-
 }  // namespace
 
 /// What falls on a wall may be pressed by others that fly with it: no pair tells of that.
@@ -66,7 +59,7 @@ bool DeepContacts<Real>::find_deep(const StepView<Real>& step, const SolveContac
     const DeepPairs<Real> what{static_cast<Real>(kPressed * radius), static_cast<Real>(kOverlap * radius)};
     const double work = kNanosecondsToLook * static_cast<double>(pairs.a.size());
     step.loops.executor->for_each_task(pairs.groups(), work, [&](std::size_t group) {
-        if (!touches(step.graph.groups, group, chunks)) return;
+        if (!step.graph.groups.touches(group, chunks)) return;
         const auto* const run = pairs.run.data() + pairs.first_place(group) / kContactBlock;
         is_deep_[group] = std::any_of(run, run + pairs.run_count[group], [&](const auto& blocks) {
             return step.loops.kernels->find_deep(k, what, kHalfBlock * blocks.first,
@@ -94,7 +87,7 @@ void DeepContacts<Real>::list_runs(const StepView<Real>& step) {
     runs_.runs.clear(), runs_.first.assign(1, 0);
     for (std::size_t group = 0; group < pairs.groups(); ++group) {
         const auto* const run = pairs.run.data() + pairs.first_place(group) / kContactBlock;
-        if (touches(groups, group, is_swept_))
+        if (groups.touches(group, is_swept_))
             runs_.runs.insert(runs_.runs.end(), run, run + pairs.run_count[group]);
         runs_.first.push_back(runs_.runs.size());
     }
