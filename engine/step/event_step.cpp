@@ -17,13 +17,13 @@ class EventStep final : public EventSimulation<Real> {
          KernelChoice::scalar_f64, "all columns", "position, velocity, angle, angular velocity, books"},
     };
 
-  public:
-    void step(double dt) override {
+    template <class Watch>
+    void step(double dt, Watch& watch) {
         if (this->has_anything_to_move()) {
             this->flight_dt = dt;
-            this->times.start();
-            run_stages(kStep, 0, static_cast<Sim&>(*this), this->times);
-            this->times.finish();
+            watch.start();
+            run_stages(kStep, 0, static_cast<Sim&>(*this), watch);
+            watch.finish();
             if (this->interruption.has_stopped()) {
                 this->world.time += this->flight_dt;
                 return;
@@ -32,6 +32,10 @@ class EventStep final : public EventSimulation<Real> {
         this->world.time += dt;
         ++this->step_count;
     }
+
+  public:
+    void step(double dt) override { step(dt, this->times); }
+    void step_observed(double dt, StageObserver& observer) override { step(dt, observer); }
     void report_stages(StageVisitor visit) const override { visit_stages<Sim>(*this, visit, kStep); }
 };
 

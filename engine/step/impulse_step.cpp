@@ -25,16 +25,17 @@ class ImpulseStep final : public ImpulseSimulation<Real> {
          },
          can_meet, KernelChoice::none, "position", "rows of all columns"},
         {"begin_flight", [](Sim& sim) { begin_flight(sim); }, always, KernelChoice::radius,
-         "position, velocity", "motion, rows near walls, rows out of margin"},
+         "position, velocity",
+         "motion, velocity, angular velocity, flags, rows near walls, rows out of margin"},
         {"update_candidates", [](Sim& sim) { find_candidate_pairs(sim, sim.impulse.flights.end); }, can_meet,
-         KernelChoice::isa, "position, velocity, radius", "candidate pairs"},
+         KernelChoice::isa, "position, velocity, angle, angular velocity, radius", "candidate pairs"},
         {"find_impacts", [](Sim& sim) { find_impacts(sim); }, can_meet, KernelChoice::radius,
          "motion, candidate pairs", "meetings"},
         {"settle_contacts", [](Sim& sim) { sim.impulse.settle_contacts(sim.meetings, sim.world.handles); },
          can_meet, KernelChoice::none, "meetings, motion", "motion, accelerations, impact queue"},
         {"resolve_impacts", [](Sim& sim) { sim.impulse.resolve_impacts(sim.executor); }, can_meet,
          KernelChoice::none, "impact queue, motion, candidate pairs, angle, angular velocity",
-         "motion, angle, angular velocity"},
+         "motion, angle, angular velocity, books"},
         {"keep_books", [](Sim& sim) { keep_books(sim); }, has_ledger, KernelChoice::none,
          "motion, angular velocity", "books"},
         {"advance_rotation", [](Sim& sim) { advance_rotation(sim); }, has_rotation, KernelChoice::isa,
@@ -43,25 +44,29 @@ class ImpulseStep final : public ImpulseSimulation<Real> {
          "position, velocity"},
     };
 
-  public:
-    void step(double dt) override {
+    template <class Watch>
+    void step(double dt, Watch& watch) {
         if (this->has_anything_to_move()) {
             const int substeps = this->substeps_for_drag(dt);
             this->flight_dt = dt / substeps;
-            this->times.start();
+            watch.start();
             for (int i = 0; i < substeps; ++i) {
                 this->forget_start_of_substep();
-                if (run_interruptible(kSubstep, 0, static_cast<Sim&>(*this), this->times)) continue;
+                if (run_interruptible(kSubstep, 0, static_cast<Sim&>(*this), watch)) continue;
                 this->take_back_substep();
                 this->world.time += i * this->flight_dt;
-                this->times.finish();
+                watch.finish();
                 return;
             }
-            this->times.finish();
+            watch.finish();
         }
         this->world.time += dt;
         ++this->step_count;
     }
+
+  public:
+    void step(double dt) override { step(dt, this->times); }
+    void step_observed(double dt, StageObserver& observer) override { step(dt, observer); }
     void report_stages(StageVisitor visit) const override { visit_stages<Sim>(*this, visit, kSubstep); }
 };
 

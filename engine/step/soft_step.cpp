@@ -79,37 +79,41 @@ class SoftStep final : public SoftSimulation<Real> {
          [](Sim& sim) {
              if (watch_built_in_pairs(sim.world)) sim.candidates.invalidate_pairs();
          },
-         has_built_in_pairs, KernelChoice::scalar_f64, "joints, position, angle", "pairs that do not touch"},
+         has_built_in_pairs, KernelChoice::scalar_f64, "joints, position, angle",
+         "joints, pairs that do not touch"},
         {"sort_rows", [](Sim& sim) { sort_rows(sim); }, can_meet, KernelChoice::none, "position",
          "rows of all columns"},
         {"begin_flight", [](Sim& sim) { begin_flight(sim); }, always, KernelChoice::radius,
-         "position, velocity", "motion, rows near walls, rows out of margin"},
+         "position, velocity",
+         "motion, velocity, angular velocity, flags, rows near walls, rows out of margin"},
         {"update_candidates", [](Sim& sim) { update_candidates(sim); }, can_meet, KernelChoice::isa,
-         "position, velocity, radius", "candidate pairs"},
+         "position, velocity, angle, angular velocity, radius", "candidate pairs"},
         {"wake_sleepers", [](Sim& sim) { wake_sleepers(sim); }, sleeps, KernelChoice::none,
          "position, velocity, candidate pairs", "rows of all columns, supports"},
         {"update_contacts", [](Sim& sim) { update_contacts(sim); }, can_meet, KernelChoice::none,
-         "candidate pairs", "coloured candidates, impulses"},
+         "position, candidate pairs", "coloured candidates, impulses"},
         {"begin_substeps",
          [](Sim& sim) {
              sim.soft.begin_substeps(sim.world, sim.motion, sim.flight_dt, sim.substep_dt, sim.world.gravity,
                                      *sim.kernels, sim.executor);
          },
-         always, KernelChoice::isa, "motion, angular velocity, mass, radius", "velocity records"},
+         always, KernelChoice::isa, "motion, angular velocity, mass, radius",
+         "velocity records, displacements"},
         {"find_contacts",
          [](Sim& sim) {
              sim.soft.find_contacts(sim.world, sim.edge_candidates, sim.motion,
                                     sim.candidates.flies_together());
          },
-         can_meet, KernelChoice::contacts, "motion, coloured candidates, impulses",
-         "contacts, velocity records, books"},
+         can_meet, KernelChoice::contacts, "motion, position, velocity, coloured candidates, impulses",
+         "contacts, impulses, motion, velocity records, books"},
         {"find_manifolds",
          [](Sim& sim) {
              if (!sim.can_meet()) return sim.soft.paths.manifolds.clear();  // pairs are not kept up to date
              sim.soft.find_manifolds(sim.world, sim.edge_candidates);
          },
-         has_shapes, KernelChoice::isa, "position, angle, velocity, candidate pairs, impulses of shapes",
-         "paths of contacts"},
+         has_shapes, KernelChoice::isa,
+         "position, angle, velocity, angular velocity, candidate pairs, impulses of shapes",
+         "paths of contacts, velocity records, displacements"},
         {"mark_impacts", [](Sim& sim) { sim.soft.mark_impacts(sim.world, sim.candidates); }, bounces,
          KernelChoice::none, "contacts, velocity", "contacts, impacts"},
         {"rebalance_loads", [](Sim& sim) { sim.soft.rebalance_loads(sim.world.bodies); }, has_lost_loads,
@@ -119,15 +123,15 @@ class SoftStep final : public SoftSimulation<Real> {
         {"warm_start_paths", [](Sim& sim) { sim.soft.warm_start_paths(sim.world); }, has_shapes,
          KernelChoice::isa, "paths of contacts", "velocity records"},
         {"begin_joints", [](Sim& sim) { sim.soft.begin_joints(sim.world, sim.flight_dt); }, has_joints,
-         KernelChoice::scalar_f64, "joints, position, angle, contacts", "joints, velocity records"},
+         KernelChoice::scalar_f64, "joints, position, angle, velocity, contacts", "joints, velocity records"},
     };
     static constexpr Stage<Sim> kSubstep[] = {
         {"solve_joints", [](Sim& sim) { sim.soft.solve_joints(sim.world, sim.substep); }, has_joints,
-         KernelChoice::isa, "joints, contacts, velocity records, displacements",
+         KernelChoice::isa, "joints, contacts, position, angle, velocity records, displacements",
          "impulses, velocity records, displacements"},
         {"bounce_shapes",
          [](Sim& sim) { sim.soft.carry_out_shape_impacts(sim.world.bodies, sim.world.books); }, shapes_bounce,
-         KernelChoice::scalar_f64, "paths of contacts, contacts, velocity records, displacements",
+         KernelChoice::scalar_f64, "paths of contacts, contacts, position, velocity records, displacements",
          "paths of contacts, contacts, impacts, velocity records, books"},
         {"solve_paths",
          [](Sim& sim) { sim.soft.solve_paths(sim.substep, sim.substep + 1 == sim.substep_count); },
@@ -151,8 +155,8 @@ class SoftStep final : public SoftSimulation<Real> {
          KernelChoice::contacts, "contacts, velocity records, displacements",
          "impulses, velocity records, displacements"},
         {"solve_joints_and_contacts", [](Sim& sim) { sim.soft.solve_joints_and_contacts(sim.world); },
-         has_joints_in_contact, KernelChoice::contacts, "joints, contacts, velocity records",
-         "impulses, velocity records"},
+         has_joints_in_contact, KernelChoice::contacts, "joints, contacts, velocity records, displacements",
+         "impulses, velocity records, displacements"},
         {"bound_energy", [](Sim& sim) { sim.soft.bound_energy(sim.world); }, may_gain, KernelChoice::none,
          "joints, contacts, velocity records", "impulses, velocity records"},
         {"book_joints", [](Sim& sim) { sim.soft.end_joints_of_substep(sim.world, sim.world.books); },
@@ -161,7 +165,7 @@ class SoftStep final : public SoftSimulation<Real> {
          KernelChoice::none, "contacts, velocity records", "books"},
         {"carry_out_impacts",
          [](Sim& sim) { sim.soft.carry_out_impacts(sim.motion, sim.world.books, sim.interruption); }, bounces,
-         KernelChoice::scalar_f64, "impacts, velocity records, displacements",
+         KernelChoice::scalar_f64, "impacts, motion, velocity records, displacements",
          "velocity records, displacements, contacts, books"},
         {"advance_bodies",
          [](Sim& sim) {
@@ -172,7 +176,7 @@ class SoftStep final : public SoftSimulation<Real> {
     };
     static constexpr Stage<Sim> kEnd[] = {
         {"end_joints", [](Sim& sim) { end_joints(sim); }, has_joints, KernelChoice::scalar_f64,
-         "joints, contacts, velocity records, displacements",
+         "joints, contacts, position, angle, velocity records, displacements",
          "joints, velocity records, displacements, books"},
         {"end_contacts", [](Sim& sim) { sim.soft.end_contacts(); }, can_meet, KernelChoice::none, "contacts",
          "impulses"},
@@ -211,10 +215,8 @@ class SoftStep final : public SoftSimulation<Real> {
         return static_cast<int>(std::fmin(substeps, kMostSubsteps));
     }
 
-  public:
-    explicit SoftStep(bool is_rattle = false) { this->soft.joints.is_rattle = is_rattle; }
-
-    void step(double dt) override {
+    template <class Watch>
+    void step(double dt, Watch& watch) {
         if (this->has_anything_to_move()) {
             this->flight_dt = dt;
             this->substep_count = std::max(
@@ -222,7 +224,6 @@ class SoftStep final : public SoftSimulation<Real> {
             this->substep_dt = dt / this->substep_count;
             Sim& sim = *this;
             if (!sim.can_touch()) sim.drop_contacts();
-            StageTimes& watch = this->times;
             watch.start();
             this->keep_start_of_step();
             bool goes_on = run_interruptible(kBegin, 0, sim, watch);
@@ -235,6 +236,12 @@ class SoftStep final : public SoftSimulation<Real> {
         this->world.time += dt;
         ++this->step_count;
     }
+
+  public:
+    explicit SoftStep(bool is_rattle = false) { this->soft.joints.is_rattle = is_rattle; }
+
+    void step(double dt) override { step(dt, this->times); }
+    void step_observed(double dt, StageObserver& observer) override { step(dt, observer); }
     void report_stages(StageVisitor visit) const override {
         visit_stages<Sim>(*this, visit, kBegin);
         visit_stages<Sim>(*this, visit, kSubstep, kFirstOfSubstep);

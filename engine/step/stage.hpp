@@ -29,26 +29,29 @@ struct Stage {
 };
 
 /// Runs those of `stages` that are called for, in order. `first` is the number of the first among all stages
-/// of the solver, for the stopwatch.
-template <class Sim, std::size_t kCount>
-void run_stages(const Stage<Sim> (&stages)[kCount], std::size_t first, Sim& sim, StageTimes& times) {
+/// of the solver.
+/// @param watch  the stopwatch, or a StageObserver
+template <class Sim, class Watch, std::size_t kCount>
+void run_stages(const Stage<Sim> (&stages)[kCount], std::size_t first, Sim& sim, Watch& watch) {
     for (std::size_t i = 0; i < kCount; ++i) {
         if (!stages[i].is_called_for(sim)) continue;
+        watch.begin(first + i);
         stages[i].run(sim);
-        times.lap(first + i);
+        watch.lap(first + i);
     }
 }
 
 /// The same, but the step may end before the first and within each of them. @return false if it did
 /// Inlined into the step, so that the compiler knows which stages there are: .7 % of a step of 30 discs.
-template <class Sim, std::size_t kCount>
+template <class Sim, class Watch, std::size_t kCount>
 [[gnu::always_inline]] inline bool run_interruptible(const Stage<Sim> (&stages)[kCount], std::size_t first,
-                                                     Sim& sim, StageTimes& times) {
+                                                     Sim& sim, Watch& watch) {
     if (sim.interruption.is_due_after(kCount * sim.world.bodies.count)) return false;
     for (std::size_t i = 0; i < kCount; ++i) {
         if (!stages[i].is_called_for(sim)) continue;
+        watch.begin(first + i);
         stages[i].run(sim);
-        times.lap(first + i);
+        watch.lap(first + i);
         if (sim.interruption.has_stopped()) return false;
     }
     return true;

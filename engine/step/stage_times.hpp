@@ -24,6 +24,9 @@ class StageTimes {
         began_ = last_ = Clock::now();
     }
 
+    /// Stage number `stage` begins: that is when the last lap ended.
+    void begin(std::size_t) {}
+
     /// The time since the last lap was spent in stage number `stage`.
     void lap(std::size_t stage) {
         assert(stage < kMostStages);

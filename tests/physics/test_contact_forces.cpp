@@ -1,12 +1,10 @@
 // What contacts of solver `soft` carry (A26 of docs/exact-cases.md), and how well they are solved: read
 // inside the solver.
-#include "scene/call_effects.hpp"
 #include "shapes/walls.hpp"
 #include "solvers/soft/soft_simulation.hpp"
-#include "step/make_simulation.hpp"
+#include "support/inside.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"
-#include "world/set_up.hpp"
 
 #include <doctest/doctest.h>
 
@@ -21,15 +19,13 @@ namespace {
 
 constexpr double kStep = 1.0 / 60, kRadius = 0.5, kGravity = 10;
 
-/// A world's inside without the world around it.
+/// The contacts of a world under solver `soft`, from inside.
 template <class Real>
-struct Inside {
-    std::unique_ptr<Simulation<Real>> simulation = make_soft_simulation<Real>();
+struct Forces {
+    std::unique_ptr<Simulation<Real>> simulation;
     SoftSimulation<Real>& sim = static_cast<SoftSimulation<Real>&>(*simulation);
 
-    explicit Inside(const Scene& scene) {
-        set_up(sim, scene, {.threads = 1}, call_effects(scene, {}).effects);
-    }
+    explicit Forces(const Scene& scene) : simulation(inside_of<Real>(scene, Solver::soft)) {}
     void run(int steps) {
         for (int i = 0; i < steps; ++i) sim.step(kStep);
     }
@@ -73,7 +69,7 @@ TEST_SUITE("physics/contact forces") {
         std::vector<double> equal(10, 2.0), growing, doubling;
         for (int i = 0; i < 10; ++i) growing.push_back(i + 1), doubling.push_back(std::ldexp(1, i));
         for (const auto& masses : {equal, growing, doubling}) {
-            Inside<Real> inside(stack_of(masses));
+            Forces<Real> inside(stack_of(masses));
             inside.run(3600);
             double above = 0, worst = 0;
             for (std::size_t upper = masses.size(); upper-- > 0;) {
@@ -96,13 +92,13 @@ TEST_SUITE("physics/contact forces") {
 
     TEST_CASE_TEMPLATE("the residual is what another sweep would change", Real, float, double) {
         // A disc that lands: nothing is solved yet but its own contact, which one sweep solves.
-        Inside<Real> one(stack_of({1}));
+        Forces<Real> one(stack_of({1}));
         one.run(1);
         CHECK(one.sim.soft.quality().touching == 1);
         CHECK(one.sim.soft.quality().residual < 1e-6);
         // A heavy one on a light one: sweeps take the light one's share of what is left, so much is left.
         // (Beyond a ratio of ten they are solved on their own.)
-        Inside<Real> two(stack_of({1, 10}));
+        Forces<Real> two(stack_of({1, 10}));
         two.run(1);
         const SolveQuality early = two.sim.soft.quality();
         CHECK(early.touching == 2);
@@ -128,7 +124,7 @@ TEST_SUITE("physics/contact forces") {
         for (int i = 0; i < 40; ++i) slope.points.push_back({-4 + 0.7 * i, 1 - 0.1 * i});
         scene.add({.type = BodyType::static_body, .shape = slope, .material = rough});
         scene.accuracy.solver = Solver::soft;
-        Inside<Real> inside(scene);
+        Forces<Real> inside(scene);
         std::size_t pushed = 0, idle = 0, wrong = 0;
         for (int i = 0; i < 150; ++i) {
             inside.run(1);

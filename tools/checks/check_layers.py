@@ -36,7 +36,7 @@ LAYER_OF_FOLDER = {
 }
 LAYER_OF_FILE = {  # patterns of paths without suffix: files that differ from their folder or have none
     r"version": 0,
-    r"step/stage(_times)?": 1,
+    r"step/stage(_times|_observer)?": 1,
     r"state/edges/edges": 1,
     r"state/edges/edge_index": 1,
     r"kernels/(\w+/)?(\w+_)?arguments": 2,

@@ -17,6 +17,7 @@
 #include "state/columns/chunked_list.hpp"
 #include "state/world_state.hpp"
 #include "step/stage.hpp"
+#include "step/stage_observer.hpp"
 
 namespace carom {
 
@@ -44,6 +45,8 @@ class Simulation {
     /// Advances by dt [s], > 0 and within the limits, or by less if `interruption` says so: then the state is
     /// that of the new time, or of the old one, whole.
     virtual void step(double dt) = 0;
+    /// The same step, which `observer` looks at stage by stage.
+    virtual void step_observed(double dt, StageObserver& observer) = 0;
     /// Whether a step has loops that are worth several threads.
     virtual bool has_long_loops() const = 0;
 

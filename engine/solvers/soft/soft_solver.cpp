@@ -61,7 +61,9 @@ void SoftSolver<Real>::find_contacts(WorldState<Real>& world, const EdgeCandidat
                                      Column<Real>& motion, bool flies_together) {
     motion.resize(4 * padded(records_.count() + ContactGraph<Real>::padding_rows(graph.groups)));
     settings_.set_lengths(terms_);
-    settings_.sweeps_hits = !world.effects.restitution && !masses_.are_uneven() && !world.bodies.has_flags;
+    settings_.masses_are_uneven = masses_.are_uneven();
+    settings_.sweeps_hits =
+        !world.effects.restitution && !settings_.masses_are_uneven && !world.bodies.has_flags;
     warm_start_.begin_step(graph, terms_.substep_dt, terms_.dt);
     const bool is_new =
         finder_.pairs.find(view(), world.bodies, masses_, motion,

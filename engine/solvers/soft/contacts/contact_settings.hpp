@@ -30,6 +30,9 @@ struct ContactSettings {
     bool heaves_if_slender = false;  ///< few bodies heave, too, where they are a slender pile
     int iterations = 2;              ///< sweeps a substep, >= 1
     bool has_uneven_sweeps = false;  ///< contacts of uneven masses get more of them
+    /// Some body is so much lighter than another that this one may throw it from anywhere to a wall in a
+    /// step.
+    bool masses_are_uneven = false;
     /// Sweeps go on where bodies are hit: nothing bounces, for what bounces is an impact, which looks around
     /// itself; masses are alike, for sweeps would undo what corrections of uneven ones do; and all bodies
     /// move and turn: docs/decisions/0089-discs-that-are-hit.md.

@@ -29,6 +29,11 @@ Vec2 fall_of(const SubstepTerms& terms) {
     return (terms.dt / terms.substep_dt) * terms.gravity_change;
 }
 
+/// Way along both axes that a velocity leads in dt [m], at least that of the vector.
+double way_within(double dt, Vec2 v) {
+    return dt * (std::fabs(v.x) + std::fabs(v.y));
+}
+
 /// Writes a support that can touch.
 /// @param v  m/s, of the body  @param candidate, at  its places in the graph and in the supports of the step
 template <class Real>
@@ -247,25 +252,34 @@ void SupportFinder<Real>::find_in_group(std::size_t group, const Search& search)
             const auto row = static_cast<std::size_t>(candidates.a[i]);
             const Partner support = candidates.partner(i);
             const double radius = bodies.radius[row], at_rest = settings.contact_distance(radius);
-            if (support.is_edge() && !(candidates.normal_impulse[i] > 0)) {
+            const Vec2 v = velocity_of(bodies, row);
+            // A wall that may be reached from anywhere is kept wherever it is. Others are far away as a rule
+            // in a small box: that is told before anything else.
+            const bool is_kept = support.is_wall() && settings.masses_are_uneven;
+            if (support.is_wall() && !is_kept) {
+                const Vec2 x{bodies.position_x[row], bodies.position_y[row]};
+                if (wall_clearance(*world.walls, support.side(), x) - radius >
+                    at_rest + std::max(kCrowdedRadii * radius, way_within(dt, v))) {
+                    let_go(i);
+                    continue;
+                }
+            } else if (support.is_edge() && !(candidates.normal_impulse[i] > 0)) {
                 const auto [clearance, way] = clearance_of_edge(world, edges, row, support.edge_number(), dt);
                 if (clearance > at_rest + std::max(kCrowdedRadii * radius, kBothAxes * way)) {
                     let_go(i);
                     continue;
                 }
             }
-            const Vec2 v = velocity_of(bodies, row);
             const SupportSurface s =
                 support.is_edge()
                     ? surface_of_edge(world, edges, row, support.edge_number(), v, dt, hold_[row])
                     : surface_of(world, row, support);
             const Vec2 dv = s.velocity - v;
-            // A wall is a wall everywhere, so it is kept however slowly a body nears it: in a crowd another
+            // What is flat is so everywhere, so it is kept however slowly a body nears it: in a crowd another
             // one may yet throw it there within this step. What is round only holds where it is met.
             const double crowd = s.is_flat ? kCrowdedRadii * radius : 0;
-            const double near = at_rest + std::fmax(crowd, dt * (std::fabs(dv.x) + std::fabs(dv.y)));
-            const bool is_far = !support.is_wall() && s.separation > near;
-            if (!s.is_contact || is_far) {
+            const double near = at_rest + std::max(crowd, way_within(dt, dv));
+            if (!s.is_contact || (s.separation > near && !is_kept)) {
                 if (!s.is_contact) note_left_edge(i, group, search);
                 let_go(i);
                 continue;
