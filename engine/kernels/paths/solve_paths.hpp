@@ -147,16 +147,26 @@ typename Lanes::Batch begin_paths(const PathBatch<Real>& p, LinkScratch<Lanes>* 
     return fastest;
 }
 
-/// Eliminates the impulses of the links, from the first to the last.
+/// Eliminates the impulses of the links, from link `from` to the last.
+/// @param from  no link before it has changed its active set since it was eliminated
 template <class Lanes, class Real>
-void eliminate(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch) {
+void eliminate(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch, std::size_t from) {
     using F = typename Lanes::Batch;
     using simd::select;
     const F zero(0), one(1);
     F lower[9], upper[9], right[3];  // lower: rows of this link, columns of the one before
     for (int e = 0; e < 9; ++e) lower[e] = upper[e] = zero;
     for (int e = 0; e < 3; ++e) right[e] = zero;
-    for (std::size_t i = 0; i < p.length; ++i) {
+    const auto couple_with = [&](const LinkScratch<Lanes>& before) {
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c) lower[3 * r + c] = before.next[3 * c + r];
+    };
+    if (from > 0) {
+        const LinkScratch<Lanes>& before = scratch[from - 1];
+        std::copy_n(before.upper, 9, upper), std::copy_n(before.right, 3, right);
+        couple_with(before);
+    }
+    for (std::size_t i = from; i < p.length; ++i) {
         const PathLink<Real>& link = p.link[i];
         LinkScratch<Lanes>& s = scratch[i];
         F m[9] = {s.mass.k11, s.mass.k12, s.mass.k1t, s.mass.k12, s.mass.k22,
@@ -201,8 +211,7 @@ void eliminate(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch) {
             s.right[r] = right[r] =
                 inverse[3 * r] * b[0] + inverse[3 * r + 1] * b[1] + inverse[3 * r + 2] * b[2];
         }
-        for (int r = 0; r < 3; ++r)
-            for (int c = 0; c < 3; ++c) lower[3 * r + c] = s.next[3 * c + r];
+        couple_with(s);
     }
 }
 
@@ -240,14 +249,16 @@ void change_row(LinkScratch<Lanes>& s, typename Lanes::Batch row, typename Lanes
 /// @param inverse_mass  1/kg, of the whole path at least
 /// @param stretch  links of which the active set of each lane changes in one row alone, the one that is
 /// farthest from its law: where many change at once they may do so for ever; 0: all that are wrong change
+/// @param first_changed  becomes a link before which no active set has changed; `length`: none has
 /// @return lanes that are not solved yet
 template <class Lanes, class Real>
 typename Lanes::Mask substitute(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch,
                                 typename Lanes::Batch by_speed, typename Lanes::Batch by_impulse,
                                 typename Lanes::Batch most, typename Lanes::Batch inverse_mass,
-                                std::size_t stretch) {
+                                std::size_t stretch, std::size_t& first_changed) {
     using F = typename Lanes::Batch;
     using simd::select;
+    first_changed = p.length;
     const F zero(0), by_friction = F(static_cast<Real>(kFrictionTolerance)) * by_impulse;
     auto bad = zero < zero;
     F worst = zero, worst_row(Real(-1));  // of a stretch: m/s; 3 link + row of the link
@@ -286,6 +297,7 @@ typename Lanes::Mask substitute(const PathBatch<Real>& p, LinkScratch<Lanes>* sc
             compare(select(off2, -new2 * w, select(on2, s.floor2 - v2, zero)), 1);
             compare(select(breaks, (simd::abs(new_t) - limit) * w, select(holds, simd::abs(vt), zero)), 2);
             if (i % stretch == 0) {
+                if (simd::any(worst_row >= zero)) first_changed = i;
                 for (std::size_t j = i; j < p.length && j < i + stretch; ++j)
                     change_row<Lanes>(scratch[j], worst_row, static_cast<Real>(3 * j));
                 worst = zero, worst_row = F(Real(-1));
@@ -295,6 +307,7 @@ typename Lanes::Mask substitute(const PathBatch<Real>& p, LinkScratch<Lanes>* sc
             s.slips_up = (s.slips_up & !holds) | (breaks & s.would_slip_up);
             s.slips_down = (s.slips_down & !holds) | (breaks & !s.would_slip_up);
             free_idle<Lanes>(s, was_idle);
+            if (simd::any(off1 | on1 | off2 | on2 | breaks | holds)) first_changed = i;
         }
         const auto is_sound = simd::abs(v1) + simd::abs(v2) + simd::abs(vt) < F(static_cast<Real>(kUnsound));
         bad = bad | off1 | on1 | off2 | on2 | breaks | holds | !is_sound;
@@ -382,10 +395,11 @@ typename Lanes::Mask solve_exactly(const PathBatch<Real>& p, LinkScratch<Lanes>*
             by_impulse = F(k.velocity_tolerance) + fastest * F(static_cast<Real>(1e-6)),
             most = most_change<Lanes>(p, scratch, fastest, drive);
     auto bad = F(0) <= F(0);
-    for (int i = 0; i < most_iterations && simd::any(bad & where); ++i) {
-        eliminate<Lanes>(p, scratch);
+    std::size_t from = 0;  // where nothing changes, the next iteration would come to the same
+    for (int i = 0; i < most_iterations && from < p.length && simd::any(bad & where); ++i) {
+        eliminate<Lanes>(p, scratch, from);
         const std::size_t stretch = i < k.bold_iterations ? 0 : i < kIterationsByPieces ? kPiece : kLongPiece;
-        bad = substitute<Lanes>(p, scratch, by_speed, by_impulse, most, inverse_mass, stretch);
+        bad = substitute<Lanes>(p, scratch, by_speed, by_impulse, most, inverse_mass, stretch, from);
     }
     apply_changes<Lanes>(p, scratch, where & !bad);
     return bad & where;
