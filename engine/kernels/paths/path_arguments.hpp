@@ -40,6 +40,18 @@ struct alignas(64) PathLink {
     Real floor1[kPathLanes], floor2[kPathLanes];            // m/s, least relative normal velocities
 };
 
+/// Calls fn(column of `from`, column of `to`) for each.
+template <class Real, class Fn>
+void for_each_column(const PathLink<Real>& from, PathLink<Real>& to, const Fn& fn) {
+    fn(from.body, to.body), fn(from.normal_x, to.normal_x), fn(from.normal_y, to.normal_y);
+    fn(from.near1, to.near1), fn(from.near2, to.near2), fn(from.near_t, to.near_t);
+    fn(from.far1, to.far1), fn(from.far2, to.far2), fn(from.far_t, to.far_t);
+    fn(from.separation1, to.separation1), fn(from.separation2, to.separation2);
+    fn(from.normal1, to.normal1), fn(from.normal2, to.normal2), fn(from.tangent, to.tangent);
+    fn(from.friction, to.friction), fn(from.thickness, to.thickness);
+    fn(from.floor1, to.floor1), fn(from.floor2, to.floor2);
+}
+
 /// What the loads of contacts are corrected by: engine/solvers/shared/coarse_correction.hpp.
 template <class Real>
 struct PathLoads {
@@ -105,10 +117,11 @@ struct SolvePaths {
     void* scratch;            // of path_scratch_bytes(longest bundle) bytes, aligned to 64
 };
 
-/// Bytes that a link needs while its path is solved; those of the widest batch.
+/// Bytes that a link needs while its path is solved, in the widest batch.
 inline constexpr std::size_t kPathScratchBytes = 64 * 56;
+/// The same for a path, and room for it among those that do not settle (kernels/paths/unsettled_paths.hpp).
 inline constexpr std::size_t path_scratch_bytes(std::size_t longest) {
-    return (longest + 1) * kPathScratchBytes;
+    return (longest + 1) * (kPathScratchBytes + sizeof(PathLink<double>));
 }
 
 /// What the kernel met.

@@ -40,7 +40,8 @@ constexpr int kTurnsOfRolling = 3;
 constexpr double kNanosecondsToFill = 10, kNanosecondsToSolve = 10, kNanosecondsToKeep = 5;
 constexpr std::size_t kBundlesPerTask = 4, kContactsPerTask = 256, kWatchedPerTask = 64;
 /// Shares of the bundles of a colour, tasks with room of their own in `scratch`: the same in all loops over
-/// links, so that a thread finds them in its cache.
+/// links, so that a thread finds them in its cache. A thread alone has one: in a share, paths that do not
+/// settle are solved together.
 constexpr std::size_t kShares = 16;
 
 /// Calls fn(n) for n below `count`, on all threads.
@@ -80,7 +81,7 @@ void PathSolver<Real>::lay_out(const WorldState<Real>& world, const EdgeCandidat
     counters.bundles = static_cast<std::int64_t>(cut().bundles());
     counters.links = static_cast<std::int64_t>(cut().links());
     if (first_still_row_ != records.rows()) links_hold_ = false;
-    if (!links_hold_) name_rows(world, records);
+    if (!links_hold_) name_rows(world, records, loops);
     records.add_still_rows(still_rows_);
     if (!links_hold_) {
         lay_out_padding(loops);
@@ -95,7 +96,8 @@ void PathSolver<Real>::lay_out(const WorldState<Real>& world, const EdgeCandidat
 /// Rows at rest for the padding of each bundle and for what nothing moves, and the row where each path
 /// begins.
 template <class Real>
-void PathSolver<Real>::name_rows(const WorldState<Real>& world, const BodyRecords<Real>& records) {
+void PathSolver<Real>::name_rows(const WorldState<Real>& world, const BodyRecords<Real>& records,
+                                 const StepLoops<Real>& loops) {
     const Bodies<Real>& bodies = world.bodies;
     const std::span<const std::int32_t> live = manifolds.live();
     row_of_far_.resize(live.size()), with_kinematic_.clear();
@@ -117,7 +119,8 @@ void PathSolver<Real>::name_rows(const WorldState<Real>& world, const BodyRecord
             first >= 0 ? head_row(first) : static_cast<std::int32_t>(first_still_row_ + lane / kPathLanes);
     }
     closing_.resize(cut().bundles());
-    scratch_.resize(path_scratch_bytes(cut().longest()) * kShares);
+    shares_ = loops.executor->threads() == 1 ? 1 : kShares;
+    scratch_.resize(path_scratch_bytes(cut().longest()) * shares_);
     find_shares();
 }
 
@@ -247,8 +250,8 @@ void PathSolver<Real>::find_shares() {
         const std::size_t first = cut().first_bundle()[colour], last = cut().first_bundle()[colour + 1];
         const std::span<const std::size_t> starts = cut().first_link().subspan(first, last - first);
         const std::size_t links = cut().first_link()[last] - starts.front();
-        for (std::size_t share = 0; share <= kShares; ++share) {
-            const std::size_t link = starts.front() + share * links / kShares;
+        for (std::size_t share = 0; share <= shares_; ++share) {
+            const std::size_t link = starts.front() + share * links / shares_;
             const auto at = std::lower_bound(starts.begin(), starts.end(), link);
             first_of_share_.push_back(first + static_cast<std::size_t>(at - starts.begin()));
         }
@@ -258,7 +261,7 @@ void PathSolver<Real>::find_shares() {
 template <class Real>
 typename PathSolver<Real>::BundleRange PathSolver<Real>::share_of(std::size_t colour, std::size_t share,
                                                                   Bundles which) const {
-    const std::size_t* first = &first_of_share_[colour * (kShares + 1) + share];
+    const std::size_t* first = &first_of_share_[colour * (shares_ + 1) + share];
     if (which != Bundles::near_turns) return {first[0], first[1]};
     const std::size_t end = cut().end_of_turns()[colour];
     return {std::min(first[0], end), std::min(first[1], end)};
@@ -278,7 +281,7 @@ void PathSolver<Real>::run(Pass pass, SolvePaths<Real> arguments, const StepLoop
         const bool is_one = last - first < 2;  // bundle
         std::array<std::size_t, kShares> unsettled{};
         loops.executor->for_each_task(
-            is_one ? 1 : kShares, kNanosecondsToSolve * kPathLanes * static_cast<double>(links),
+            is_one ? 1 : shares_, kNanosecondsToSolve * kPathLanes * static_cast<double>(links),
             [&](std::size_t share) {
                 const BundleRange own = is_one ? BundleRange{first, last} : share_of(colour, share, which);
                 if (own.first == own.last) return;

@@ -195,7 +195,8 @@ class PathSolver {
                        bool has_floors);
     void lay_out(const WorldState<Real>& world, const EdgeCandidates<Real>& edges, const SubstepTerms& terms,
                  BodyRecords<Real>& records, const StepLoops<Real>& loops);
-    void name_rows(const WorldState<Real>& world, const BodyRecords<Real>& records);
+    void name_rows(const WorldState<Real>& world, const BodyRecords<Real>& records,
+                   const StepLoops<Real>& loops);
     /// Row of the body where the path that begins with a live contact begins.
     std::int32_t head_row(std::int32_t first) const;
     void lay_out_padding(const StepLoops<Real>& loops);
@@ -213,6 +214,7 @@ class PathSolver {
     Column<PathLink<Real>> links_;
     std::vector<Hidden> hidden_;
     std::vector<std::size_t> first_of_share_;  // bundle, [colours][shares + 1]
+    std::size_t shares_ = 1;                   // of a colour
     bool links_hold_ = false;  // they are laid out as the cut says, with what the step before left
     std::vector<std::int32_t> with_kinematic_;  // contacts of two bodies, one of which is kinematic
     Column<std::int32_t> heads_;

@@ -104,6 +104,44 @@ struct RandomPaths {
     }
 };
 
+/// Bundles one behind the other.
+template <class Real>
+struct ManyPaths {
+    Column<PathLink<Real>> links;
+    std::vector<std::size_t> first_link{0};
+    Column<std::int32_t> heads;
+    Column<Real> velocity, displacement, turn, restless;
+    std::vector<std::uint8_t> is_slender;
+    Column<std::byte> scratch;
+
+    explicit ManyPaths(const std::vector<RandomPaths<Real>>& bundles) {
+        std::size_t longest = 0;
+        const auto append = [](auto& to, const auto& from) {
+            const std::size_t before = to.size();
+            to.resize(before + from.size());
+            std::copy(from.begin(), from.end(), to.begin() + static_cast<std::ptrdiff_t>(before));
+        };
+        for (const RandomPaths<Real>& bundle : bundles) {
+            const auto first_row = static_cast<std::int32_t>(turn.size());
+            append(links, bundle.links), append(heads, bundle.heads);
+            for (std::size_t i = first_link.back(); i < links.size(); ++i)
+                for (std::int32_t& row : links[i].body) row += first_row;
+            for (std::size_t i = heads.size() - kPathLanes; i < heads.size(); ++i) heads[i] += first_row;
+            append(velocity, bundle.velocity), append(displacement, bundle.displacement);
+            append(turn, bundle.turn), append(restless, bundle.restless);
+            first_link.push_back(links.size()), is_slender.push_back(bundle.is_slender);
+            longest = std::max(longest, bundle.length);
+        }
+        scratch.resize(path_scratch_bytes(longest));
+    }
+    SolvePaths<Real> arguments(SolvePaths<Real> k) {
+        k.links = links.data(), k.first_link = first_link.data(), k.heads = heads.data();
+        k.velocity = velocity.data(), k.displacement = displacement.data(), k.turn = turn.data();
+        k.restless = restless.data(), k.is_slender = is_slender.data(), k.scratch = scratch.data();
+        return k;
+    }
+};
+
 /// The largest violation of a contact's laws in a settled path [m/s, and impulses in m/s].
 template <class Real>
 double largest_violation(const RandomPaths<Real>& paths, const std::vector<bool>& settled) {
@@ -293,6 +331,33 @@ TEST_SUITE("kernels/paths/solve_paths") {
             CHECK(worst < 2e-9);  // m, round-off in single precision of separations of 2 mm
             CHECK(have_equal_bits(paths.velocity, before.velocity));
         }
+    }
+    TEST_CASE_TEMPLATE("paths that do not settle come to the same in a batch of their own", Real, float,
+                       double) {
+        std::vector<RandomPaths<Real>> bundles;
+        for (const std::size_t length : {16, 16, 16, 9, 9, 16})
+            bundles.emplace_back(100 + bundles.size(), length, 0.5);
+        for (const KernelTables* tables : runnable_kernel_tables())
+            for (const bool tries_pieces : {true, false}) {
+                const auto& kernels = tables->of<Real>().convex->paths;
+                ManyPaths<Real> together(bundles), apart(bundles);
+                SolvePaths<Real> k = bundles.front().arguments();
+                k.most_iterations = k.most_of_slender = 3, k.tries_pieces = tries_pieces;
+                k.sweeps_of_unsettled = 2;
+                const std::size_t unsettled =
+                    kernels.solve(together.arguments(k), 0, bundles.size()).unsettled;
+                std::size_t of_each = 0, with_some = 0;
+                for (std::size_t bundle = 0; bundle < bundles.size(); ++bundle) {
+                    const std::size_t of_this =
+                        kernels.solve(apart.arguments(k), bundle, bundle + 1).unsettled;
+                    of_each += of_this, with_some += of_this > 0 ? 1 : 0;
+                }
+                CHECK(with_some == bundles.size());
+                CHECK(unsettled == of_each);
+                CHECK(have_equal_bits(together.velocity, apart.velocity));
+                CHECK(have_equal_bits(together.restless, apart.restless));
+                CHECK(have_equal_bits(together.links, apart.links));
+            }
     }
     TEST_CASE_TEMPLATE("every instruction set gives the same bits", Real, float, double) {
         for (std::uint64_t seed = 1; seed <= 12; ++seed) {
