@@ -61,6 +61,22 @@ void Executor::note_wait(double waited, double worked) const {
     if (too_long) loops_alone_ = loops_next_time_;
 }
 
+void Executor::run_step(TeamCall work) const {
+    struct Alone {
+        bool& is_alone;
+        explicit Alone(bool& flag) : is_alone(flag) { is_alone = true; }
+        ~Alone() { is_alone = false; }
+    };
+    const double start = seconds_now();
+    if (trial_.uses_threads()) {
+        gather_team(work);
+    } else {
+        const Alone alone(is_alone_);
+        work.invoke(work.function);
+    }
+    trial_.note(seconds_now() - start);
+}
+
 void Executor::gather_team(TeamCall work) const {
 #if defined(_OPENMP)
     team_.gather(static_cast<std::size_t>(threads_));

@@ -11,6 +11,7 @@
 #include "parallel/host_loop.hpp"
 #include "parallel/phases.hpp"
 #include "parallel/team.hpp"
+#include "parallel/team_trial.hpp"
 
 namespace carom {
 
@@ -93,11 +94,13 @@ class Executor {
         }
     }
 
-    /// Calls work(), whose loops then cost less: the other threads stand by for them all the while.
+    /// Calls work(), a step, whose loops then cost less: the other threads stand by for them all the while.
+    /// Where steps do not gain by threads (team_trial.hpp), work() runs on the caller's thread alone.
     template <class Work>
     void with_team(const Work& work) const {
-        if (threads_ < 2 || parallel_for_ || loops_alone_ > 0 || team_.threads() > 0) return work();
-        gather_team({&work, [](const void* call) { (*static_cast<const Work*>(call))(); }});
+        if (threads_ < 2 || parallel_for_ || loops_alone_ > 0 || team_.threads() > 0 || is_alone_)
+            return work();
+        run_step({&work, [](const void* call) { (*static_cast<const Work*>(call))(); }});
     }
 
     /// Whether for_each_chunk would use more than the caller's thread.
@@ -106,7 +109,9 @@ class Executor {
     }
 
   private:
-    bool has_threads() const noexcept { return threads_ > 1 || (threads_ == 0 && parallel_for_); }
+    bool has_threads() const noexcept {
+        return (threads_ > 1 && !is_alone_) || (threads_ == 0 && parallel_for_);
+    }
     struct Call {
         const void* function;
         void (*invoke)(const void*, std::size_t);
@@ -122,6 +127,7 @@ class Executor {
         const void* function;
         void (*invoke)(const void*);
     };
+    void run_step(TeamCall work) const;
     void gather_team(TeamCall work) const;
     template <class Fn>
     static Team::Call team_call(const Fn& fn) {
@@ -141,6 +147,8 @@ class Executor {
     mutable int loops_next_time_ = 32;  // half of what the first wait that is too long costs
     mutable Phases phases_;
     mutable Team team_;
+    mutable TeamTrial trial_;
+    mutable bool is_alone_ = false;  // in a step that does not use the threads
 };
 
 }  // namespace carom
