@@ -17,6 +17,7 @@
 #include "kernels/flight/end_flight.hpp"
 #include "kernels/flight/find_impacts.hpp"
 #include "kernels/joints/begin_bundles.hpp"
+#include "kernels/joints/close_bundles.hpp"
 #include "kernels/joints/sweep_bundles.hpp"
 #include "kernels/joints/sweep_drives.hpp"
 #include "kernels/joints/sweep_joints.hpp"
@@ -80,6 +81,7 @@ constexpr KernelTable<Real> make_table(std::string_view isa, const ConvexKernels
               {&give_angles<Real, Isa>, &sweep_angles<true, Real, Isa>, &sweep_angles<false, Real, Isa>}}},
         .begin_bundles = &begin_bundles<Real, Isa>,
         .sweep_bundles = &sweep_bundles<Real, Isa>,
+        .close_bundles = &close_bundles<Real, Isa>,
         .begin_substeps = {&begin_substeps<false, Real, Isa>, &begin_substeps<true, Real, Isa>},
         .advance_bodies = {&advance_bodies<false, false, Real, Isa>, &advance_bodies<true, false, Real, Isa>,
                            &advance_bodies<false, true, Real, Isa>, &advance_bodies<true, true, Real, Isa>},

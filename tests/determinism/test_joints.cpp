@@ -45,7 +45,7 @@ constexpr Golden kGolden[] = {
     {"net of rods", 0xc9766baaa9013493, 0xcc473225a7d37df},
     {"net of rods beside centres", 0xaf184cf7d115621, 0x20acc8a1a91d08aa},
     {"net of hinges", 0xb085cbbfb070441c, 0x5748400fa6290ac},
-    {"crowd of ragdolls", 0xb31a144494bd6a0, 0xac08e215b51d6081},
+    {"crowd of ragdolls", 0xafb5dee16ee234e2, 0xc76d83b7edccff68},
 };
 
 }  // namespace

@@ -91,6 +91,22 @@ Scene heap_of_ragdolls(int count, double torque, unsigned seed) {
     return scene;
 }
 
+/// How far a hinge is open at most, in shares of the way from the centre of a body to the hinge and on to the
+/// centre of the other one.
+double widest_gap(const World& world, const Scene& scene) {
+    double widest = 0;
+    for (std::uint32_t i = 0; i < scene.joints.size(); ++i) {
+        const auto [on_a, on_b] = world.joint_anchors(JointId::of(i));
+        const auto arm = [&](BodyId body, Vec2 anchor) {
+            const Vec2 centre = world.state(body).position;
+            return std::hypot(anchor.x - centre.x, anchor.y - centre.y);
+        };
+        const double limb = arm(scene.joints[i].a.value(), on_a) + arm(scene.joints[i].b.value(), on_b);
+        widest = std::max(widest, std::hypot(on_b.x - on_a.x, on_b.y - on_a.y) / limb);
+    }
+    return widest;
+}
+
 }  // namespace
 
 TEST_SUITE("hard cases: joints") {
@@ -181,9 +197,32 @@ TEST_SUITE("hard cases: joints") {
         CHECK((energy.kinetic + energy.rotational) / start < 1e-4);
     }
 
-    TEST_CASE("what moves on in a heap of ragdolls without friction in their hinges hangs and swings") {
-        for (const unsigned seed : {1u, 2u, 3u}) {
+    // docs/decisions/0092-gaps-in-heaps.md. Before, a hinge of 60 ragdolls was open by a tenth of its limb
+    // in the fall.
+    TEST_CASE("no hinge of ragdolls that fall on a heap is open by a fiftieth of a limb after any step") {
+        for (unsigned seed = 1; seed <= scaled(3u, 1u); ++seed) {
             CAPTURE(seed);
+            const Scene scene = heap_of_ragdolls(60, 0, seed);
+            World world(scene);
+            double widest = 0;
+            for (int i = 0; i < 600; ++i) {
+                world.step(kStep);
+                widest = std::max(widest, widest_gap(world, scene));
+            }
+            const OverlapReport overlaps = world.overlaps();
+            report("60 ragdolls, hinges open by ", widest, " of a limb at most, at the end overlaps of ",
+                   overlaps.mean, ", at most ", overlaps.max, " inradii");
+            CHECK(widest < 0.02);
+            CHECK(overlaps.mean < 0.03);
+        }
+    }
+
+    // In a third of the draws a limb that leans on others, or turns around its hinge, moves on, too; of 24
+    // draws in eight before hinges were closed, of these nine in four (docs/decisions/0092-gaps-in-heaps.md).
+    TEST_CASE("what moves on in most heaps of ragdolls without friction in their hinges hangs and swings") {
+        const unsigned draws = scaled(9u, 3u);
+        unsigned others = 0;
+        for (unsigned seed = 1; seed <= draws; ++seed) {
             const Scene scene = heap_of_ragdolls(12, 0, seed);
             World world(scene);
             const double start = world.ledger().energy.total();
@@ -207,12 +246,13 @@ TEST_SUITE("hard cases: joints") {
                     swing.high = std::max(swing.high, state.angle);
                 }
             }
-            for (std::uint32_t b = 0; b < swings.size(); ++b) {
-                if (swings[b].energy < 2e-8) continue;
-                CAPTURE(b);
-                // A capsule that hangs is upright in the middle of its swing.
-                CHECK(std::fabs(std::cos(0.5 * (swings[b].low + swings[b].high))) < 0.1);
-            }
+            // A capsule that hangs is upright in the middle of its swing.
+            others += std::any_of(swings.begin(), swings.end(), [](const Swing& swing) {
+                return swing.energy >= 2e-8 && std::fabs(std::cos(0.5 * (swing.low + swing.high))) >= 0.1;
+            });
         }
+        report("12 ragdolls without friction in hinges: in ", others, " of ", draws,
+               " heaps other limbs than those that hang move on");
+        CHECK(others <= draws / 3);
     }
 }

@@ -78,10 +78,19 @@ inline constexpr std::size_t kMostBodiesOfBundle = 32;
 /// Mechanisms of hinges that are joined alike, a lane each; lanes beyond `mechanisms` have a row at rest. The
 /// joint number j of each of them is in the places first + kJointBlock j ... of the columns of its kind.
 struct JointBundle {
-    std::size_t mechanisms;           // 1 ... kJointBlock
-    std::size_t bodies, first_body;   // of a mechanism; of all bundles, in SweepBundles::rows
-    std::size_t hinges, first_hinge;  // of a mechanism; place
-    std::size_t angles, first_angle;  // likewise
+    std::size_t mechanisms;                      // 1 ... kJointBlock
+    std::size_t bodies, first_body;              // of a mechanism; of all bundles, in SweepBundles::rows
+    std::size_t hinges, first_hinge;             // of a mechanism; place
+    std::size_t angles, first_angle;             // likewise
+    std::size_t branches = 0, first_branch = 0;  // of the tree that its hinges are, if they are one; in all
+};
+
+/// A hinge of a tree of bodies: from the body nearer to the root to the one beyond it.
+struct JointBranch {
+    std::size_t hinge;           // of a mechanism
+    std::int32_t angle;          // likewise, its part about the angle; below zero: it has none
+    std::int32_t parent, child;  // numbers of bodies of the mechanism
+    bool parent_is_a;            // of the hinge
 };
 
 /// Gauss-Seidel sweeps over mechanisms, each on its own: over its hinges, then over what acts on its angles.
@@ -93,6 +102,22 @@ struct SweepBundles {
     const std::int32_t* rows;  // [bodies of all bundles][kJointBlock]
     bool gives;                // first the impulses that joints had at the end of the step before
     bool begins;               // whether the first of two sweeps is that of a substep
+};
+
+/// Inertia of what does not turn, as far as that is solved for [kg m²].
+inline constexpr double kNoTurn = 1e30;
+
+/// Closes hinges that are open, by displacement, in mechanisms that are trees.
+template <class Real>
+struct CloseBundles {
+    SweepJoints<Real> hinges;   // as in SweepBundles
+    JointColumns<Real> angles;  // likewise
+    const JointBundle* bundles;
+    const std::int32_t* rows;     // [bodies of all bundles][kJointBlock]
+    const JointBranch* branches;  // of each bundle that is a tree: a parent comes before its children
+    Real open;   // a mechanism is closed if a hinge is open by more than this share of a limb
+    Real left;   // share of a limb that is left open at most
+    int rounds;  // at most: a turn closes a gap in first order alone
 };
 
 /// Mechanisms at the start of a step. Of joints a and b are numbers of bodies within their bundle, and

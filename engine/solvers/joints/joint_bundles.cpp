@@ -41,6 +41,33 @@ std::vector<std::int32_t> Mechanism::shape() const {
     return shape;
 }
 
+std::vector<JointBranch> Mechanism::tree() const {
+    std::vector<JointBranch> tree;
+    if (hinges.size() + 1 != rows.size()) return tree;
+    std::vector<std::int32_t> reached{0};
+    std::vector<bool> is_reached(rows.size());
+    is_reached[0] = true;
+    for (std::size_t next = 0; next < reached.size(); ++next)
+        for (std::size_t j = 0; j < hinges.size(); ++j) {
+            const MechanismPart& hinge = hinges[j];
+            const std::int32_t parent = reached[next];
+            if (hinge.a != parent && hinge.b != parent) continue;
+            const std::int32_t child = hinge.a == parent ? hinge.b : hinge.a;
+            if (is_reached[static_cast<std::size_t>(child)]) continue;
+            const auto angle = std::find_if(angles.begin(), angles.end(), [&](const MechanismPart& part) {
+                return part.slot == hinge.slot;
+            });
+            const auto of_angle = static_cast<std::int32_t>(angle - angles.begin());
+            tree.push_back({.hinge = j,
+                            .angle = angle == angles.end() ? -1 : of_angle,
+                            .parent = parent,
+                            .child = child,
+                            .parent_is_a = hinge.a == parent});
+            reached.push_back(child), is_reached[static_cast<std::size_t>(child)] = true;
+        }
+    return tree.size() == hinges.size() ? tree : std::vector<JointBranch>{};
+}
+
 template <class Real>
 Mechanism mechanism_of(const WorldState<Real>& world, const std::vector<std::size_t>& slots,
                        bool (*has_angle_part)(const StoredJoint&)) {
@@ -82,7 +109,7 @@ void JointBundles::arrange(std::int32_t first_still, std::size_t first_hinge, st
     std::vector<Mechanism> sorted;
     for (const std::size_t i : order) sorted.push_back(std::move(mechanisms[i]));
     mechanisms = std::move(sorted);
-    bundles.clear(), rows.clear();
+    bundles.clear(), rows.clear(), branches.clear();
     for (std::size_t first = 0; first < order.size();) {
         std::size_t last = first + 1;
         while (last < order.size() && last < first + kJointBlock &&
@@ -90,13 +117,17 @@ void JointBundles::arrange(std::int32_t first_still, std::size_t first_hinge, st
             ++last;
         const Mechanism& one = mechanisms[first];
         const std::size_t bodies = one.rows.size();
+        const std::vector<JointBranch> tree = one.tree();
         bundles.push_back({.mechanisms = last - first,
                            .bodies = bodies,
                            .first_body = rows.size() / kJointBlock,
                            .hinges = one.hinges.size(),
                            .first_hinge = first_hinge,
                            .angles = one.angles.size(),
-                           .first_angle = first_angle});
+                           .first_angle = first_angle,
+                           .branches = tree.size(),
+                           .first_branch = branches.size()});
+        branches.insert(branches.end(), tree.begin(), tree.end());
         for (std::size_t body = 0; body < bodies; ++body)
             for (std::size_t lane = 0; lane < kJointBlock; ++lane)
                 rows.push_back(first + lane < last ? mechanisms[first + lane].rows[body] : first_still);
@@ -107,7 +138,8 @@ void JointBundles::arrange(std::int32_t first_still, std::size_t first_hinge, st
 }
 
 std::size_t JointBundles::bytes() const {
-    std::size_t bytes = bundles.capacity() * sizeof(JointBundle) + rows.capacity() * sizeof(std::int32_t);
+    std::size_t bytes = bundles.capacity() * sizeof(JointBundle) + rows.capacity() * sizeof(std::int32_t) +
+                        branches.capacity() * sizeof(JointBranch);
     for (const Mechanism& one : mechanisms)
         bytes += sizeof(one) + one.rows.capacity() * sizeof(std::int32_t) +
                  (one.hinges.capacity() + one.angles.capacity()) * sizeof(MechanismPart);

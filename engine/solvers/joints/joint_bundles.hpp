@@ -24,6 +24,8 @@ struct Mechanism {
 
     /// What a lane of a bundle has to have in common with the others: how the bodies are joined.
     std::vector<std::int32_t> shape() const;
+    /// Its hinges as a tree, from its first body outwards; none where they close a loop.
+    std::vector<JointBranch> tree() const;
 };
 
 /// A group of joints as a mechanism; one without bodies if it has too many of them, or other joints.
@@ -40,8 +42,9 @@ struct JointBundles {
     std::vector<JointBundle> bundles;
     std::vector<Mechanism> mechanisms;  // kJointBlock at most of each bundle, in their order
     std::vector<std::int32_t> rows;     // [bodies of all bundles][kJointBlock]
+    std::vector<JointBranch> branches;  // of the bundles that are trees
 
-    void clear() { bundles.clear(), mechanisms.clear(), rows.clear(); }
+    void clear() { bundles.clear(), mechanisms.clear(), rows.clear(), branches.clear(); }
     bool empty() const { return bundles.empty(); }
     /// Sorts the mechanisms and cuts them into bundles.
     /// @param first_still  row at rest for the lanes that the first bundle does not need; each has its own

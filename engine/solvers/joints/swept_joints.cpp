@@ -18,6 +18,14 @@ constexpr double kOverRelaxation = 1.3;
 constexpr double kNanosecondsToSweep = 5, kNanosecondsToSweepInBundle = 2;
 static_assert(kJointBlock == kRowPadding);
 
+/// Hinges that are open by more than this share of a limb, which is from the centre of a body to the hinge
+/// and on to the centre of the other one, are closed up to a smaller share of it, in rounds of which each
+/// closes a gap in first order of the turn that it takes. docs/decisions/0092-gaps-in-heaps.md.
+constexpr double kOpen = 0.018;
+constexpr double kLeftOpen = 0.016;
+constexpr int kMostRoundsOfClosing = 3;
+constexpr double kNanosecondsToClose = 1;  // a part of a joint, on one thread, for the executor
+
 }  // namespace
 
 template <class Real>
@@ -133,23 +141,46 @@ void SweptJoints<Real>::run_group(std::size_t group, Kernel kernel) const {
     }
 }
 
+/// What a sweep over the joints of a kind has that are in bundles.
+template <class Real>
+SweepJoints<Real> SweptJoints<Real>::of_bundles(std::size_t kind) const {
+    SweepJoints<Real> sweep = arguments_[kind];
+    sweep.joints.a = kinds_[kind].of_bundle_a.data(), sweep.joints.b = kinds_[kind].of_bundle_b.data();
+    sweep.over_relaxation = Real(1);
+    return sweep;
+}
+
 /// Bundles share no bodies, neither with each other nor with joints that are in none.
 template <class Real>
 void SweptJoints<Real>::sweep_bundles(const StepLoops<Real>& loops, Begin begin) const {
     SweepBundles<Real> k{};
-    const auto of_kind = [&](std::size_t kind) {
-        SweepJoints<Real> sweep = arguments_[kind];
-        sweep.joints.a = kinds_[kind].of_bundle_a.data(), sweep.joints.b = kinds_[kind].of_bundle_b.data();
-        sweep.over_relaxation = Real(1);
-        return sweep;
-    };
-    k.hinges = of_kind(kHinges), k.angles = of_kind(kAngles);
+    k.hinges = of_bundles(kHinges), k.angles = of_bundles(kAngles);
     k.bundles = bundles_.bundles.data(), k.rows = bundles_.rows.data();
     k.gives = begin == Begin::step, k.begins = begin != Begin::nothing;
     const double work = kNanosecondsToSweepInBundle * static_cast<double>(parts_of_joints_) * 2;
     loops.executor->for_each_task(bundles_.bundles.size(), work, [&](std::size_t bundle) {
         loops.kernels->sweep_bundles(k, bundle, bundle + 1);
     });
+}
+
+template <class Real>
+double SweptJoints<Real>::close_gaps(const JointStep<Real>& step, const StepLoops<Real>& loops) {
+    if (bundles_.branches.empty() || !step.records.turn()) return 0;
+    CloseBundles<Real> k{};
+    k.hinges = of_bundles(kHinges), k.angles = of_bundles(kAngles).joints;
+    k.bundles = bundles_.bundles.data(), k.rows = bundles_.rows.data();
+    k.branches = bundles_.branches.data();
+    k.open = static_cast<Real>(kOpen), k.left = static_cast<Real>(kLeftOpen), k.rounds = kMostRoundsOfClosing;
+    closed_.resize(bundles_.bundles.size());
+    loops.executor->for_each_task(
+        bundles_.bundles.size(), kNanosecondsToClose * static_cast<double>(parts_of_joints_),
+        [&](std::size_t bundle) { closed_[bundle] = loops.kernels->close_bundles(k, bundle, bundle + 1); });
+    std::size_t closed = 0, trees = 0;
+    for (std::size_t i = 0; i < closed_.size(); ++i) {
+        closed += closed_[i];
+        if (bundles_.bundles[i].branches > 0) trees += bundles_.bundles[i].mechanisms;
+    }
+    return static_cast<double>(closed) / static_cast<double>(trees);
 }
 
 template <class Real>

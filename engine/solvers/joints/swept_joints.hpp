@@ -51,6 +51,9 @@ class SweptJoints {
     /// gives impulses at the start of a step.
     enum class Begin : std::uint8_t { step, substep, nothing };
     void sweep(const JointStep<Real>& step, const StepLoops<Real>& loops, Begin begin);
+    /// Closes hinges of crowds that are open by more than a share of their limbs, by displacement, in
+    /// mechanisms that are trees. @return the share of these in which one was
+    double close_gaps(const JointStep<Real>& step, const StepLoops<Real>& loops);
     /// The work of the joints in this substep, and what they gave to what nothing moves.
     void book(const JointStep<Real>& step, Books& books) const;
     /// Adds what joints that may break gave in this substep to what they have given in the step.
@@ -134,6 +137,7 @@ class SweptJoints {
     static bool has_angle_part(const StoredJoint& joint);
     Real* turn_of(BodyRecords<Real>& records);
     void add_bundles();
+    SweepJoints<Real> of_bundles(std::size_t kind) const;
     void sweep_bundles(const StepLoops<Real>& loops, Begin begin) const;
     void load(const WorldState<Real>& world);
     void begin_joints(const JointStep<Real>& step, Kind& own, std::size_t kind, std::size_t first,
@@ -192,6 +196,7 @@ class SweptJoints {
     bool has_motors_ = false;    // some joint has a motor
     double longest_ = 0;         // m, arm of hinges
     JointStiffness stiffness_;
+    std::vector<std::size_t> closed_;  // mechanisms that were closed last, by bundle
     /// How far joints turn their bodies back: arm times impulse of a substep [N s m].
     struct Moments {
         double of_a, of_b;

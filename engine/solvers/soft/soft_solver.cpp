@@ -14,8 +14,8 @@ namespace {
 constexpr int kFirstSweeps = 32;
 /// Likewise along paths of contacts, which take loads farther.
 constexpr int kFirstPasses = 8;
-/// Turns of joints and contacts a substep where they bear on each other: of groups that are solved exactly,
-/// of crowds that are swept.
+/// Turns of joints and contacts a substep where they bear on each other: of groups that are solved exactly
+/// and of crowds that are torn, of other crowds.
 constexpr int kTurns = 4;
 constexpr int kTurnsOfCrowd = 1;
 /// The former end when joints, and what weighs on them, change no velocity by more than this share of what
@@ -168,7 +168,7 @@ bool SoftSolver<Real>::solve_turn(WorldState<Real>& world, double settled, bool 
 template <class Real>
 void SoftSolver<Real>::solve_joints_and_contacts(WorldState<Real>& world) {
     const double settled = kJointsSettled * terms_.fall_speed();
-    const int turns = joints.touches_exactly() ? kTurns : kTurnsOfCrowd;
+    const int turns = joints.touches_exactly() || joints.are_torn() ? kTurns : kTurnsOfCrowd;
     for (int turn = 0; turn < turns && !solve_turn(world, settled, turn > 0, sweeps_turns()); ++turn)
         continue;
 }

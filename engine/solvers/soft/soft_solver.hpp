@@ -209,7 +209,7 @@ class SoftSolver {
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
         archive(self.graph, self.paths, self.counters, self.impacts.counters, self.warm_start_,
-                self.corrections_);
+                self.corrections_, self.joints);
         if constexpr (!std::is_const_v<Self>)
             self.forget_rows(), self.records_.forget(), self.impacts.forget();
     }

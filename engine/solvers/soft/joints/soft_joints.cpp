@@ -21,6 +21,8 @@ constexpr std::size_t kFewestJoints = 4;
 constexpr double kLargestMassRatio = 16;
 /// Joints of a group that is small, at most: each blow on it is answered by all of them (decision 0059).
 constexpr std::size_t kMostJointsOfSmall = 16;
+/// Share of a crowd that has open hinges where it is torn: docs/decisions/0092-gaps-in-heaps.md.
+constexpr double kTorn = 0.05;
 
 }  // namespace
 
@@ -224,6 +226,8 @@ template <class Real>
 void SoftJoints<Real>::solve(const JointStep<Real>& step, const StepLoops<Real>& loops, int substep) {
     using Begin = typename SweptJoints<Real>::Begin;
     if (!swept_.empty()) swept_.sweep(step, loops, substep == 0 ? Begin::step : Begin::substep);
+    // Before contacts push bodies apart, so that they answer what this makes of overlaps.
+    if (open_share_ > 0) swept_.close_gaps(step, loops);
     std::size_t joints = 0;
     for (std::size_t i = 0; i < first_beside_; ++i) joints += direct_[i].joints();
     loops.executor->for_each_task(first_beside_, kNanosecondsToSolve * static_cast<double>(joints),
@@ -280,6 +284,11 @@ bool SoftJoints<Real>::ask_turns(double settled, TurnRows& turns) const {
 }
 
 template <class Real>
+bool SoftJoints<Real>::are_torn() const {
+    return open_share_ > kTorn;
+}
+
+template <class Real>
 void SoftJoints<Real>::end_substep(const JointStep<Real>& step, Books& books) {
     for (DirectJoints<Real>& group : direct_) {
         group.note_forces();
@@ -306,6 +315,7 @@ bool SoftJoints<Real>::end_step(const JointStep<Real>& step, const StepView<Real
         }
         group.store(joints, dt);
     }
+    open_share_ = swept_.empty() ? 0 : swept_.close_gaps(step, contacts.loops);
     if (!swept_.empty()) swept_.store(joints, step.terms.substep_dt, dt, *contacts.loops.executor);
     joints.end_limits(dt);
     const std::size_t before = joints.broken.size();

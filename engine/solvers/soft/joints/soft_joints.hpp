@@ -62,6 +62,9 @@ class SoftJoints {
     bool has_crowd() const { return crowd_groups_ > 0; }
     /// Whether a group that is solved exactly touches something.
     bool touches_exactly() const { return touches_; }
+    /// Whether hinges of a good part of a crowd were open at the end of the last step: it falls on a heap, or
+    /// is squeezed in one.
+    bool are_torn() const;
     void end_substep(const JointStep<Real>& step, Books& books);
     /// @return whether a joint broke
     /// @param contacts, paths  as they are after the last substep
@@ -97,6 +100,11 @@ class SoftJoints {
     /// How many joints are solved in which way, in words, for `explain`.
     std::string describe() const;
 
+    template <class Self, class Archive>
+    static void visit_state(Self& self, Archive& archive) {
+        archive(self.open_share_);
+    }
+
   private:
     static bool is_fit_for_crowd(const WorldState<Real>& world, const std::vector<std::size_t>& slots);
     static JointBreak break_of(const JointStep<Real>& step, std::size_t slot, double dt);
@@ -131,6 +139,7 @@ class SoftJoints {
     std::vector<std::uint8_t> group_touches_, is_pressed_;
     JoinedContacts contacts_;  // of the step
     ForeseenBlows<Real> blows_;
+    double open_share_ = 0;  // of the mechanisms of a crowd, that were open at the end of the last step
 };
 
 extern template class SoftJoints<float>;
