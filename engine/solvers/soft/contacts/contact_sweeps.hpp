@@ -17,6 +17,17 @@ struct PairRuns {
     std::vector<Run> runs;
     std::vector<std::size_t> first;  ///< [groups + 1]: group g has runs [first[g], first[g + 1])
 
+    /// Those of the groups that have bodies of chunks which are marked.
+    void list(const ContactGraph<Real>& graph, const std::vector<std::uint8_t>& chunks) {
+        const ContactRows<Real>& pairs = graph.pairs;
+        runs.clear(), first.assign(1, 0);
+        for (std::size_t group = 0; group < pairs.groups(); ++group) {
+            const Run* const run = pairs.run.data() + pairs.first_place(group) / kContactBlock;
+            if (graph.groups.touches(group, chunks))
+                runs.insert(runs.end(), run, run + pairs.run_count[group]);
+            first.push_back(runs.size());
+        }
+    }
     std::span<const Run> of_group(std::size_t group) const {
         return std::span(runs).subspan(first[group], first[group + 1] - first[group]);
     }

@@ -84,13 +84,7 @@ void DeepContacts<Real>::list_runs(const StepView<Real>& step) {
                   is_swept_.begin() + static_cast<std::ptrdiff_t>(std::min(last, groups.chunks)),
                   std::uint8_t{1});
     }
-    runs_.runs.clear(), runs_.first.assign(1, 0);
-    for (std::size_t group = 0; group < pairs.groups(); ++group) {
-        const auto* const run = pairs.run.data() + pairs.first_place(group) / kContactBlock;
-        if (groups.touches(group, is_swept_))
-            runs_.runs.insert(runs_.runs.end(), run, run + pairs.run_count[group]);
-        runs_.first.push_back(runs_.runs.size());
-    }
+    runs_.list(step.graph, is_swept_);
 }
 
 template <class Real>

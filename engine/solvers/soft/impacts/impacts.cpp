@@ -6,22 +6,19 @@
 #include <cassert>
 #include <cmath>
 
-#include "effects/friction.hpp"
 #include "effects/restitution.hpp"
-#include "effects/rolling_resistance.hpp"
 #include "math/vec2_math.hpp"
 #include "narrowphase/coincident.hpp"
 #include "narrowphase/impact_time.hpp"
 #include "solvers/soft/impacts/blow.hpp"
+#include "solvers/soft/impacts/hidden_contacts.hpp"
+#include "solvers/soft/impacts/impact_materials.hpp"
 
 namespace carom {
 namespace {
 
 /// What comes slower than gravity would make it in this many substeps is at rest and does not bounce.
 constexpr double kRestingFalls = 2;
-/// Separation that the sweeps see in place of that of an impact [m]: too far for them to do anything.
-template <class Real>
-constexpr Real kFar = Real(1e20);
 /// Overlap beyond which the sweeps part two bodies, in radii of the smaller one.
 constexpr double kOverlap = 1e-3;
 /// A contact that is pressed is an impact again if its bodies would come so deep into each other until the
@@ -55,7 +52,7 @@ Partner Impacts<Real>::partner_of(Place place) const {
 
 template <class Real>
 bool Impacts<Real>::is_impact(Place place) const {
-    return !place.has_row() || store_of(place).separation[place.index] == kFar<Real>;
+    return !place.has_row() || is_hidden(store_of(place).separation[place.index]);
 }
 
 /// Whether a force holds a contact that its bodies come to with a speed [m/s].
@@ -91,25 +88,8 @@ double Impacts<Real>::smaller_radius(Place place) const {
 /// What decides the tangential and rolling impulses; zero where nothing turns.
 template <class Real>
 void Impacts<Real>::set_materials(Place place, ContactTerms<double>& terms) const {
-    terms.of_a = 0.5;
-    if (!settings_->effects.friction) return;
-    if (place.has_row()) {
-        const ContactRows<Real>& rows = store_of(place);
-        const auto value = [&](const Column<Real>& column, double uniform) {
-            return column.empty() ? uniform : static_cast<double>(column[place.index]);
-        };
-        terms.friction = value(rows.friction, settings_->friction);
-        if (settings_->effects.rolling) terms.rolling = value(rows.rolling, settings_->rolling);
-        terms.of_a = value(rows.rolling_share, 0.5);
-        return;
-    }
-    const Bodies<Real>& bodies = world_->bodies;
-    const auto a = static_cast<std::size_t>(row_of(place)),
-               b = static_cast<std::size_t>(partner_of(place).row());
-    terms.friction = pair_friction(bodies.friction[a], bodies.friction[b]);
-    if (settings_->effects.rolling)
-        terms.rolling = pair_rolling_resistance(bodies.rolling_resistance[a], bodies.rolling_resistance[b]);
-    terms.of_a = rolling_share(bodies.radius[a], bodies.radius[b]);
+    if (place.has_row()) return materials_of_contact(store_of(place), place.index, *settings_, terms);
+    materials_of_bodies(world_->bodies, row_of(place), partner_of(place).row(), *settings_, terms);
 }
 
 /// What comes fast enough, and may come to touch in this step, is an impact.
@@ -125,7 +105,7 @@ void Impacts<Real>::mark_in(ContactRows<Real>& rows, Kind kind, std::size_t firs
         // What lies no deeper than it came in one step is an impact that was missed, not a crowd's overlap.
         const double deepest = std::fmax(kOverlap * smaller_radius(place), -dt_ * approach);
         if (separation < -deepest || !(restitution_of(place) > 0)) continue;
-        rows.separation[i] = kFar<Real>;
+        rows.separation[i] = kHiddenSeparation<Real>;
         impacts_.push_back(place);
     }
 }
@@ -195,7 +175,7 @@ bool Impacts<Real>::takes_part(Place place, double speed, double left, double no
     if (is_impact(place)) return true;
     const bool is_fast = speed > rest_speed_ && speed > noise;
     if (!is_pressed(place) && is_fast && restitution_of(place) > 0) {
-        store_of(place).separation[place.index] = kFar<Real>;
+        store_of(place).separation[place.index] = kHiddenSeparation<Real>;
         impacts_.push_back(place);
         return true;
     }
@@ -213,7 +193,7 @@ void Impacts<Real>::hide_from_sweeps(Place place, Vec2 v) {
         (!place.is_support() && budget_.may_collapse(partner_of(place).row())) ||
         !(restitution_of(place) > 0))
         return;
-    store_of(place).separation[place.index] = kFar<Real>;
+    store_of(place).separation[place.index] = kHiddenSeparation<Real>;
     impacts_.push_back(place);
 }
 
