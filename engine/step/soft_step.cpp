@@ -55,6 +55,9 @@ class SoftStep final : public SoftSimulation<Real> {
         return sim.can_touch() && (!sim.world.bodies.mass.is_uniform() || sim.world.bodies.has_flags);
     };
     static constexpr auto has_hits = [](const Sim& sim) { return sim.soft.expects_hits(); };
+    static constexpr auto has_struck_contacts = [](const Sim& sim) {
+        return sim.soft.has_struck_contacts(sim.world) && bounces(sim);
+    };
     static constexpr auto shapes_bounce = [](const Sim& sim) {
         return has_shapes(sim) && sim.world.effects.restitution;
     };
@@ -167,6 +170,10 @@ class SoftStep final : public SoftSimulation<Real> {
          [](Sim& sim) { sim.soft.carry_out_impacts(sim.motion, sim.world.books, sim.interruption); }, bounces,
          KernelChoice::scalar_f64, "impacts, motion, velocity records, displacements",
          "velocity records, displacements, contacts, books"},
+        {"settle_struck_contacts",
+         [](Sim& sim) { sim.soft.settle_struck_contacts(sim.world, sim.motion, sim.world.books); },
+         has_struck_contacts, KernelChoice::contacts, "impacts, contacts, velocity records, displacements",
+         "impulses, velocity records, books"},
         {"advance_bodies",
          [](Sim& sim) {
              sim.soft.advance_bodies(sim.substep, sim.substep + 1 == sim.substep_count,

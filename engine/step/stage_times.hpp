@@ -11,7 +11,7 @@ namespace carom {
 /// world: of steps that are shorter than kShortStep one in kStepsPerSample is timed, for all of them.
 class StageTimes {
   public:
-    static constexpr std::size_t kMostStages = 40;
+    static constexpr std::size_t kMostStages = 48;
 
     /// To be called when a step begins.
     void start() {

@@ -226,6 +226,18 @@ void SoftSolver<Real>::carry_out_impacts(const Column<Real>& motion, Books& book
 }
 
 template <class Real>
+bool SoftSolver<Real>::settles_crowds(const WorldState<Real>& world) const {
+    return !masses_.are_uneven() && !world.bodies.has_flags && !world.bodies.has_shapes &&
+           world.joints.empty();
+}
+
+template <class Real>
+void SoftSolver<Real>::settle_struck_contacts(const WorldState<Real>& world, const Column<Real>& motion,
+                                              Books& books) {
+    corrections_.struck.settle(view(), world, sweeps_, motion, impacts.left_closing.chunks(), books);
+}
+
+template <class Real>
 void SoftSolver<Real>::end_contacts() {
     corrections_.loads.retain(view(), sweeps_, paths);
     paths.end(*loops_.executor);

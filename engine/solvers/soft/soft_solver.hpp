@@ -132,6 +132,12 @@ class SoftSolver {
     }
     /// Carries out the impacts of a substep.
     void carry_out_impacts(const Column<Real>& motion, Books& books, Interruption& interruption);
+    /// Whether impacts have left contacts closing that hold, in a world whose crowds are settled.
+    bool has_struck_contacts(const WorldState<Real>& world) const {
+        return impacts.left_closing.any() && settles_crowds(world);
+    }
+    /// Sweeps once more over what impacts have left closing.
+    void settle_struck_contacts(const WorldState<Real>& world, const Column<Real>& motion, Books& books);
     /// Moves the bodies through substep `number`, which was solved.
     void advance_bodies(int number, bool is_last, bool has_joints) {
         paths.advance(terms_, records_);
@@ -217,6 +223,9 @@ class SoftSolver {
   private:
     using Sweeps = ContactSweeps<Real>;
 
+    /// Not where masses differ much, for sweeps would undo what corrections of uneven ones do, nor where
+    /// something is no disc that moves and turns, or is joined: docs/decisions/0093-crowds-that-bounce.md.
+    bool settles_crowds(const WorldState<Real>& world) const;
     bool solve_turn(WorldState<Real>& world, double settled, bool is_near, bool sweeps);
     /// Whether turns of joints and contacts sweep over contacts of shapes in place of solving them: where
     /// contacts are so many that paths are short, in a crowd of mechanisms that are swept, too, and where

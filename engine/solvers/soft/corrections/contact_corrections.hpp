@@ -4,6 +4,7 @@
 #include "solvers/soft/corrections/deep_contacts.hpp"
 #include "solvers/soft/corrections/load_correction.hpp"
 #include "solvers/soft/corrections/shape_turns.hpp"
+#include "solvers/soft/corrections/struck_contacts.hpp"
 #include "solvers/soft/corrections/uneven_contacts.hpp"
 #include "solvers/soft/corrections/wedged_bodies.hpp"
 
@@ -19,10 +20,11 @@ struct ContactCorrections {
     UnevenContacts<Real> uneven;   ///< masses that differ much
     ShapeTurns<Real> shape_turns;  ///< likewise, of shapes
     DeepContacts<Real> deep;       ///< hits
+    StruckContacts<Real> struck;   ///< what impacts leave
 
     std::size_t bytes() const {
         return loads.bytes() + chains.bytes() + wedged.bytes() + uneven.bytes() + shape_turns.bytes() +
-               deep.bytes();
+               deep.bytes() + struck.bytes();
     }
 
     template <class Self, class Archive>

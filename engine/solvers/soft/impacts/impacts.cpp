@@ -24,6 +24,8 @@ constexpr double kOverlap = 1e-3;
 /// A contact that is pressed is an impact again if its bodies would come so deep into each other until the
 /// end of the substep, in radii of the smaller one.
 constexpr double kDeepening = 0.01;
+/// What it may come deeper without being noted as left closing, in the same.
+constexpr double kLeftClosing = 0.002;
 
 /// Two surfaces touch if they are as near as this, in their reach.
 template <class Real>
@@ -116,7 +118,7 @@ void Impacts<Real>::mark(const WorldState<Real>& world, const StepView<Real>& st
     held.begin_step();
     ContactRows<Real>&pairs = step.graph.pairs, &supports = step.supports;
     world_ = &world, pairs_ = &pairs, supports_ = &supports, candidates_ = &step.graph.supports;
-    neighbours_ = &neighbours, settings_ = &step.settings;
+    neighbours_ = &neighbours, settings_ = &step.settings, groups_ = &step.graph.groups;
     dt_ = step.terms.dt, rest_speed_ = kRestingFalls * step.terms.fall_speed();
     gravity_ = (1 / step.terms.substep_dt) * step.terms.gravity_change;
     for (const Strangers& pair : strangers_)
@@ -179,7 +181,11 @@ bool Impacts<Real>::takes_part(Place place, double speed, double left, double no
         impacts_.push_back(place);
         return true;
     }
-    return (is_fast && !is_pressed(place, speed)) || speed * left > kDeepening * smaller_radius(place);
+    if (is_fast && !is_pressed(place, speed)) return true;
+    const double way = speed * left, smaller = smaller_radius(place);
+    if (way > kDeepening * smaller) return true;
+    if (way > kLeftClosing * smaller) left_closing.add(*groups_, row_of(place));
+    return false;
 }
 
 /// The normal that the sweeps know of a deflected body's contact is of another path: with it they would stop
@@ -370,7 +376,10 @@ bool Impacts<Real>::carry_out(Place place, double time, Books& books, double& gr
             is_exhausted = is_exhausted || budget_.is_exhausted(row, would_be_deep);
             joints += held.joints_of(row);
         });
-        if (is_exhausted) return make_contact(place, n, gap, time), false;
+        if (is_exhausted) {
+            left_closing.add(*groups_, row_a);
+            return make_contact(place, n, gap, time), false;
+        }
         const double called_for = restitution_of(place);
         const bool bounces = has_enough && speed > rest_speed_;
         for_each_mover([&](std::int32_t row) { budget_.spend(row, called_for, speed, joints); });
@@ -436,6 +445,7 @@ template <class Real>
 void Impacts<Real>::carry_out_all(const SubstepBodies<Real>& bodies, Books& books, double& gravity_work,
                                   Interruption& interruption) {
     bodies_ = &bodies;
+    left_closing.clear();
     const std::size_t found = impacts_.size(), strangers = strangers_.size();
     if (found == 0) return;
     queue_.clear();
@@ -466,8 +476,9 @@ template <class Real>
 std::size_t Impacts<Real>::bytes() const {
     return impacts_.capacity() * sizeof(Place) + strangers_.capacity() * sizeof(Strangers) +
            (first_strangers_.capacity() + mark_of_.capacity()) * sizeof(std::int32_t) + near_rows_.bytes() +
-           queue_.capacity() * sizeof(Event) + of_pairs_.bytes() + of_supports_.bytes() + paths_.bytes() +
-           budget_.bytes() + held.bytes() + shapes.bytes() + struck_.capacity() * sizeof(std::int32_t);
+           queue_.capacity() * sizeof(Event) + left_closing.bytes() + of_pairs_.bytes() +
+           of_supports_.bytes() + paths_.bytes() + budget_.bytes() + held.bytes() + shapes.bytes() +
+           struck_.capacity() * sizeof(std::int32_t);
 }
 
 template class Impacts<float>;

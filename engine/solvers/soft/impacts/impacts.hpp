@@ -10,6 +10,7 @@
 #include "effects/flight.hpp"
 #include "parallel/interruption.hpp"
 #include "solvers/soft/contacts/contact_settings.hpp"
+#include "solvers/soft/impacts/closing_chunks.hpp"
 #include "solvers/soft/impacts/held_impacts.hpp"
 #include "solvers/soft/impacts/impact_budget.hpp"
 #include "solvers/soft/impacts/impact_paths.hpp"
@@ -44,8 +45,9 @@ template <class Real>
 class Impacts {
   public:
     ImpactCounters counters;
-    HeldImpacts<Real> held;     ///< told of joints, if there are any, once contacts are marked
-    ShapeImpacts<Real> shapes;  ///< carried out before these
+    HeldImpacts<Real> held;      ///< told of joints, if there are any, once contacts are marked
+    ShapeImpacts<Real> shapes;   ///< carried out before these
+    ClosingChunks left_closing;  ///< what those of this substep leave
 
     /// Tells impacts from contacts among what can touch in this step.
     void mark(const WorldState<Real>& world, const StepView<Real>& step, const Candidates<Real>& neighbours);
@@ -134,6 +136,7 @@ class Impacts {
     const ContactRows<Real>* candidates_ = nullptr;  // of supports
     const Candidates<Real>* neighbours_ = nullptr;
     const ContactSettings* settings_ = nullptr;
+    const TaskGroups* groups_ = nullptr;
     const SubstepBodies<Real>* bodies_ = nullptr;  // in a substep
     double dt_ = 0, rest_speed_ = 0;               // s, m/s
     Vec2 gravity_;                                 // m/s²
