@@ -227,7 +227,7 @@ void SoftSolver<Real>::carry_out_impacts(const Column<Real>& motion, Books& book
 
 template <class Real>
 bool SoftSolver<Real>::settles_crowds(const WorldState<Real>& world) const {
-    return !masses_.are_uneven() && !world.bodies.has_flags && !world.bodies.has_shapes &&
+    return !masses_.are_uneven() && !masses_.some_are_fixed() && !world.bodies.has_shapes &&
            world.joints.empty();
 }
 

@@ -224,7 +224,7 @@ class SoftSolver {
     using Sweeps = ContactSweeps<Real>;
 
     /// Not where masses differ much, for sweeps would undo what corrections of uneven ones do, nor where
-    /// something is no disc that moves and turns, or is joined: docs/decisions/0093-crowds-that-bounce.md.
+    /// there are contacts or joints that these sweeps do not know: docs/decisions/0093-crowds-that-bounce.md.
     bool settles_crowds(const WorldState<Real>& world) const;
     bool solve_turn(WorldState<Real>& world, double settled, bool is_near, bool sweeps);
     /// Whether turns of joints and contacts sweep over contacts of shapes in place of solving them: where
