@@ -172,8 +172,9 @@ class SoftStep final : public SoftSimulation<Real> {
          "velocity records, displacements, contacts, books"},
         {"settle_struck_contacts",
          [](Sim& sim) { sim.soft.settle_struck_contacts(sim.world, sim.motion, sim.world.books); },
-         has_struck_contacts, KernelChoice::contacts, "impacts, contacts, velocity records, displacements",
-         "impulses, velocity records, books"},
+         has_struck_contacts, KernelChoice::contacts,
+         "impacts, motion, contacts, velocity records, displacements",
+         "contacts, impulses, velocity records, books"},
         {"advance_bodies",
          [](Sim& sim) {
              sim.soft.advance_bodies(sim.substep, sim.substep + 1 == sim.substep_count,

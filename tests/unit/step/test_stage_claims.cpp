@@ -295,7 +295,7 @@ Scene too_fast() {
 }
 
 /// A crowd that falls on a heap at once, fast enough to come deep into it.
-Scene crowd_that_falls() {
+Scene crowd_that_falls(double restitution) {
     Scene scene;
     scene.gravity = {0, -10};
     scene.walls.emplace();
@@ -304,7 +304,7 @@ Scene crowd_that_falls() {
     scene.walls->material.friction = 0.5;
     for (int i = 0; i < 200; ++i) {
         Body body = disc(0.25, 1, {0.3 + 0.54 * (i % 10), 0.3 + 0.54 * (i / 10) + (i < 50 ? 0 : 10)});
-        body.material.friction = 0.4;
+        body.material.friction = 0.4, body.material.restitution = restitution;
         body.velocity.y = i < 50 ? 0 : -20;
         scene.add(body);
     }
@@ -327,7 +327,8 @@ std::vector<Case> cases() {
                             {"a column", column_of_discs(), 40},
                             {"a wedge", wedge(), 40},
                             {"too fast", too_fast(), 5},
-                            {"a crowd that falls", crowd_that_falls(), 60}};
+                            {"a crowd that falls", crowd_that_falls(0), 60},
+                            {"a crowd that bounces", crowd_that_falls(0.6), 60}};
     for (Case& c : cases) c.scene.accuracy.solver = Solver::soft;
     Case flights{"flights", falling_discs(0.9), 60, 3};
     flights.scene.accuracy.solver = Solver::impulse;
