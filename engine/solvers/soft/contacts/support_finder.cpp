@@ -13,7 +13,8 @@
 namespace carom {
 namespace {
 
-/// A flat support as near as this, in radii of the body, is kept however slowly the body nears it.
+/// A flat support as near as this, in radii of the body, is kept however slowly the body nears it; with
+/// restitution any other, too.
 constexpr double kCrowdedRadii = 1;
 /// A disc that a curve leads comes by less than this in a step, in radii.
 constexpr double kLongestLed = 2;
@@ -253,9 +254,10 @@ void SupportFinder<Real>::find_in_group(std::size_t group, const Search& search)
             const Partner support = candidates.partner(i);
             const double radius = bodies.radius[row], at_rest = settings.contact_distance(radius);
             const Vec2 v = velocity_of(bodies, row);
-            // A wall that may be reached from anywhere is kept wherever it is. Others are far away as a rule
-            // in a small box: that is told before anything else.
-            const bool is_kept = support.is_wall() && settings.masses_are_uneven;
+            // A wall that an impact or a heavy body may throw a body to is kept wherever it is. Others are
+            // far away as a rule in a small box: that is told before anything else.
+            const bool is_kept =
+                support.is_wall() && (settings.effects.restitution || settings.masses_are_uneven);
             if (support.is_wall() && !is_kept) {
                 const Vec2 x{bodies.position_x[row], bodies.position_y[row]};
                 if (wall_clearance(*world.walls, support.side(), x) - radius >
@@ -276,8 +278,10 @@ void SupportFinder<Real>::find_in_group(std::size_t group, const Search& search)
                     : surface_of(world, row, support);
             const Vec2 dv = s.velocity - v;
             // What is flat is so everywhere, so it is kept however slowly a body nears it: in a crowd another
-            // one may yet throw it there within this step. What is round only holds where it is met.
-            const double crowd = s.is_flat ? kCrowdedRadii * radius : 0;
+            // one may yet throw it there within this step. What is round only holds where it is met, but an
+            // impact may throw the body there, too.
+            const bool may_be_thrown = s.is_flat || settings.effects.restitution;
+            const double crowd = may_be_thrown ? kCrowdedRadii * radius : 0;
             const double near = at_rest + std::max(crowd, way_within(dt, dv));
             if (!s.is_contact || (s.separation > near && !is_kept)) {
                 if (!s.is_contact) note_left_edge(i, group, search);
