@@ -48,7 +48,8 @@ void solve_unsettled(const PathBatch<Real>& p, LinkScratch<Lanes>* scratch, type
     for (int i = 0; i < p.k.sweeps_of_unsettled; ++i) sweep_paths<Lanes>(p, i % 2 == 0, bad);
 }
 
-/// Lanes do not know of each other, so the bits are those that each would have in its own batch.
+/// Paths that did not settle, a lane each, which are solved when they are a batch. Lanes do not know of each
+/// other, so the bits are those that each would have in its own batch.
 template <class Lanes, class Real>
 class UnsettledPaths {
   public:
