@@ -9,7 +9,7 @@
 // a mechanism a lane. Sweeps take a share of each gap, one joint after the other, and what others press on
 // the limbs opens it again; here a mechanism moves as one.
 //
-// Of all displacements that close the hinges the least is taken, weighed by mass, so its centre of mass stays
+// The displacement is the least, weighed by mass, of all that close the hinges, so the centre of mass stays
 // where it is. A limb with all that hangs on it answers at its hinge as one body would whose inertia is a
 // matrix (Featherstone, The calculation of robot dynamics using articulated-body inertias, 1983): found from
 // the leaves to the root, moved from the root to the leaves. docs/decisions/0092-gaps-in-heaps.md.

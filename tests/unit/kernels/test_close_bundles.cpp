@@ -174,8 +174,8 @@ struct Crowd {
         const std::size_t at = place(mechanism, j, kAngles);
         return lower[at] == upper[at];
     }
-    /// Of all displacements that close its hinges and turn no joint that is held the least, weighed
-    /// by mass: x, y [m] and turn [rad] of each body.
+    /// The least displacement, weighed by mass, of all that close the hinges of a mechanism and turn no joint
+    /// that is held: x, y [m] and turn [rad] of each body.
     std::vector<double> least_displacement(std::size_t mechanism) const {
         std::vector<std::vector<double>> rows_of;  // of the conditions, by unknown
         std::vector<double> wanted;

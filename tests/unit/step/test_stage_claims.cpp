@@ -71,7 +71,7 @@ std::span<Real> all_of(Column<Real>& column) {
 Soft& soft(Sim& sim) {
     return static_cast<Soft&>(sim);
 }
-/// Of a solver that is not const.
+/// The records of a solver, which is not const: to be disturbed.
 BodyRecords<Real>& records(Sim& sim) {
     return const_cast<BodyRecords<Real>&>(soft(sim).soft.records());
 }
