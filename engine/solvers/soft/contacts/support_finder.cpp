@@ -253,6 +253,10 @@ void SupportFinder<Real>::find_in_group(std::size_t group, const Search& search)
             const auto row = static_cast<std::size_t>(candidates.a[i]);
             const Partner support = candidates.partner(i);
             const double radius = bodies.radius[row], at_rest = settings.contact_distance(radius);
+            // Separation up to which a support is kept: the body may be thrown there, or come that way.
+            const auto near = [&](bool may_be_thrown, double way) {
+                return at_rest + std::max(may_be_thrown ? kCrowdedRadii * radius : 0, way);
+            };
             const Vec2 v = velocity_of(bodies, row);
             // A wall that an impact or a heavy body may throw a body to is kept wherever it is. Others are
             // far away as a rule in a small box: that is told before anything else.
@@ -261,13 +265,13 @@ void SupportFinder<Real>::find_in_group(std::size_t group, const Search& search)
             if (support.is_wall() && !is_kept) {
                 const Vec2 x{bodies.position_x[row], bodies.position_y[row]};
                 if (wall_clearance(*world.walls, support.side(), x) - radius >
-                    at_rest + std::max(kCrowdedRadii * radius, way_within(dt, v))) {
+                    near(true, way_within(dt, v))) {
                     let_go(i);
                     continue;
                 }
             } else if (support.is_edge() && !(candidates.normal_impulse[i] > 0)) {
                 const auto [clearance, way] = clearance_of_edge(world, edges, row, support.edge_number(), dt);
-                if (clearance > at_rest + std::max(kCrowdedRadii * radius, kBothAxes * way)) {
+                if (clearance > near(true, kBothAxes * way)) {
                     let_go(i);
                     continue;
                 }
@@ -281,9 +285,8 @@ void SupportFinder<Real>::find_in_group(std::size_t group, const Search& search)
             // one may yet throw it there within this step. What is round only holds where it is met, but an
             // impact may throw the body there, too.
             const bool may_be_thrown = s.is_flat || settings.effects.restitution;
-            const double crowd = may_be_thrown ? kCrowdedRadii * radius : 0;
-            const double near = at_rest + std::max(crowd, way_within(dt, dv));
-            if (!s.is_contact || (s.separation > near && !is_kept)) {
+            const bool is_far = s.separation > near(may_be_thrown, way_within(dt, dv));
+            if (!s.is_contact || (is_far && !is_kept)) {
                 if (!s.is_contact) note_left_edge(i, group, search);
                 let_go(i);
                 continue;
