@@ -104,34 +104,42 @@ auto ContactSweeps<Real>::next(const StepView<Real>& step, Blocks blocks, int ti
 }
 
 template <class Real>
-void ContactSweeps<Real>::list_parts(std::span<const Sweep> sweeps, const ContactGraph<Real>& graph) {
-    using Kind = typename Part::Kind;
+std::span<const PhaseKind> ContactSweeps<Real>::list_phases(std::size_t sweeps,
+                                                            const ContactGraph<Real>& graph) {
     const TaskGroups& groups = graph.groups;
-    const bool any_far = graph.pairs.run_count[groups.far()] > 0,
-               any_crowded = graph.supports.first_colour[groups.chunks] <
+    const bool has_far = graph.pairs.run_count[groups.far()] > 0,
+               has_crowded = graph.supports.first_colour[groups.chunks] <
                              graph.supports.first_colour[groups.chunks + 1];
-    parts_.clear(), phases_.clear();
-    const auto add_part = [&](Kind kind, const Sweep& sweep, PhaseKind phase) {
-        parts_.push_back({kind, &sweep}), phases_.push_back(phase);
-    };
-    for (const Sweep& sweep : sweeps)
-        for (int i = 0; i < sweep.times; ++i) {
-            add_part(Kind::chunks, sweep, PhaseKind::side_by_side);
-            if (any_far) add_part(Kind::far, sweep, PhaseKind::alone);
-            add_part(Kind::borders, sweep, PhaseKind::side_by_side);
-            if (any_crowded) add_part(Kind::crowded_supports, sweep, PhaseKind::alone);
-        }
+    if (parts_ == 0 || has_far != has_far_ || has_crowded != has_crowded_) {
+        has_far_ = has_far, has_crowded_ = has_crowded;
+        phases_.clear(), parts_ = 0;
+        part_[parts_++] = Part::chunks;
+        if (has_far) part_[parts_++] = Part::far;
+        part_[parts_++] = Part::borders;
+        if (has_crowded) part_[parts_++] = Part::crowded_supports;
+    }
+    for (std::size_t i = phases_.size(); i < parts_ * sweeps; ++i) {
+        const Part part = part_[i % parts_];
+        const bool is_alone = part == Part::far || part == Part::crowded_supports;
+        phases_.push_back(is_alone ? PhaseKind::alone : PhaseKind::side_by_side);
+    }
+    return std::span(phases_).first(parts_ * sweeps);
 }
 
 template <class Real>
 void ContactSweeps<Real>::run(const StepView<Real>& step, std::span<const Sweep> sweeps,
                               const SolveContacts<Real>& on_pairs, const SolveContacts<Real>& on_supports) {
-    using Kind = typename Part::Kind;
-    list_parts(sweeps, step.graph);
+    int times = 0;
+    for (const Sweep& sweep : sweeps) times += sweep.times;
+    const std::span<const PhaseKind> phases = list_phases(static_cast<std::size_t>(times), step.graph);
     const TaskGroups& groups = step.graph.groups;
-    const auto part = [&](std::size_t phase, std::size_t task) {
-        const Sweep& sweep = *parts_[phase].sweep;
-        const Kind kind = parts_[phase].kind;
+    const auto do_part = [&](std::size_t phase, std::size_t task) {
+        const auto place = static_cast<std::uint32_t>(phase);  // a division of 32 bits is the cheaper one
+        int repetition = static_cast<int>(place / parts_);
+        const Part part = part_[place % parts_];
+        const Sweep* of_phase = sweeps.data();
+        for (; repetition >= of_phase->times; ++of_phase) repetition -= of_phase->times;
+        const Sweep& sweep = *of_phase;
         const auto pair_group = [&](std::size_t group) {
             if (sweep.over_relaxation == 1) return sweep_pairs(step.graph.pairs, group, sweep, on_pairs);
             SolveContacts<Real> k = on_pairs;
@@ -142,9 +150,9 @@ void ContactSweeps<Real>::run(const StepView<Real>& step, std::span<const Sweep>
             sweep_supports(step.graph.supports, step.supports, group, sweep, on_supports);
         };
         const std::size_t chunk = 2 * task;
-        if (kind == Kind::far) return pair_group(groups.far());
-        if (kind == Kind::crowded_supports) return support_group(groups.chunks);
-        if (kind == Kind::chunks) {
+        if (part == Part::far) return pair_group(groups.far());
+        if (part == Part::crowded_supports) return support_group(groups.chunks);
+        if (part == Part::chunks) {
             if (chunk >= groups.chunks) return;
             pair_group(TaskGroups::inside(chunk));
             if (!groups.has_border(chunk)) return;
@@ -159,8 +167,8 @@ void ContactSweeps<Real>::run(const StepView<Real>& step, std::span<const Sweep>
         if (chunk < groups.chunks) support_group(chunk);
     };
     const double work = kNanosecondsToSweep * static_cast<double>(contacts_);
-    step.loops.executor->for_each_phase(phases_, groups.tasks(), work * static_cast<double>(sweeps.size()),
-                                        part);
+    step.loops.executor->for_each_phase(phases, groups.tasks(), work * static_cast<double>(sweeps.size()),
+                                        do_part);
 }
 
 template class ContactSweeps<float>;

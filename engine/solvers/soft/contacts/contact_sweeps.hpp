@@ -84,20 +84,19 @@ class ContactSweeps {
         run(step, sweeps, on_pairs, with_rows(on_pairs, step.supports));
     }
 
-    std::size_t bytes() const {
-        return parts_.capacity() * sizeof(Part) + phases_.capacity() * sizeof(PhaseKind);
-    }
+    std::size_t bytes() const { return phases_.capacity() * sizeof(PhaseKind); }
 
   private:
-    /// What sweeps are cut into for threads: `kind` of sweep `sweep`.
-    struct Part {
-        enum class Kind { chunks, far, borders, crowded_supports } kind;
-        const Sweep* sweep;
-    };
-    void list_parts(std::span<const Sweep> sweeps, const ContactGraph<Real>& graph);
+    /// What a sweep is cut into for threads, in this order.
+    enum class Part : std::uint8_t { chunks, far, borders, crowded_supports };
+    /// The phases of so many sweeps one after the other. Each sweep has the same ones, so that the list is
+    /// kept while contacts of chunks that are no neighbours, and crowded bodies, neither come nor go.
+    std::span<const PhaseKind> list_phases(std::size_t sweeps, const ContactGraph<Real>& graph);
 
     std::int64_t contacts_ = 0;  // of this step
-    std::vector<Part> parts_;    // of the sweeps of now
+    std::array<Part, 4> part_{};
+    std::uint32_t parts_ = 0;  // of a sweep; zero: not listed yet
+    bool has_far_ = false, has_crowded_ = false;
     std::vector<PhaseKind> phases_;
 };
 
