@@ -40,7 +40,7 @@ class DirectJoints {
     void begin_step(const JointStep<Real>& step, bool touches, bool is_beside, bool converges);
     /// Velocities of a substep, before contacts are solved.
     void solve_first(const JointStep<Real>& step, int substep);
-    /// What contacts have changed since.
+    /// What contacts have changed since; nothing where they have changed nothing in a tree.
     void solve_again(const JointStep<Real>& step);
     /// By which that changed the velocity of a centre or a rim, at most [m/s].
     double largest_change() const { return largest_change_; }
@@ -131,6 +131,7 @@ class DirectJoints {
     void correct(const JointStep<Real>& step);
     void half_kick(const JointStep<Real>& step, double sign);
     void read_velocities(const JointStep<Real>& step);
+    bool has_changed(const JointStep<Real>& step) const;
     std::size_t number_of(std::int32_t row) const {
         return static_cast<std::size_t>(std::find(rows_.begin(), rows_.end(), row) - rows_.begin());
     }

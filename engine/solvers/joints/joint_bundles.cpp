@@ -69,6 +69,15 @@ std::vector<JointBranch> Mechanism::tree() const {
 }
 
 template <class Real>
+bool is_hung(const WorldState<Real>& world, const StoredJoint& joint) {
+    const auto stands = [&](BodyId id) {
+        const std::size_t row = world.handles.row_of_slot(id.index);
+        return row >= world.bodies.count || world.bodies.is_immovable(row);
+    };
+    return joint.is_on_world() || stands(joint.a) || stands(joint.b);
+}
+
+template <class Real>
 Mechanism mechanism_of(const WorldState<Real>& world, const std::vector<std::size_t>& slots,
                        bool (*has_angle_part)(const StoredJoint&)) {
     Mechanism mechanism;
@@ -81,7 +90,7 @@ Mechanism mechanism_of(const WorldState<Real>& world, const std::vector<std::siz
     };
     for (const std::size_t slot : slots) {
         const StoredJoint& joint = world.joints[slot];
-        if (joint.type == JointType::distance) return {};
+        if (joint.type == JointType::distance || is_hung(world, joint)) return {};
         const std::int32_t a = number_of(joint.a), b = number_of(joint.b);
         if (mechanism.rows.size() > kMostBodiesOfBundle) return {};
         mechanism.hinges.push_back({slot, a, b});
@@ -93,6 +102,9 @@ Mechanism mechanism_of(const WorldState<Real>& world, const std::vector<std::siz
     mechanism.colours = std::max(of_hinges, of_angles);
     return mechanism;
 }
+
+template bool is_hung(const WorldState<float>&, const StoredJoint&);
+template bool is_hung(const WorldState<double>&, const StoredJoint&);
 
 void JointBundles::arrange(std::int32_t first_still, std::size_t first_hinge, std::size_t first_angle) {
     std::vector<std::vector<std::int32_t>> shapes(mechanisms.size());

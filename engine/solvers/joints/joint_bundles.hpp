@@ -28,7 +28,12 @@ struct Mechanism {
     std::vector<JointBranch> tree() const;
 };
 
-/// A group of joints as a mechanism; one without bodies if it has too many of them, or other joints.
+/// Whether a joint hangs on the world, or on a body that nothing moves.
+template <class Real>
+bool is_hung(const WorldState<Real>& world, const StoredJoint& joint);
+
+/// A group of joints as a mechanism; one without bodies if it has too many of them, or other joints, or hangs
+/// on what stands.
 /// @param has_angle_part  of each slot, whether something acts on the joint's angle
 template <class Real>
 Mechanism mechanism_of(const WorldState<Real>& world, const std::vector<std::size_t>& slots,

@@ -15,10 +15,14 @@ constexpr double kNanosecondsToSolve = 400;
 /// A crowd: groups that could be swept as well as solved exactly, whose exact solve is at least so much work,
 /// in DirectJoints::work: two ragdolls.
 constexpr std::size_t kWorkOfCrowd = 200;
-/// Joints of such a group at least, so that a crowd of pendulums is none; and the largest ratio of masses in
-/// it.
-constexpr std::size_t kFewestJoints = 4;
+/// Joints of such a group at least, more where it hangs on what stands, so that a crowd of pendulums is none;
+/// and the largest ratio of masses in it, and where it hangs of what may fall on it to its lightest body.
+constexpr std::size_t kFewestJoints = 2;
+constexpr std::size_t kFewestJointsOfHung = 4;
 constexpr double kLargestMassRatio = 16;
+/// Groups that hang on what stands, below which these are of no crowd:
+/// docs/decisions/0097-crowds-that-hang.md.
+constexpr std::size_t kFewestHung = 4;
 /// Joints of a group that is small, at most: each blow on it is answered by all of them (decision 0059).
 constexpr std::size_t kMostJointsOfSmall = 16;
 /// Share of a crowd that has open hinges where it is torn: docs/decisions/0092-gaps-in-heaps.md.
@@ -72,20 +76,25 @@ void SoftJoints<Real>::find_groups(const WorldState<Real>& world) {
         return of_left != of_right ? of_left < of_right : left.slot < right.slot;
     });
     std::vector<std::size_t> to_sweep, slots;
-    std::vector<std::vector<std::size_t>> of_crowd;  // slots of each of its groups
+    /// A group that may be of a crowd.
+    struct Candidate {
+        std::size_t group;  // of direct_
+        bool hangs;
+        std::vector<std::size_t> slots;
+    };
+    std::vector<Candidate> crowd;
+    double heaviest = 0;  // kg, of all bodies
+    for (std::size_t row = 0; row < rows; ++row)
+        if (moves(row)) heaviest = std::fmax(heaviest, static_cast<double>(world.bodies.mass[row]));
     std::vector<DirectJoints<Real>> beside;
-    std::vector<std::size_t> crowd;  // of direct_
-    std::size_t work = 0;
     for (std::size_t i = 0; i < members.size();) {
         slots.clear();
         const std::int32_t island = members[i].island;
         for (; i < members.size() && members[i].island == island; ++i) slots.push_back(members[i].slot);
         DirectJoints<Real> group(world, slots);
         if (is_rattle || group.is_small_enough()) {
-            if (!is_rattle && is_fit_for_crowd(world, slots)) {
-                crowd.push_back(direct_.size()), work += group.work();
-                of_crowd.push_back(slots);
-            }
+            if (!is_rattle && is_fit_for_crowd(world, slots, heaviest))
+                crowd.push_back({direct_.size(), hangs(world, slots), slots});
             direct_.push_back(std::move(group));
             continue;
         }
@@ -110,13 +119,18 @@ void SoftJoints<Real>::find_groups(const WorldState<Real>& world) {
                 beside.emplace_back(world, std::vector<std::size_t>{slot});
         }
     }
-    crowd_groups_ = work >= kWorkOfCrowd ? crowd.size() : 0;
-    if (crowd_groups_ > 0) {
-        for (std::size_t i = crowd.size(); i-- > 0;)
-            direct_.erase(direct_.begin() + static_cast<std::ptrdiff_t>(crowd[i]));
-    } else {
-        of_crowd.clear();
-    }
+    const auto hanging =
+        std::count_if(crowd.begin(), crowd.end(), [](const Candidate& c) { return c.hangs; });
+    if (static_cast<std::size_t>(hanging) < kFewestHung)
+        std::erase_if(crowd, [](const Candidate& c) { return c.hangs; });
+    std::size_t work = 0;
+    for (const Candidate& candidate : crowd) work += direct_[candidate.group].work();
+    if (work < kWorkOfCrowd) crowd.clear();
+    crowd_groups_ = crowd.size();
+    std::vector<std::vector<std::size_t>> of_crowd;  // slots of each of its groups
+    for (std::size_t i = crowd.size(); i-- > 0;)
+        direct_.erase(direct_.begin() + static_cast<std::ptrdiff_t>(crowd[i].group));
+    for (Candidate& candidate : crowd) of_crowd.push_back(std::move(candidate.slots));
     for (const std::size_t slot : swept_.sort(world, to_sweep, of_crowd))
         beside.emplace_back(world, std::vector<std::size_t>{slot});
     first_beside_ = direct_.size();
@@ -130,24 +144,36 @@ void SoftJoints<Real>::find_groups(const WorldState<Real>& world) {
     springs_.find(world);
 }
 
-/// Whether sweeps hold a group of joints in a heap as well as an exact solve: bodies of like masses, and
-/// kinds that the kernels know.
+/// Whether a group of joints hangs on the world, or on a body that nothing moves.
 template <class Real>
-bool SoftJoints<Real>::is_fit_for_crowd(const WorldState<Real>& world,
-                                        const std::vector<std::size_t>& slots) {
-    if (slots.size() < kFewestJoints) return false;
+bool SoftJoints<Real>::hangs(const WorldState<Real>& world, const std::vector<std::size_t>& slots) {
+    return std::any_of(slots.begin(), slots.end(),
+                       [&](std::size_t slot) { return is_hung(world, world.joints[slot]); });
+}
+
+/// Whether sweeps hold a group of joints in a heap as well as an exact solve: bodies of like masses, and
+/// kinds that the kernels know. Nothing of it moves by itself.
+/// @param heaviest  kg, of all bodies that move
+template <class Real>
+bool SoftJoints<Real>::is_fit_for_crowd(const WorldState<Real>& world, const std::vector<std::size_t>& slots,
+                                        double heaviest) {
+    const bool is_hanging = hangs(world, slots);
+    if (slots.size() < (is_hanging ? kFewestJointsOfHung : kFewestJoints)) return false;
     double least = std::numeric_limits<double>::infinity(), most = 0;
     for (const std::size_t slot : slots) {
         const StoredJoint& joint = world.joints[slot];
-        if (!SweptJoints<Real>::knows(joint) || joint.is_on_world()) return false;
+        if (!SweptJoints<Real>::knows(joint)) return false;
         for (const BodyId id : {joint.a, joint.b}) {
+            if (id == BodyId{}) continue;  // the world
             const std::size_t row = world.handles.row_of_slot(id.index);
-            if (row >= world.bodies.count || world.bodies.is_immovable(row)) return false;
+            if (row >= world.bodies.count || (world.bodies.flags_of(row) & kKinematic) != 0) return false;
+            if (world.bodies.is_immovable(row)) continue;
             const auto mass = static_cast<double>(world.bodies.mass[row]);
             least = std::fmin(least, mass), most = std::fmax(most, mass);
         }
     }
-    return most <= kLargestMassRatio * least;
+    // What hangs cannot give way to what falls on it.
+    return (is_hanging ? heaviest : most) <= kLargestMassRatio * least;
 }
 
 /// Lists the contacts of groups, and marks those of which a body can touch something in this step.

@@ -17,7 +17,8 @@ namespace carom {
 /// The joints of a world under solver `soft`. Bodies that joints connect are a group. A group that is a tree,
 /// or nearly one, is solved exactly (direct_joints.hpp); one with many loops, a net, is swept
 /// (swept_joints.hpp), but for its joints that the kernels do not know, which are solved exactly beside the
-/// sweeps. A crowd of small groups of bodies of like masses, a heap of ragdolls, is swept, too.
+/// sweeps. A crowd of small groups of bodies of like masses, a heap of ragdolls or a wood of ropes, is swept,
+/// too.
 template <class Real>
 class SoftJoints {
   public:
@@ -106,7 +107,9 @@ class SoftJoints {
     }
 
   private:
-    static bool is_fit_for_crowd(const WorldState<Real>& world, const std::vector<std::size_t>& slots);
+    static bool hangs(const WorldState<Real>& world, const std::vector<std::size_t>& slots);
+    static bool is_fit_for_crowd(const WorldState<Real>& world, const std::vector<std::size_t>& slots,
+                                 double heaviest);
     static JointBreak break_of(const JointStep<Real>& step, std::size_t slot, double dt);
     void find_touching(const JointStep<Real>& step, const StepView<Real>& contacts,
                        const PathSolver<Real>& paths, double dt);
