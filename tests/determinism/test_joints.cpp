@@ -4,6 +4,7 @@
 #include "support/joints.hpp"
 #include "support/ragdoll.hpp"
 
+#include <optional>
 #include <string>
 
 #include <doctest/doctest.h>
@@ -29,6 +30,30 @@ Scene crowd_of_ragdolls() {
     return scene;
 }
 
+/// Ropes of two lengths that hang on the world, and one on a static body, through which boxes fall.
+Scene crowd_of_ropes() {
+    Scene scene;
+    scene.name = "crowd of ropes", scene.gravity = {0, -10};
+    for (int rope = 0; rope < 21; ++rope) {
+        std::optional<BodyId> last;
+        if (rope == 20)
+            last = scene.add({.type = BodyType::static_body, .shape = Box{0.2, 0.2}, .position = {16, 0.4}});
+        for (int i = 0; i < 10 + rope % 2; ++i) {
+            const BodyId link =
+                scene.add({.shape = Box{0.1, 0.6}, .position = {0.8 * rope, -0.6 * i}, .group = -1});
+            scene.add(Joint{
+                .a = last, .b = link, .kind = RevoluteJoint{.anchor = Vec2{0.8 * rope, 0.3 - 0.6 * i}}});
+            last = link;
+        }
+    }
+    for (int i = 0; i < 20; ++i)
+        scene.add({.shape = Box{0.5, 0.4},
+                   .position = {0.4 + 0.8 * i, 0.6},
+                   .angle = 0.3 * i,
+                   .velocity = {2.0 - 0.2 * i, -2}});
+    return scene;
+}
+
 std::vector<Scene> scenes_with_joints() {
     Scene every = every_joint(), chain = weighted_chain(10, 100, {1, 0}), net = hanging_net(12);
     Scene grid = net, hinges = net;
@@ -36,7 +61,7 @@ std::vector<Scene> scenes_with_joints() {
     grid.name = "net of rods beside centres", hinges.name = "net of hinges";
     for (Joint& joint : grid.joints) std::get<DistanceJoint>(joint.kind).anchor_b = {0.05, 0.02};
     for (Joint& joint : hinges.joints) joint.kind = RevoluteJoint{};
-    return {every, chain, net, grid, hinges, crowd_of_ragdolls()};
+    return {every, chain, net, grid, hinges, crowd_of_ragdolls(), crowd_of_ropes()};
 }
 
 constexpr Golden kGolden[] = {
@@ -46,6 +71,7 @@ constexpr Golden kGolden[] = {
     {"net of rods beside centres", 0xaf184cf7d115621, 0x20acc8a1a91d08aa},
     {"net of hinges", 0xb085cbbfb070441c, 0x5748400fa6290ac},
     {"crowd of ragdolls", 0xafb5dee16ee234e2, 0xc76d83b7edccff68},
+    {"crowd of ropes", 0x91697a94cf7c3483, 0xfcd0e3f76ba417a0},
 };
 
 }  // namespace

@@ -24,12 +24,19 @@ struct BundleStart {
 
     /// Places, and how bodies are turned; no moments. Lanes without a mechanism have those of the first.
     template <class Real>
-    void load(const BeginBundles<Real>& k, const JointBundle& bundle, std::size_t lane) {
+    void load(const BeginBundles<Real>& k, std::size_t number, std::size_t lane) {
+        const JointBundle& bundle = k.bundles[number];
         const std::int32_t* rows = k.rows + kJointBlock * bundle.first_body;
         for (std::size_t body = 0; body < bundle.bodies; ++body, rows += kJointBlock) {
             const std::size_t first = body * Lanes::size;
             for (std::size_t l = 0; l < Lanes::size; ++l) {
-                const auto row = static_cast<std::size_t>(rows[lane + l < bundle.mechanisms ? lane + l : 0]);
+                const std::size_t mechanism = lane + l < bundle.mechanisms ? lane + l : 0;
+                if (bundle.hangs && body == 0) {
+                    const std::size_t place = kJointBlock * number + mechanism;
+                    x[l] = k.hung_x[place], y[l] = k.hung_y[place], angle[l] = 0;
+                    continue;
+                }
+                const auto row = static_cast<std::size_t>(rows[mechanism]);
                 x[first + l] = static_cast<double>(k.position_x[row]);
                 y[first + l] = static_cast<double>(k.position_y[row]);
                 angle[first + l] = k.angle ? static_cast<double>(k.angle[row]) : 0;
@@ -97,7 +104,7 @@ void begin_bundles(const BeginBundles<Real>& arguments, std::size_t first, std::
         const JointBundle& bundle = k.bundles[number];
         double longest = 0;
         for (std::size_t lane = 0; lane < bundle.mechanisms; lane += Lanes::size) {
-            start.load(k, bundle, lane);
+            start.load(k, number, lane);
             alignas(64) double longest_of[Lanes::size];
             Lanes::store(longest_of, begin_hinges_of_bundle<Lanes>(k, bundle, lane, start));
             for (const double one : longest_of) longest = one > longest ? one : longest;

@@ -88,8 +88,10 @@ typename OfBundle::Mask measure_gaps(const CloseBundles<Real>& k, const JointBun
         const Pair2<F> d = between<OfBundle, true>(hinges, c, moved_a, moved_b, a, b);
         const auto length_of = [](Pair2<F> v) { return simd::sqrt(v.x * v.x + v.y * v.y); };
         const F limb = length_of(a.arm) + length_of(b.arm), gap = length_of(d);
-        // Lanes without a mechanism have no arms, nor have hinges of two centres a limb.
-        is_open = is_open | ((gap > F(k.open) * limb) & (limb > zero));
+        // Lanes without a mechanism have nothing that moves, and in their columns what was there before;
+        // hinges of two centres have no limb.
+        const F moves = simd::abs(OfBundle::load_rows4(hinges.velocity, &of.child)[3]);
+        is_open = is_open | ((gap > F(k.open) * limb) & (limb > zero) & (moves > zero));
         // What is left open is along the gap; one that is less open stays as it is.
         const F share = simd::select(gap > F(k.left) * limb, one - F(k.left) * limb / gap, zero);
         const F sign(of.parent_is_a ? Real(1) : Real(-1));
@@ -170,7 +172,7 @@ void gather_limbs(const CloseBundles<Real>& k, const JointBundle& bundle, Bundle
     }
 }
 
-/// From the root, which nothing holds, to the leaves: how bodies move.
+/// From the root, which nothing holds unless it is the world, to the leaves: how bodies move.
 template <class OfBundle, class Real>
 void move_limbs(const CloseBundles<Real>& k, const JointBundle& bundle, BundleTree<OfBundle>& tree) {
     using F = typename OfBundle::Batch;
@@ -189,7 +191,10 @@ void move_limbs(const CloseBundles<Real>& k, const JointBundle& bundle, BundleTr
     const Pair2<F> by_turn = solve(all.x, all.y), by_force = solve(all.impulse_x, all.impulse_y);
     const F turn = ((all.x * by_force.x + all.y * by_force.y) - all.turns) /
                    (all.turn - (all.x * by_turn.x + all.y * by_turn.y));
-    store(root, zero - (by_force.x + turn * by_turn.x), zero - (by_force.y + turn * by_turn.y), turn);
+    if (bundle.hangs)
+        store(root, zero, zero, zero);
+    else
+        store(root, zero - (by_force.x + turn * by_turn.x), zero - (by_force.y + turn * by_turn.y), turn);
     for (std::size_t i = 0; i < bundle.branches; ++i) {
         const JointBranch& of = k.branches[bundle.first_branch + i];
         const auto branch = tree.template load<BranchGap<F>>(tree.branch(i));

@@ -83,6 +83,7 @@ struct JointBundle {
     std::size_t hinges, first_hinge;             // of a mechanism; place
     std::size_t angles, first_angle;             // likewise
     std::size_t branches = 0, first_branch = 0;  // of the tree that its hinges are, if they are one; in all
+    bool hangs = false;                          // body 0 of each mechanism is the world, where it hangs
 };
 
 /// A hinge of a tree of bodies: from the body nearer to the root to the one beyond it.
@@ -128,6 +129,7 @@ struct BeginBundles {
     const JointBundle* bundles;
     const std::int32_t* rows;                     // [bodies of all bundles][kJointBlock]
     const Real *position_x, *position_y, *angle;  // m, rad, of bodies by row; angle is null without rotation
+    const double *hung_x, *hung_y;                // m, [bundles][kJointBlock], where mechanisms hang
     const double* inertia;                        // kg m², [bodies of all bundles][kJointBlock]
     const double *anchor_a_x, *anchor_a_y;        // m, in the frame of the body, by the place of the hinge
     const double *anchor_b_x, *anchor_b_y;        //

@@ -35,7 +35,7 @@ std::size_t sort_by_colour(std::vector<MechanismPart>& parts, std::size_t bodies
 
 std::vector<std::int32_t> Mechanism::shape() const {
     std::vector<std::int32_t> shape{static_cast<std::int32_t>(rows.size()),
-                                    static_cast<std::int32_t>(hinges.size())};
+                                    static_cast<std::int32_t>(hinges.size()), hangs() ? 1 : 0};
     for (const std::vector<MechanismPart>* parts : {&hinges, &angles})
         for (const MechanismPart& part : *parts) shape.push_back(part.a), shape.push_back(part.b);
     return shape;
@@ -81,8 +81,14 @@ template <class Real>
 Mechanism mechanism_of(const WorldState<Real>& world, const std::vector<std::size_t>& slots,
                        bool (*has_angle_part)(const StoredJoint&)) {
     Mechanism mechanism;
+    const auto on_world = std::count_if(slots.begin(), slots.end(),
+                                        [&](std::size_t slot) { return world.joints[slot].is_on_world(); });
+    if (on_world > 1) return {};
+    if (on_world == 1) mechanism.rows.push_back(Mechanism::kWorld);
     const auto number_of = [&](BodyId id) {
-        const auto row = static_cast<std::int32_t>(world.handles.row_of_slot(id.index));
+        const std::int32_t row = id == BodyId{}
+                                     ? Mechanism::kWorld
+                                     : static_cast<std::int32_t>(world.handles.row_of_slot(id.index));
         const auto at = std::find(mechanism.rows.begin(), mechanism.rows.end(), row);
         const auto number = static_cast<std::int32_t>(at - mechanism.rows.begin());
         if (at == mechanism.rows.end()) mechanism.rows.push_back(row);
@@ -90,7 +96,7 @@ Mechanism mechanism_of(const WorldState<Real>& world, const std::vector<std::siz
     };
     for (const std::size_t slot : slots) {
         const StoredJoint& joint = world.joints[slot];
-        if (joint.type == JointType::distance || is_hung(world, joint)) return {};
+        if (joint.type == JointType::distance || (is_hung(world, joint) && !joint.is_on_world())) return {};
         const std::int32_t a = number_of(joint.a), b = number_of(joint.b);
         if (mechanism.rows.size() > kMostBodiesOfBundle) return {};
         mechanism.hinges.push_back({slot, a, b});
@@ -111,7 +117,8 @@ void JointBundles::arrange(std::int32_t first_still, std::size_t first_hinge, st
     std::vector<std::int32_t> lowest(mechanisms.size());
     for (std::size_t i = 0; i < mechanisms.size(); ++i) {
         shapes[i] = mechanisms[i].shape();
-        lowest[i] = *std::min_element(mechanisms[i].rows.begin(), mechanisms[i].rows.end());
+        lowest[i] = *std::min_element(mechanisms[i].rows.begin() + (mechanisms[i].hangs() ? 1 : 0),
+                                      mechanisms[i].rows.end());
     }
     std::vector<std::size_t> order(mechanisms.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -138,11 +145,14 @@ void JointBundles::arrange(std::int32_t first_still, std::size_t first_hinge, st
                            .angles = one.angles.size(),
                            .first_angle = first_angle,
                            .branches = tree.size(),
-                           .first_branch = branches.size()});
+                           .first_branch = branches.size(),
+                           .hangs = one.hangs()});
         branches.insert(branches.end(), tree.begin(), tree.end());
         for (std::size_t body = 0; body < bodies; ++body)
-            for (std::size_t lane = 0; lane < kJointBlock; ++lane)
-                rows.push_back(first + lane < last ? mechanisms[first + lane].rows[body] : first_still);
+            for (std::size_t lane = 0; lane < kJointBlock; ++lane) {
+                const bool is_one = first + lane < last && !(one.hangs() && body == 0);
+                rows.push_back(is_one ? mechanisms[first + lane].rows[body] : first_still);
+            }
         ++first_still;
         first_hinge += kJointBlock * one.hinges.size(), first_angle += kJointBlock * one.angles.size();
         first = last;

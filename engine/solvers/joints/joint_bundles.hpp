@@ -18,12 +18,14 @@ struct MechanismPart {
 /// Bodies that hinges and welds join to each other alone, ready to be swept: each part in the order of the
 /// colours, of which no two parts share a body.
 struct Mechanism {
-    std::vector<std::int32_t> rows;             // of its bodies
+    std::vector<std::int32_t> rows;             // of its bodies; kWorld: it hangs there, as its body 0
     std::vector<MechanismPart> hinges, angles;  // by colour
     std::size_t colours = 0;
 
     /// What a lane of a bundle has to have in common with the others: how the bodies are joined.
     std::vector<std::int32_t> shape() const;
+    static constexpr std::int32_t kWorld = -1;
+    bool hangs() const { return !rows.empty() && rows.front() == kWorld; }
     /// Its hinges as a tree, from its first body outwards; none where they close a loop.
     std::vector<JointBranch> tree() const;
 };
@@ -33,7 +35,7 @@ template <class Real>
 bool is_hung(const WorldState<Real>& world, const StoredJoint& joint);
 
 /// A group of joints as a mechanism; one without bodies if it has too many of them, or other joints, or hangs
-/// on what stands.
+/// on a static body or in two places.
 /// @param has_angle_part  of each slot, whether something acts on the joint's angle
 template <class Real>
 Mechanism mechanism_of(const WorldState<Real>& world, const std::vector<std::size_t>& slots,

@@ -229,8 +229,11 @@ void SweptJoints<Real>::add_bundles() {
                     const Mechanism& of = first[is_joint ? lane : 0];
                     const MechanismPart& part = (of.*parts)[j];
                     const std::size_t at = begin + kJointBlock * j + lane;
-                    own.a[at] = is_joint ? of.rows[static_cast<std::size_t>(part.a)] : still;
-                    own.b[at] = is_joint ? of.rows[static_cast<std::size_t>(part.b)] : still;
+                    const auto row_of = [&](std::int32_t body) {
+                        const std::int32_t row = of.rows[static_cast<std::size_t>(body)];
+                        return is_joint && row != Mechanism::kWorld ? row : still;
+                    };
+                    own.a[at] = row_of(part.a), own.b[at] = row_of(part.b);
                     own.of_bundle_a[at] = part.a, own.of_bundle_b[at] = part.b;
                     own.slot[at] = is_joint ? static_cast<std::int32_t>(part.slot) : -1;
                 }

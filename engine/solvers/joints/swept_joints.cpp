@@ -350,7 +350,8 @@ template <class Real>
 std::size_t SweptJoints<Real>::bytes() const {
     std::size_t bytes = no_turn_.bytes() + stiffness_.bytes() + breakable_.capacity() * sizeof(Breakable) +
                         moments_.capacity() * sizeof(Moments) + bundles_.bytes() +
-                        inertia_of_bundles_.bytes() + longest_of_bundle_.bytes();
+                        inertia_of_bundles_.bytes() + longest_of_bundle_.bytes() + hung_x_.bytes() +
+                        hung_y_.bytes();
     for (const Kind& kind : kinds_) {
         bytes += kind.a.bytes() + kind.b.bytes() + kind.slot.bytes() + kind.order.bytes() +
                  kind.of_bundle_a.bytes() + kind.of_bundle_b.bytes() +

@@ -181,7 +181,8 @@ class SweptJoints {
     std::array<Kind, kKinds> kinds_;
     TaskGroups groups_;
     JointBundles bundles_;
-    Column<double> inertia_of_bundles_, longest_of_bundle_;  // kernels/joints/joint_arguments.hpp
+    Column<double> inertia_of_bundles_, longest_of_bundle_, hung_x_,
+        hung_y_;  // kernels/joints/joint_arguments.hpp
     std::size_t joints_ = 0, parts_of_joints_ = 0, colours_ = 0;
     std::int32_t first_beyond_ = 0;      // row
     bool has_joints_of_groups_ = false;  // whether some joint is in no bundle

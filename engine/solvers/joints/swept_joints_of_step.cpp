@@ -98,6 +98,7 @@ void SweptJoints<Real>::begin_bundles(const JointStep<Real>& step, const StepLoo
     k.bundles = bundles_.bundles.data(), k.rows = bundles_.rows.data();
     k.position_x = bodies.position_x.data(), k.position_y = bodies.position_y.data();
     k.angle = bodies.has_rotation ? bodies.angle.data() : nullptr;
+    k.hung_x = hung_x_.data(), k.hung_y = hung_y_.data();
     k.inertia = inertia_of_bundles_.data();
     k.anchor_a_x = hinges.anchor_a_x.data(), k.anchor_a_y = hinges.anchor_a_y.data();
     k.anchor_b_x = hinges.anchor_b_x.data(), k.anchor_b_y = hinges.anchor_b_y.data();
@@ -258,15 +259,30 @@ void SweptJoints<Real>::load_bundles(const WorldState<Real>& world) {
             if (own.slot[i] < 0) continue;
             const typename Kind::Source& source = own.sources[i];
             const auto per_rim = [&](std::int32_t row) {
-                return static_cast<Real>(1 / rim_of(world.bodies, static_cast<std::size_t>(row)));
+                return row < 0 ? Real(0)
+                               : static_cast<Real>(1 / rim_of(world.bodies, static_cast<std::size_t>(row)));
             };
             own.per_rim_a[i] = per_rim(source.row_a), own.per_rim_b[i] = per_rim(source.row_b);
             if (kind == kAngles) {
                 own.angle_at_zero[i] = source.angle;
                 continue;
             }
-            own.anchor_a_x[i] = source.anchor_a.x, own.anchor_a_y[i] = source.anchor_a.y;
+            // Where a mechanism hangs is the place of its body 0, which has no arms.
+            const Vec2 anchor_a = source.row_a < 0 ? Vec2{} : source.anchor_a;
+            own.anchor_a_x[i] = anchor_a.x, own.anchor_a_y[i] = anchor_a.y;
             own.anchor_b_x[i] = source.anchor_b.x, own.anchor_b_y[i] = source.anchor_b.y;
+        }
+    }
+    hung_x_.resize(kJointBlock * bundles_.bundles.size()), hung_y_.resize(hung_x_.size());
+    const Kind& hinges = kinds_[kHinges];
+    for (std::size_t number = 0; number < bundles_.bundles.size(); ++number) {
+        const JointBundle& bundle = bundles_.bundles[number];
+        for (std::size_t i = 0; i < kJointBlock * bundle.hinges; ++i) {
+            const std::size_t place = bundle.first_hinge + i,
+                              of_hung = kJointBlock * number + i % kJointBlock;
+            if (hinges.slot[place] < 0 || hinges.sources[place].row_a >= 0) continue;
+            hung_x_[of_hung] = hinges.sources[place].anchor_a.x;
+            hung_y_[of_hung] = hinges.sources[place].anchor_a.y;
         }
     }
     inertia_of_bundles_.resize(bundles_.rows.size());
