@@ -22,7 +22,10 @@ constexpr float kTiny = 1e-30f;  // m², so that a contact in the centre of mass
 /// Contacts of a path that is not slender, as towers are: its loads spread to others anyhow, and a long
 /// bundle is solved again as a whole for one contact that changes. docs/decisions/0038-broad-paths.md.
 constexpr std::uint32_t kLongestBroad = 64;
-constexpr std::uint32_t kMostColours = 64;  // bits of a word
+constexpr std::uint32_t kMostColours = 64;  // of a round: bits of a word
+/// Rounds of as many colours. What is left then goes one by one, so that the work of a cut stays in
+/// proportion to the contacts, whatever a body has of them. docs/decisions/0086-steps-that-stall.md.
+constexpr std::uint32_t kMostRounds = 16;
 constexpr std::uint32_t kNoLink = std::numeric_limits<std::uint32_t>::max();
 
 // For the executor: rows of a task, and ns a contact on one thread.
@@ -70,14 +73,18 @@ void PathCut::cut(std::span<const ContactLink> contacts, std::size_t rows, std::
 
 /// For assertions: whether no path names a body twice and no two paths of a colour name the same one.
 bool PathCut::colours_share_no_body(std::span<const ContactLink> contacts, std::size_t rows) const {
-    thread_local std::vector<std::uint64_t> seen;  // by row: colours
+    thread_local std::vector<std::uint32_t> seen;  // by row: the last colour, and one
+    thread_local std::vector<const Piece*> pieces;
+    pieces.clear();
+    for (const Piece& piece : coloured_) pieces.push_back(&piece);
+    std::stable_sort(pieces.begin(), pieces.end(),
+                     [](const Piece* p, const Piece* q) { return p->colour < q->colour; });
     seen.assign(rows, 0);
-    for (const Piece& piece : coloured_) {
-        if (piece.colour >= kMostColours) continue;  // a path alone in its colour
-        const auto is_new = [&, bit = std::uint64_t{1} << piece.colour](std::int32_t row) {
-            if (row < 0) return true;
-            std::uint64_t& colours = seen[static_cast<std::size_t>(row)];
-            return (std::exchange(colours, colours | bit) & bit) == 0;
+    for (const Piece* of : pieces) {
+        const Piece& piece = *of;
+        const auto is_new = [&](std::int32_t row) {
+            return row < 0 ||
+                   std::exchange(seen[static_cast<std::size_t>(row)], piece.colour + 1) != piece.colour + 1;
         };
         const Step& first = sequence_[piece.first];
         if (!is_new(first.row_before(contacts))) return false;
@@ -226,9 +233,42 @@ void PathCut::split_broad(std::span<const ContactLink> contacts) {
     }
 }
 
-/// Gives paths colours, long ones first. A path that fits into none as a whole is cut where it must be.
+/// Gives paths colours, long ones first. A path that fits into none as a whole is cut where it must be. What
+/// finds no colour is coloured by itself, with as many others: each round has at least one path of its own.
 void PathCut::colour(std::span<const ContactLink> contacts, std::size_t rows) {
-    used_.assign(rows, 0), coloured_.clear();
+    coloured_.clear();
+    std::uint32_t first_colour = 0;
+    for (; first_colour < kMostRounds * kMostColours && !pieces_.empty(); first_colour += kMostColours) {
+        if (first_colour == 0)
+            used_.assign(rows, 0);
+        else
+            for_each_row_of_pieces(contacts, [&](std::size_t row) { used_[row] = 0; });
+        colour_round(contacts, first_colour);
+        pieces_.swap(left_);
+    }
+    for (const Piece& piece : pieces_)
+        for (std::uint32_t s = piece.first; s < piece.first + piece.length; ++s)
+            coloured_.push_back({s, 1, first_colour++, is_in_turns(contacts, s, s + 1)});
+}
+
+template <class Fn>
+void PathCut::for_each_row_of_pieces(std::span<const ContactLink> contacts, const Fn& fn) const {
+    for (const Piece& piece : pieces_)
+        for (std::uint32_t s = piece.first; s < piece.first + piece.length; ++s)
+            for (const std::int32_t row :
+                 {sequence_[s].row_before(contacts), sequence_[s].row_after(contacts)})
+                if (row >= 0) fn(static_cast<std::size_t>(row));
+}
+
+bool PathCut::is_in_turns(std::span<const ContactLink> contacts, std::uint32_t first,
+                          std::uint32_t last) const {
+    return std::any_of(&sequence_[first], &sequence_[first] + (last - first), [&](const Step& step) {
+        return contacts[static_cast<std::size_t>(step.contact)].is_in_turns;
+    });
+}
+
+/// Colours first_colour ... first_colour + kMostColours - 1. What finds none is in left_.
+void PathCut::colour_round(std::span<const ContactLink> contacts, std::uint32_t first_colour) {
     std::uint32_t longest = 0;
     for (const Piece& piece : pieces_) longest = std::max(longest, piece.length);
     count_.assign(longest + 2, 0);
@@ -237,11 +277,12 @@ void PathCut::colour(std::span<const ContactLink> contacts, std::size_t rows) {
     order_.resize(pieces_.size());
     for (std::uint32_t i = 0; i < pieces_.size(); ++i) order_[count_[longest - pieces_[i].length]++] = i;
 
-    std::uint32_t next_alone = kMostColours;  // colours of what finds none
+    left_.clear();
     const auto mask_of = [&](std::int32_t row) { return row < 0 ? 0 : used_[static_cast<std::size_t>(row)]; };
     for (const std::uint32_t number : order_) {
         std::uint32_t first = pieces_[number].first;
         const std::uint32_t last = first + pieces_[number].length;
+        bool goes_on = false;  // what is left of the path
         while (first < last) {
             // free: colours that the path can have as far as `reached`
             std::uint64_t free = ~mask_of(sequence_[first].row_before(contacts));
@@ -255,25 +296,24 @@ void PathCut::colour(std::span<const ContactLink> contacts, std::size_t rows) {
                 if ((still_free & limit) == 0) break;
                 free = still_free, ++reached;
             }
-            std::uint32_t colour = next_alone;
-            if (reached > first)
-                colour = static_cast<std::uint32_t>(std::countr_zero(free & limit));
-            else
-                ++next_alone, reached = first + 1;
-            const auto is_in_turns = [&](const Step& step) {
-                return contacts[static_cast<std::size_t>(step.contact)].is_in_turns;
-            };
-            coloured_.push_back(
-                {first, reached - first, colour,
-                 std::any_of(&sequence_[first], &sequence_[first] + (reached - first), is_in_turns)});
-            if (colour < kMostColours) {
-                const std::uint64_t bit = std::uint64_t{1} << colour;
-                const auto mark = [&](std::int32_t row) {
-                    if (row >= 0) used_[static_cast<std::size_t>(row)] |= bit;
-                };
-                mark(sequence_[first].row_before(contacts));
-                for (std::uint32_t s = first; s < reached; ++s) mark(sequence_[s].row_after(contacts));
+            if (reached == first) {
+                if (goes_on)
+                    ++left_.back().length;
+                else
+                    left_.push_back({first, 1, 0});
+                goes_on = true, ++first;
+                continue;
             }
+            goes_on = false;
+            const auto colour = static_cast<std::uint32_t>(std::countr_zero(free & limit));
+            coloured_.push_back(
+                {first, reached - first, first_colour + colour, is_in_turns(contacts, first, reached)});
+            const std::uint64_t bit = std::uint64_t{1} << colour;
+            const auto mark = [&](std::int32_t row) {
+                if (row >= 0) used_[static_cast<std::size_t>(row)] |= bit;
+            };
+            mark(sequence_[first].row_before(contacts));
+            for (std::uint32_t s = first; s < reached; ++s) mark(sequence_[s].row_after(contacts));
             first = reached;
         }
     }
@@ -445,7 +485,7 @@ bool PathCut::is_slender(std::span<const ContactLink> contacts, const Piece& pie
 std::size_t PathCut::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
     return of(first_at_) + of(contact_at_) + of(joined_) + of(is_seen_) + of(piece_of_row_) + of(sequence_) +
-           of(pieces_) + of(coloured_) + of(used_) + of(loaded_count_) + of(order_) + of(count_) +
+           of(pieces_) + of(coloured_) + of(left_) + of(used_) + of(loaded_count_) + of(order_) + of(count_) +
            of(places_) + of(first_link_) + of(first_bundle_) + of(end_of_turns_) + of(first_contacts_) +
            of(jumps_) + of(is_slender_) + of(watched_) + of(others_) + of(contact_of_slot_) +
            of(bundle_of_link_) + of(next_of_length_) + of(end_of_length_);

@@ -28,7 +28,8 @@ struct ContactLink {
 /// colour share no body that moves; kPathLanes paths of a colour, about as long as each other, are a bundle.
 /// Shorter paths stand behind those that end before their bundle does, after a link without a contact, so
 /// that few places are empty. Paths of contacts that are solved more often are the first bundles of a colour.
-/// What finds no colour is alone in a bundle of a colour of its own.
+/// What finds no colour among 64 shares others, round by round; beyond 1,024 it is alone in a bundle of a
+/// colour of its own.
 ///
 /// Contacts that are expected to carry nothing stand beside the paths, behind them: kPathLanes are a bundle
 /// of one link, in no colour. Where contacts come and go, a cut is kept for some steps: those that come stand
@@ -141,6 +142,11 @@ class PathCut {
     void walk(std::span<const ContactLink> contacts, std::size_t rows, std::size_t longest);
     void walk_from(std::span<const ContactLink> contacts, std::size_t contact, std::size_t longest);
     void colour(std::span<const ContactLink> contacts, std::size_t rows);
+    void colour_round(std::span<const ContactLink> contacts, std::uint32_t first_colour);
+    template <class Fn>
+    void for_each_row_of_pieces(std::span<const ContactLink> contacts, const Fn& fn) const;
+    /// Whether one of some contacts of sequence_ is.
+    bool is_in_turns(std::span<const ContactLink> contacts, std::uint32_t first, std::uint32_t last) const;
     void lay_out(std::span<const ContactLink> contacts);
     void lay_out_pieces(std::span<const ContactLink> contacts, std::size_t first, std::size_t last);
     template <class IsWatched, class IsInTurns>
@@ -156,9 +162,9 @@ class PathCut {
     std::vector<std::uint8_t> is_seen_;        // by contact
     std::vector<std::uint32_t> piece_of_row_;  // the last piece that came through a row
     std::vector<Step> sequence_;
-    std::vector<Piece> pieces_, coloured_;
-    std::vector<std::uint64_t> used_;          // by row: colours
-    std::vector<std::uint32_t> loaded_count_;  // by row: loaded contacts
+    std::vector<Piece> pieces_, coloured_, left_;  // left_: what found no colour in a round
+    std::vector<std::uint64_t> used_;              // by row: colours of a round
+    std::vector<std::uint32_t> loaded_count_;      // by row: loaded contacts
     std::vector<std::uint32_t> order_, count_;
     std::vector<Place> places_;
     std::vector<std::size_t> first_link_{0}, first_bundle_{0}, end_of_turns_;
