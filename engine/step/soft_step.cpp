@@ -165,7 +165,7 @@ class SoftStep final : public SoftSimulation<Real> {
         {"book_joints", [](Sim& sim) { sim.soft.end_joints_of_substep(sim.world, sim.world.books); },
          has_joints, KernelChoice::none, "joints, velocity records", "joints, books"},
         {"book_substep", [](Sim& sim) { sim.soft.book_substep(sim.world, sim.world.books); }, has_books,
-         KernelChoice::none, "contacts, velocity records", "books"},
+         KernelChoice::none, "joints, contacts, velocity records", "books"},
         {"carry_out_impacts",
          [](Sim& sim) { sim.soft.carry_out_impacts(sim.motion, sim.world.books, sim.interruption); }, bounces,
          KernelChoice::scalar_f64, "impacts, motion, velocity records, displacements",

@@ -20,7 +20,8 @@ namespace carom {
 template <class Real>
 class SubstepBooks {
   public:
-    double gravity_work = 0;  ///< J, of this step, on velocities
+    double gravity_work = 0;    ///< J, of this step, on velocities
+    double work_of_joints = 0;  ///< J, of this substep, as booked
 
     /// Books what the impulses of this substep and free flight did; only the walls' impulses if the ledger is
     /// closed.

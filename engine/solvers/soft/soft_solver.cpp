@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -188,6 +189,22 @@ void SoftSolver<Real>::bound_energy(WorldState<Real>& world) {
         before = gained;
         solve_turn(world, -1, false, false);
     }
+}
+
+/// Joints and contacts act at once, and a mean velocity says nothing of who came first: where a joint draws
+/// back bodies that part, and a contact stops them, the contact seems to give what the joint takes too much.
+/// Contacts give nothing, so what they seem to give joints took less, as far as they took any: what springs,
+/// motors and targets did is theirs.
+/// @param before  J, what they had given before this substep
+template <class Real>
+void SoftSolver<Real>::share_with_joints(WorldState<Real>& world, Books& books, double before) {
+    const double given = books.restitution + books.friction - before;
+    if (!(given > 0 && books_.work_of_joints < 0)) return;
+    double of_rigid = books_.work_of_joints;  // J
+    joints.for_each_drive(joint_step(world),
+                          [&](std::int32_t, std::int32_t, double work) { of_rigid -= work; });
+    const double share = std::fmin(given, std::fmax(0, -of_rigid));
+    books.restitution -= share, books.joints += share;
 }
 
 template <class Real>

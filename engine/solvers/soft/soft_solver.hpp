@@ -126,9 +126,11 @@ class SoftSolver {
     /// Sweeps on where something was hit and would come deep into its neighbours.
     void solve_deep_contacts() { corrections_.deep.solve(view(), sweeps_); }
     /// What the impulses of this substep did; only the walls' impulses if the ledger is closed.
-    void book_substep(const WorldState<Real>& world, Books& books) {
+    void book_substep(WorldState<Real>& world, Books& books) {
+        const double before = books.restitution + books.friction;
         books_.book_substep(view(), world, books);
         books_.book_paths(paths, records_, books, *loops_.executor);
+        if (!world.joints.empty()) share_with_joints(world, books, before);
     }
     /// Carries out the impacts of a substep.
     void carry_out_impacts(const Column<Real>& motion, Books& books, Interruption& interruption);
@@ -164,7 +166,9 @@ class SoftSolver {
     /// Scales what joints and contacts gave where that made energy, and solves them once more, in turns.
     void bound_energy(WorldState<Real>& world);
     void end_joints_of_substep(WorldState<Real>& world, Books& books) {
+        const double before = books.joints;
         joints.end_substep(joint_step(world), books);
+        books_.work_of_joints = books.joints - before;
     }
     /// @return whether a joint broke
     bool end_joints(WorldState<Real>& world, Books& books, double dt) {
@@ -226,6 +230,7 @@ class SoftSolver {
     /// Not where masses differ much, for sweeps would undo what corrections of uneven ones do, nor where
     /// there are contacts or joints that these sweeps do not know: docs/decisions/0093-crowds-that-bounce.md.
     bool settles_crowds(const WorldState<Real>& world) const;
+    void share_with_joints(WorldState<Real>& world, Books& books, double before);
     bool solve_turn(WorldState<Real>& world, double settled, bool is_near, bool sweeps);
     /// Whether turns of joints and contacts sweep over contacts of shapes in place of solving them: where
     /// contacts are so many that paths are short, in a crowd of mechanisms that are swept, too, and where
