@@ -33,6 +33,10 @@ constexpr double kSlack = 10;
 /// wedges carry some times what they hold up.
 constexpr double kMostLoad = 1000;
 
+/// What the work of impulses may miss of what driven bodies have gained, in shares of their energy.
+/// docs/decisions/0096-energy-in-random-worlds.md.
+constexpr double kMostMissed = 0.1;
+
 /// Adds k (x, y)ᵀ (x, y) to the first rows of a matrix.
 template <std::size_t kNumbers>
 void add_square(std::array<double, kNumbers>& a, double x, double y, double k) {
@@ -352,6 +356,56 @@ void ContactRelaxation<kSize>::take_back() {
         for (double& impulse : impulses) impulse *= share;
 }
 
+/// A descent that is cut short, as in a squeeze, leaves impulses that fit no velocities, and by these what
+/// surfaces that move have driven is wrong. Where the work of impulses misses what bodies that touch each
+/// other and such surfaces have gained by more than all that these have, and the slack, they are scaled to
+/// where they fit best. Loads of what rests do no work; those of piles that nothing drives are kept.
+template <int kSize>
+void ContactRelaxation<kSize>::fit_impulses() {
+    const auto fit_of = [&](std::size_t body) -> Fit& {
+        return fits_[index(touching_.island_of(static_cast<std::int32_t>(body)))];
+    };
+    bool any = false;
+    given_.assign(mass_.size(), {}), fits_.assign(mass_.size(), {});
+    for (std::size_t i = 0; i < laws_.size(); ++i) {
+        const Law& law = laws_[i];
+        give(law, false, impulses_[i], given_[index(law.a)]);
+        if (law.b >= 0) give(law, true, impulses_[i], given_[index(law.b)]);
+        const bool moves =
+            std::any_of(law.surface.begin(), law.surface.end(), [](double v) { return v != 0; });
+        if (moves) fit_of(index(law.a)).is_driven = true, any = true;
+    }
+    if (!any) return;
+    for (std::size_t body = 0; body < mass_.size(); ++body) {
+        Fit& fit = fit_of(body);
+        fit.energy += kSlack * mass_[body][0] * fall_ * fall_;
+        for (std::size_t k = 0; k < kSize; ++k) {
+            const double given = given_[body][k], mass = mass_[body][k], from = free_[body][k],
+                         to = velocity_[body][k];
+            fit.along += (to - from) * given, fit.square += given * given / mass;
+            fit.missed += 0.5 * (mass * (to - from) - given) * (from + to);
+            fit.energy += 0.5 * mass * std::fmax(from * from, to * to);
+        }
+    }
+    for (std::size_t i = 0; i < laws_.size(); ++i) {
+        const Fit& fit = fit_of(index(laws_[i].a));
+        if (!fit.is_driven || !(std::fabs(fit.missed) > kMostMissed * fit.energy)) continue;
+        const double share = std::clamp(fit.along / fit.square, 0.0, 1.0);
+        for (double& impulse : impulses_[i]) impulse *= share;
+    }
+}
+
+/// Adds what impulses of a contact give to one of its bodies [N s].
+template <int kSize>
+void ContactRelaxation<kSize>::give(const Law& law, bool is_b, const Rows& impulses, Velocity& given) {
+    const double sign = is_b ? 1 : -1, nx = sign * law.nx, ny = sign * law.ny;
+    given[0] += nx * impulses[0], given[1] += ny * impulses[0];
+    if constexpr (kIsRough) {
+        given[0] -= ny * impulses[1], given[1] += nx * impulses[1];
+        given[2] -= impulses[1] - (is_b ? 1 - law.of_a : -law.of_a) * impulses[2];
+    }
+}
+
 template <int kSize>
 void ContactRelaxation<kSize>::solve(std::span<LocalContact> contacts, double fall) {
     describe(contacts, fall);
@@ -374,6 +428,7 @@ void ContactRelaxation<kSize>::solve(std::span<LocalContact> contacts, double fa
         if (!slides && !gives_way) break;
         for (std::size_t i = 0; i < laws_.size(); ++i) laws_[i].carried = impulses_[i];
     }
+    fit_impulses();
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         contacts[i].impulses.normal = impulses_[i][0];
         if constexpr (kIsRough)
@@ -385,9 +440,10 @@ template <int kSize>
 std::size_t ContactRelaxation<kSize>::bytes() const {
     return laws_.capacity() * sizeof(Law) + is_due_.capacity() +
            (first_.capacity() + of_bodies_.capacity()) * sizeof(std::uint32_t) + touching_.bytes() +
-           most_.capacity() * sizeof(double) + by_others_.capacity() * sizeof(Rows) +
+           most_.capacity() * sizeof(double) + fits_.capacity() * sizeof(Fit) +
+           by_others_.capacity() * sizeof(Rows) +
            (mass_.capacity() + start_.capacity() + free_.capacity() + velocity_.capacity() +
-            swept_.capacity()) *
+            swept_.capacity() + given_.capacity()) *
                sizeof(Velocity) +
            impulses_.capacity() * sizeof(Rows);
 }

@@ -67,6 +67,13 @@ class ContactRelaxation {
         Rows carried;  // N s, λ₀
         Rows share;    // of tangential and rolling impulses that the law leaves
     };
+    /// How impulses fit the velocities of bodies that touch each other [J].
+    struct Fit {
+        bool is_driven = false;        // by a surface that moves
+        double energy = 0;             // of the bodies, and the slack
+        double missed = 0;             // what they have gained less the work of the impulses
+        double along = 0, square = 0;  // of what impulses give: times the change of velocities, alone
+    };
 
     void bound_loads();
     void describe(std::span<const LocalContact> contacts, double fall);
@@ -82,6 +89,8 @@ class ContactRelaxation {
     bool stiffen();
     void start_without_loads();
     void take_back();
+    static void give(const Law& law, bool is_b, const Rows& impulses, Velocity& given);
+    void fit_impulses();
 
     double fall_ = 0;                               // m/s
     Islands touching_;                              // bodies that touch each other, supports left out
@@ -93,6 +102,8 @@ class ContactRelaxation {
     std::vector<Velocity> mass_;                    // kg
     std::vector<Velocity> start_, free_, velocity_, swept_;  // m/s
     std::vector<Rows> impulses_;                             // N s, of the contacts
+    std::vector<Velocity> given_;                            // N s, by these
+    std::vector<Fit> fits_;                                  // of bodies that touch each other
 };
 
 extern template class ContactRelaxation<2>;
