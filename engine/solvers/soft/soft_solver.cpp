@@ -191,7 +191,7 @@ void SoftSolver<Real>::bound_energy(WorldState<Real>& world) {
     }
 }
 
-/// Joints and contacts act at once, and a mean velocity says nothing of who came first: where a joint draws
+/// Joints and contacts act at once, and a mean velocity says nothing of which came first: where a joint draws
 /// back bodies that part, and a contact stops them, the contact seems to give what the joint takes too much.
 /// Contacts give nothing, so what they seem to give joints took less, as far as they took any: what springs,
 /// motors and targets did is theirs.
