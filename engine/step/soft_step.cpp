@@ -213,23 +213,28 @@ class SoftStep final : public SoftSimulation<Real> {
                                  kFirstOfEnd = kFirstOfSubstep + std::size(kSubstep);
     static_assert(kFirstOfEnd + std::size(kEnd) <= StageTimes::kMostStages);
 
-    int substeps_against_gravity(double dt) const {
-        if (this->soft.joints.is_rattle) return 1;
+    /// Substeps a second that gravity calls for; 0: as few as anything.
+    double rate_against_gravity() const {
+        if (this->soft.joints.is_rattle) return 0;
         const Radii* known = this->candidates.known_radii();
         const double usual = known ? known->usual : measure_radii(this->world.bodies).usual;
         if (!(usual > 0)) return 0;
         const double gravity = std::sqrt(length_squared(this->world.gravity));
-        const double substeps = std::ceil(dt * std::sqrt(0.5 * gravity / (kLargestFall * usual)));
-        return static_cast<int>(std::fmin(substeps, kMostSubsteps));
+        return std::sqrt(0.5 * gravity / (kLargestFall * usual));
+    }
+    static int substeps_of(double dt, double rate) {
+        return static_cast<int>(std::fmin(std::ceil(dt * rate), kMostSubsteps));
     }
 
     template <class Watch>
     void step(double dt, Watch& watch) {
         if (this->has_anything_to_move()) {
             this->flight_dt = dt;
-            this->substep_count = std::max(
-                {this->substeps_for_drag(dt), substeps_against_gravity(dt), this->substeps_for_joints()});
+            const double rate = rate_against_gravity();
+            this->substep_count =
+                std::max({this->substeps_for_drag(dt), substeps_of(dt, rate), this->substeps_for_joints()});
             this->substep_dt = dt / this->substep_count;
+            this->soft.longest_substep = rate > 0 ? 1 / rate : 0;
             Sim& sim = *this;
             if (!sim.can_touch()) sim.drop_contacts();
             watch.start();

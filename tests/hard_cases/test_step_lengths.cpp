@@ -18,6 +18,11 @@ TEST_SUITE("hard cases/step lengths") {
         check_cases<Real>(torture::random_steps_of_a_pile(extent()));
     }
 
+    TEST_CASE_TEMPLATE("B35: of 24 piles at rest few move under long and changing steps", Real, float,
+                       double) {
+        check_cases<Real>(torture::changing_steps_of_many_piles(extent()));
+    }
+
     TEST_CASE("B35: a pile falls asleep under random steps of 1 to 50 ms") {
         check_cases<float>(torture::random_steps_of_a_pile_that_sleeps(extent()));
     }

@@ -111,6 +111,7 @@ struct FindContacts {
     Real strike = 0;        // way along the normal in the step: m, or of `smaller`
     std::uint8_t* is_struck = nullptr;  // out, [last / kContactBlock]: whether two of the block meet in this
                                         // step and come by more than `strike`; null: not asked for
+    Real pace = 1;  // share of a gap that counts where the contact carried something in the step before
 };
 
 /// Velocities at the start of a substep. Nobody asks for those of single bodies, so they are columns.

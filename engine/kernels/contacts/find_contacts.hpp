@@ -80,7 +80,11 @@ std::size_t find_contacts(const FindContacts<Real>& k, std::size_t first, std::s
                                                  ny);
             Lanes::store(k.normal_x + p, nx);
             Lanes::store(k.normal_y + p, ny);
-            const F separation = dx * nx + dy * ny - reach;
+            F separation = dx * nx + dy * ny - reach;
+            if (k.pace < Real(1)) {
+                const auto presses = Lanes::load(k.normal_impulse + p) > F(0);
+                separation = simd::select(presses, simd::min(separation, separation * F(k.pace)), separation);
+            }
             Lanes::store(k.separation + p, separation);
             is_deep |= simd::any(is_contact & (separation < deep));
             if (k.approach) Lanes::store(k.approach + p, dvx * nx + dvy * ny);

@@ -61,7 +61,7 @@ template <class Real>
 void SoftSolver<Real>::find_contacts(WorldState<Real>& world, const EdgeCandidates<Real>& edges,
                                      Column<Real>& motion, bool flies_together) {
     motion.resize(4 * padded(records_.count() + ContactGraph<Real>::padding_rows(graph.groups)));
-    settings_.set_lengths(terms_);
+    settings_.set_lengths(terms_, longest_substep);
     settings_.masses_are_uneven = masses_.are_uneven();
     settings_.sweeps_hits =
         !world.effects.restitution && !settings_.masses_are_uneven && !world.bodies.has_flags;
@@ -121,10 +121,9 @@ void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
     const SolveContacts<Real> on_pairs = Sweeps::arguments(view(), graph.pairs),
                               on_supports = Sweeps::with_rows(on_pairs, supports_);
     const bool starts_anew = number == 0 && warm_start_.starts_anew();
-    // A scene that asks for more sweeps wants contacts solved better: then none is left out.
-    const bool only_restless = !starts_anew && !is_last && !warm_start_.is_rebalanced() &&
-                               settings_.iterations == kDefaultIterations;
-    const int next = settings_.iterations - 1;
+    const bool only_restless =
+        !starts_anew && !is_last && !warm_start_.is_rebalanced() && settings_.may_leave_out_calm();
+    const int next = settings_.next_sweeps;
     const auto others = Sweeps::next(view(), only_restless ? Blocks::restless : Blocks::all,
                                      starts_anew ? std::max(kFirstSweeps, next) : next);
     const std::array<typename Sweeps::Sweep, 3> sweeps{

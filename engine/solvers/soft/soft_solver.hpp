@@ -27,9 +27,6 @@
 namespace carom {
 
 // Sweeps a substep unless asked for.
-inline constexpr int kDefaultIterations = 2;       // docs/decisions/0004-soft-solver.md
-inline constexpr int kIterationsOfSmoothHeap = 5;  // docs/decisions/0023-frictionless-heaps.md
-
 /// What the soft solver counts (the docstrings of Profile say what each means).
 struct SoftCounters {
     std::int64_t contacts = 0;  ///< in the last step
@@ -63,6 +60,7 @@ class SoftSolver {
     /// over-relaxed and loads are not corrected on the coarse grid; with more than 2 no contact is left out.
     /// Not set: as many as suit the world.
     std::optional<int> asked_iterations;
+    double longest_substep = 0;  ///< s, that gravity allows in this step; 0: any
     int iterations(const WorldState<Real>& world) const {
         return asked_iterations.value_or(is_smooth_heap(world) ? kIterationsOfSmoothHeap
                                                                : kDefaultIterations);

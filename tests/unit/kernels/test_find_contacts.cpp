@@ -222,6 +222,34 @@ TEST_SUITE("kernels/find contacts") {
             }
     }
 
+    TEST_CASE_TEMPLATE("of the gap of a pair that presses as much counts as the pace says, and all of others",
+                       Real, float, double) {
+        constexpr std::size_t kCount = 1000;
+        for (const KernelTables* tables : runnable_kernel_tables()) {
+            CAPTURE(tables->of<Real>().isa);
+            Pairs<Real> whole(kCount), paced(kCount);
+            for (Pairs<Real>* pairs : {&whole, &paced}) {
+                draw_all(*pairs, 7, 0);
+                for (std::size_t i = 0; i < kCount; i += 3) pairs->normal_impulse[pairs->kFirst + i] = 0;
+            }
+            tables->of<Real>().find_contacts(whole.arguments(), whole.kFirst, whole.last);
+            FindContacts<Real> k = paced.arguments();
+            k.pace = Real(0.125);
+            tables->of<Real>().find_contacts(k, paced.kFirst, paced.last);
+            std::size_t wrong = 0, closed = 0;
+            for (std::size_t i = 0; i < kCount; ++i) {
+                const std::size_t at = whole.kFirst + i;
+                const bool is_paced = whole.normal_impulse[at] > 0 && whole.separation[at] > 0;
+                closed += is_paced;
+                wrong += paced.separation[at] != (is_paced ? Real(0.125) : Real(1)) * whole.separation[at];
+                wrong += paced.normal_impulse[at] != whole.normal_impulse[at];
+            }
+            CHECK(wrong == 0);
+            CHECK(closed > 100);
+            CHECK(closed < 900);
+        }
+    }
+
     TEST_CASE_TEMPLATE("a block is deep if a pair in any of its places is", Real, float, double) {
         for (const KernelTables* tables : runnable_kernel_tables())
             for (std::size_t place = 0; place < kContactBlock; ++place) {

@@ -48,6 +48,7 @@ HardCases all_hard_cases(Extent extent) {
                              odd_steps_of_a_pile,
                              random_steps_of_a_pile,
                              random_steps_of_eight_piles,
+                             changing_steps_of_many_piles,
                              random_steps_of_a_pile_that_sleeps,
                              shapes_under_a_plate,
                              shapes_in_a_room_that_is_left,

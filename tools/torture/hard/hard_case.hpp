@@ -82,6 +82,7 @@ HardCases bodies_in_a_fast_drum(Extent extent);
 HardCases odd_steps_of_a_pile(Extent extent);
 HardCases random_steps_of_a_pile(Extent extent);
 HardCases random_steps_of_eight_piles(Extent extent);  // no test: it misses its mark
+HardCases changing_steps_of_many_piles(Extent extent);
 HardCases random_steps_of_a_pile_that_sleeps(Extent extent);
 HardCases stacks_under_tiny_steps(Extent extent);
 HardCases stacks_under_one_long_step(Extent extent);

@@ -2,6 +2,7 @@
 #include "torture/hard/steps.hpp"
 
 #include <cmath>
+#include <string>
 
 #include "measure/text.hpp"
 #include "torture/hard/discs.hpp"
@@ -146,34 +147,47 @@ HardCases odd_steps_of_a_pile(Extent) {
 
 namespace {
 
+/// Lengths of steps: drawn at random, or in turns.
 struct Lengths {
     double shortest, longest;  // s
+    bool is_random = true;
+
+    std::string text() const {
+        const double from = 1e3 * shortest, to = 1e3 * longest;
+        if (!(from < to)) return format("steps of %.2g ms", to);
+        return is_random ? format("random steps of %.2g to %.2g ms", from, to)
+                         : format("steps of %.2g and %.2g ms in turns", from, to);
+    }
 };
 
-Measures speed_under_random_steps(HardRun& run, const Lengths& lengths) {
+Measures speed_under(HardRun& run, const Lengths& lengths) {
     run.steps(kSettling);
     Random random(5, 35);
     Largest most;
-    for (int i = 0; i < 600 && run.step(random.uniform(lengths.shortest, lengths.longest)); ++i)
+    for (int i = 0; i < 600; ++i) {
+        const double in_turns = i % 2 == 0 ? lengths.shortest : lengths.longest;
+        if (!run.step(lengths.is_random ? random.uniform(lengths.shortest, lengths.longest) : in_turns))
+            break;
         most.take(run.rms_speed());
+    }
     return {{"rms", most.value(), kCalm}};
 }
+
+constexpr Lengths kLengths[] = {{1.0 / 240, 1.0 / 30}, {1e-3, 0.05}, {1e-3, 0.05, false}};
 
 /// @param more  seeds beside the first
 HardCases random_steps(const char* what, std::uint64_t first, const std::vector<std::uint64_t>& more) {
     HardCases all;
-    for (const Lengths& lengths : {Lengths{1.0 / 240, 1.0 / 30}, Lengths{1e-3, 0.05}})
+    for (const Lengths& lengths : kLengths)
         all.push_back({.code = "B35",
-                       .name = format("%s at rest, random steps of %.2g to %.2g ms", what,
-                                      1e3 * lengths.shortest, 1e3 * lengths.longest),
+                       .name = format("%s at rest, %s", what, lengths.text().c_str()),
                        .make = [=] { return rough_pile(first); },
                        .run =
                            [=](HardRun& run) {
                                std::vector<Scene> others;
                                for (const std::uint64_t seed : more) others.push_back(rough_pile(seed));
-                               return worst_of_all(run, others, [&](HardRun& each) {
-                                   return speed_under_random_steps(each, lengths);
-                               });
+                               return worst_of_all(run, others,
+                                                   [&](HardRun& each) { return speed_under(each, lengths); });
                            }});
     return all;
 }
@@ -188,6 +202,29 @@ HardCases random_steps_of_eight_piles(Extent) {
     std::vector<std::uint64_t> more;
     for (std::uint64_t seed = 2; seed <= kPiles; ++seed) more.push_back(seed);
     return random_steps("eight piles of 400", 1, more);
+}
+
+/// Of piles that are let go some are always about to slip, at steps of any length: at 1/60 s that is one in
+/// twenty.
+HardCases changing_steps_of_many_piles(Extent extent) {
+    constexpr Lengths kLong[] = {kLengths[0], kLengths[1], kLengths[2], {0.05, 0.05, false}};
+    const int piles = extent.is_short ? 6 : 24;
+    HardCases all;
+    for (const Lengths& lengths : kLong)
+        all.push_back({.code = "B35",
+                       .name = format("%d piles of 400 at rest, %s", piles, lengths.text().c_str()),
+                       .make = [] { return rough_pile(1); },
+                       .run = [=](HardRun& run) -> Measures {
+                           double moved = 0;
+                           const auto look = [&](HardRun& each) {
+                               moved += speed_under(each, lengths).front().passes() ? 0 : 1;
+                           };
+                           look(run);
+                           for (int seed = 2; seed <= piles; ++seed)
+                               look(*run.another(rough_pile(static_cast<std::uint64_t>(seed))));
+                           return {{"piles that move", moved, piles / 6.0}};
+                       }});
+    return all;
 }
 
 HardCases random_steps_of_a_pile_that_sleeps(Extent) {

@@ -14,6 +14,9 @@ namespace carom {
 /// pushes one of them in the middle of a step is felt by the other.
 inline constexpr double kNearFraction = 0.04;
 
+inline constexpr int kDefaultIterations = 2;       // docs/decisions/0004-soft-solver.md
+inline constexpr int kIterationsOfSmoothHeap = 5;  // docs/decisions/0023-frictionless-heaps.md
+
 /// What comes by this share of the smaller radius in a step, and meets another body where nothing bounces,
 /// hits it: that one is looked at as if it flew as fast itself. docs/decisions/0089-discs-that-are-hit.md.
 inline constexpr double kStrike = 0.5;
@@ -28,8 +31,8 @@ struct ContactSettings {
     bool has_rotation = false;
     bool is_smooth_heap = false;     ///< gravity, and no friction: nothing but more sweeps brings it to rest
     bool heaves_if_slender = false;  ///< few bodies heave, too, where they are a slender pile
-    int iterations = 2;              ///< sweeps a substep, >= 1
-    bool has_uneven_sweeps = false;  ///< contacts of uneven masses get more of them
+    int iterations = kDefaultIterations;  ///< sweeps a substep, >= 1
+    bool has_uneven_sweeps = false;       ///< contacts of uneven masses get more of them
     /// Some body is so much lighter than another that this one may throw it from anywhere to a wall in a
     /// step.
     bool masses_are_uneven = false;
@@ -41,6 +44,12 @@ struct ContactSettings {
     double radius = 1;                 ///< m, of all bodies; 1 where radii vary
     double fall = 0;                   ///< m, by which gravity brings two bodies nearer in a step
     double largest_correction = 0;     ///< m, or a share of the smaller radius: by an overlap, in a substep
+    /// Sweeps behind the first one of a substep. In long substeps loads turn a pile's contacts farther than
+    /// one sweep holds them: docs/decisions/0095-piles-under-any-step.md.
+    int next_sweeps = 1;
+    /// Shares of a gap and of an overlap that are taken away in a substep, over those in substeps of the
+    /// usual length: in short ones as much in the same time, in as many substeps more. Decision 0095, too.
+    double pace = 1;
 
     /// Separation up to which bodies at rest are in contact [m].
     double contact_distance(double smaller_radius) const { return kNearFraction * smaller_radius + fall; }
@@ -52,8 +61,13 @@ struct ContactSettings {
         return effects.radius_varies ? static_cast<double>(pairs.smaller[pair]) : radius;
     }
 
-    /// The lengths that depend on the time.
-    void set_lengths(const SubstepTerms& terms);
+    /// The lengths that depend on the time, and what follows from that of a substep.
+    /// @param longest_substep  s, that gravity allows; 0: any
+    void set_lengths(const SubstepTerms& terms, double longest_substep);
+
+    /// Whether next sweeps may leave out what is calm: a scene that asks for more wants contacts solved
+    /// better, and long substeps need them all.
+    bool may_leave_out_calm() const { return iterations == kDefaultIterations && next_sweeps == 1; }
 
     /// The kernels that have these effects compiled in.
     /// @param some_are_fixed  whether some bodies do not turn

@@ -81,7 +81,7 @@ SolveContacts<Real> ContactSweeps<Real>::arguments(const StepView<Real>& step, C
     k.uniform_friction = real(step.settings.friction), k.uniform_rolling = real(step.settings.rolling);
     k.inverse_h = real(1 / step.terms.substep_dt), k.h = real(step.terms.substep_dt);
     k.elapsed = real(step.terms.elapsed);
-    k.recovery = real(kRecovery), k.push = real(step.settings.largest_correction);
+    k.recovery = real(kRecovery * step.settings.pace), k.push = real(step.settings.largest_correction);
     const double fall = step.terms.fall_speed();
     const bool is_smooth = step.settings.is_smooth_heap, are_uneven = step.settings.has_uneven_sweeps;
     const bool may_be_calm = fall > 0 && (are_uneven || !is_smooth);

@@ -78,7 +78,7 @@ FindContacts<Real> arguments(ContactRows<Real>& pairs, const ContactSettings& se
     k.near = static_cast<Real>(settings.contact_distance(radius_varies ? 0 : settings.radius));
     k.near_of_smaller = static_cast<Real>(kNearFraction);
     k.deep = static_cast<Real>(-settings.deep_overlap(settings.radius));
-    k.is_live = pairs.is_live.data();
+    k.is_live = pairs.is_live.data(), k.pace = static_cast<Real>(settings.pace);
     if (settings.sweeps_hits)
         k.is_struck = pairs.is_struck.data(), k.strike = static_cast<Real>(kStrike * settings.radius);
     return k;

@@ -49,7 +49,8 @@ void add_support(const SupportSurface& surface, Vec2 v, std::size_t candidate, s
     const Vec2 n = surface.normal;
     supports.a[at] = candidates.a[candidate];
     supports.normal_x[at] = real(n.x), supports.normal_y[at] = real(n.y);
-    supports.separation[at] = real(surface.separation);
+    const bool is_paced = surface.separation > 0 && candidates.normal_impulse[candidate] > 0;
+    supports.separation[at] = real(is_paced ? step.settings.pace * surface.separation : surface.separation);
     supports.mass[at] = real(1 / bodies.inverse_mass(row));
     if (effects.radius_varies) supports.smaller[at] = bodies.radius[row];
     supports.normal_impulse[at] = candidates.normal_impulse[candidate];

@@ -53,8 +53,8 @@ void LoadCorrection<Real>::correct(const StepView<Real>& step, const StepFlight<
         paths.run_loads(&PathPasses::scale_loads, on_paths, step.terms, step.records, step.loops);
         paths.sweep(step.terms, step.records, step.loops);
     }
-    sweeps.run(step, ContactSweeps<Real>::next(step, ContactSweeps<Real>::Blocks::all,
-                                               step.settings.iterations - 1));
+    sweeps.run(step,
+               ContactSweeps<Real>::next(step, ContactSweeps<Real>::Blocks::all, step.settings.next_sweeps));
 }
 
 template <class Real>
