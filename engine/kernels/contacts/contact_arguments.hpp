@@ -114,7 +114,7 @@ struct FindContacts {
     Real pace = 1;  // share of a gap that counts where the contact carried something in the step before
 };
 
-/// Velocities at the start of a substep. Nobody asks for those of single bodies, so they are columns.
+/// Velocities at the start of a substep. Those of single bodies are not asked for, so they are columns.
 template <class Real>
 struct StartColumns {
     Real *x, *y;  // m/s

@@ -26,7 +26,6 @@
 
 namespace carom {
 
-// Sweeps a substep unless asked for.
 /// What the soft solver counts (the docstrings of Profile say what each means).
 struct SoftCounters {
     std::int64_t contacts = 0;  ///< in the last step

@@ -14,6 +14,7 @@ namespace carom {
 /// pushes one of them in the middle of a step is felt by the other.
 inline constexpr double kNearFraction = 0.04;
 
+// Sweeps a substep unless asked for.
 inline constexpr int kDefaultIterations = 2;       // docs/decisions/0004-soft-solver.md
 inline constexpr int kIterationsOfSmoothHeap = 5;  // docs/decisions/0023-frictionless-heaps.md
 

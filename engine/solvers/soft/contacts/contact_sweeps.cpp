@@ -103,36 +103,34 @@ auto ContactSweeps<Real>::next(const StepView<Real>& step, Blocks blocks, int ti
              {kernels.next_pairs, kernels.next_supports, blocks, times - relaxed}}};
 }
 
+/// The phases of `sweeps` sweeps, listed anew if there have never been so many, or other parts.
 template <class Real>
-std::span<const PhaseKind> ContactSweeps<Real>::list_phases(std::size_t sweeps,
-                                                            const ContactGraph<Real>& graph) {
-    const TaskGroups& groups = graph.groups;
-    const bool has_far = graph.pairs.run_count[groups.far()] > 0,
-               has_crowded = graph.supports.first_colour[groups.chunks] <
-                             graph.supports.first_colour[groups.chunks + 1];
-    if (parts_ == 0 || has_far != has_far_ || has_crowded != has_crowded_) {
-        has_far_ = has_far, has_crowded_ = has_crowded;
-        phases_.clear(), parts_ = 0;
-        part_[parts_++] = Part::chunks;
-        if (has_far) part_[parts_++] = Part::far;
-        part_[parts_++] = Part::borders;
-        if (has_crowded) part_[parts_++] = Part::crowded_supports;
-    }
-    for (std::size_t i = phases_.size(); i < parts_ * sweeps; ++i) {
+void ContactSweeps<Real>::list_phases(std::size_t sweeps, bool has_far, bool has_crowded) {
+    has_far_ = has_far, has_crowded_ = has_crowded;
+    phases_.clear(), parts_ = 0;
+    part_[parts_++] = Part::chunks;
+    if (has_far) part_[parts_++] = Part::far;
+    part_[parts_++] = Part::borders;
+    if (has_crowded) part_[parts_++] = Part::crowded_supports;
+    for (std::size_t i = 0; i < parts_ * sweeps; ++i) {
         const Part part = part_[i % parts_];
         const bool is_alone = part == Part::far || part == Part::crowded_supports;
         phases_.push_back(is_alone ? PhaseKind::alone : PhaseKind::side_by_side);
     }
-    return std::span(phases_).first(parts_ * sweeps);
 }
 
 template <class Real>
 void ContactSweeps<Real>::run(const StepView<Real>& step, std::span<const Sweep> sweeps,
                               const SolveContacts<Real>& on_pairs, const SolveContacts<Real>& on_supports) {
-    int times = 0;
-    for (const Sweep& sweep : sweeps) times += sweep.times;
-    const std::span<const PhaseKind> phases = list_phases(static_cast<std::size_t>(times), step.graph);
+    std::size_t times = 0;
+    for (const Sweep& sweep : sweeps) times += static_cast<std::size_t>(sweep.times);
     const TaskGroups& groups = step.graph.groups;
+    const std::size_t* first_colour = step.graph.supports.first_colour.data();
+    const bool has_far = step.graph.pairs.run_count[groups.far()] > 0,
+               has_crowded = first_colour[groups.chunks] < first_colour[groups.chunks + 1];
+    if (phases_.size() < parts_ * times || parts_ == 0 || has_far != has_far_ || has_crowded != has_crowded_)
+        list_phases(times, has_far, has_crowded);
+    const std::span<const PhaseKind> phases(phases_.data(), parts_ * times);
     const auto do_part = [&](std::size_t phase, std::size_t task) {
         const auto place = static_cast<std::uint32_t>(phase);  // a division of 32 bits is the cheaper one
         int repetition = static_cast<int>(place / parts_);

@@ -89,14 +89,14 @@ class ContactSweeps {
   private:
     /// What a sweep is cut into for threads, in this order.
     enum class Part : std::uint8_t { chunks, far, borders, crowded_supports };
-    /// The phases of so many sweeps one after the other. Each sweep has the same ones, so that the list is
-    /// kept while contacts of chunks that are no neighbours, and crowded bodies, neither come nor go.
-    std::span<const PhaseKind> list_phases(std::size_t sweeps, const ContactGraph<Real>& graph);
+    void list_phases(std::size_t sweeps, bool has_far, bool has_crowded);
 
     std::int64_t contacts_ = 0;  // of this step
     std::array<Part, 4> part_{};
     std::uint32_t parts_ = 0;  // of a sweep; zero: not listed yet
     bool has_far_ = false, has_crowded_ = false;
+    /// Of as many sweeps as there have been at once. Each has the same phases, so that they are listed anew
+    /// only when contacts of chunks that are no neighbours, or crowded bodies, have come or gone.
     std::vector<PhaseKind> phases_;
 };
 
