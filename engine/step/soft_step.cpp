@@ -105,7 +105,7 @@ class SoftStep final : public SoftSimulation<Real> {
         {"find_contacts",
          [](Sim& sim) {
              sim.soft.find_contacts(sim.world, sim.edge_candidates, sim.motion,
-                                    sim.candidates.flies_together());
+                                    sim.candidates.flies_together(), sim.longest_substep);
          },
          can_meet, KernelChoice::contacts, "motion, position, velocity, coloured candidates, impulses",
          "contacts, impulses, motion, velocity records, books"},
@@ -234,7 +234,7 @@ class SoftStep final : public SoftSimulation<Real> {
             this->substep_count =
                 std::max({this->substeps_for_drag(dt), substeps_of(dt, rate), this->substeps_for_joints()});
             this->substep_dt = dt / this->substep_count;
-            this->soft.longest_substep = rate > 0 ? 1 / rate : 0;
+            this->longest_substep = rate > 0 ? 1 / rate : 0;
             Sim& sim = *this;
             if (!sim.can_touch()) sim.drop_contacts();
             watch.start();

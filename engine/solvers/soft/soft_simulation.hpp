@@ -51,7 +51,7 @@ class SoftSimulation : public Simulation<Real> {
     void visit_state(StateWriter& archive) const override { visit_all(*this, archive); }
     void visit_state(StateReader& archive) override { visit_all(*this, archive); }
 
-    /// Substeps that joints call for where nobody asked for a number: nets of rods and hinges are swept, and
+    /// Substeps that joints call for where a scene asks for no number: nets of rods and hinges are swept, and
     /// stretch less the more there are (docs/decisions/0026-joints.md).
     int substeps_for_joints() const override {
         if (this->has_asked_for_substeps || this->world.joints.empty()) return 1;
@@ -87,7 +87,8 @@ class SoftSimulation : public Simulation<Real> {
     // These members hold for the present step alone.
     Column<Real> motion;  ///< [rows][4]: x, y [m], vx, vy [m/s] of each body at its start
     int substep = 0, substep_count = 1;
-    double substep_dt = 0;  ///< s
+    double substep_dt = 0;       ///< s
+    double longest_substep = 0;  ///< s, that gravity allows; 0: any
 
   private:
     void note_change(bool may_follow);

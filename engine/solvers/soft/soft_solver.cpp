@@ -59,7 +59,7 @@ void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Colum
 
 template <class Real>
 void SoftSolver<Real>::find_contacts(WorldState<Real>& world, const EdgeCandidates<Real>& edges,
-                                     Column<Real>& motion, bool flies_together) {
+                                     Column<Real>& motion, bool flies_together, double longest_substep) {
     motion.resize(4 * padded(records_.count() + ContactGraph<Real>::padding_rows(graph.groups)));
     settings_.set_lengths(terms_, longest_substep);
     settings_.masses_are_uneven = masses_.are_uneven();

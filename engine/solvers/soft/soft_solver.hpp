@@ -59,7 +59,6 @@ class SoftSolver {
     /// over-relaxed and loads are not corrected on the coarse grid; with more than 2 no contact is left out.
     /// Not set: as many as suit the world.
     std::optional<int> asked_iterations;
-    double longest_substep = 0;  ///< s, that gravity allows in this step; 0: any
     int iterations(const WorldState<Real>& world) const {
         return asked_iterations.value_or(is_smooth_heap(world) ? kIterationsOfSmoothHeap
                                                                : kDefaultIterations);
@@ -71,8 +70,9 @@ class SoftSolver {
     /// Contacts that can touch in this step, by colour.
     /// @param motion  [rows][4] at the start of the step; gets rows for the padding of groups
     /// @param flies_together  whether a good part of the bodies are fast together
+    /// @param longest_substep  s, that gravity allows; 0: any
     void find_contacts(WorldState<Real>& world, const EdgeCandidates<Real>& edges, Column<Real>& motion,
-                       bool flies_together);
+                       bool flies_together, double longest_substep);
     /// Finds the contacts of shapes and lays them out along paths.
     void find_manifolds(const WorldState<Real>& world, const EdgeCandidates<Real>& edges);
     /// Tells what bounces from what rests (impacts.hpp).
