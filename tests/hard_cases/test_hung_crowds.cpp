@@ -55,15 +55,13 @@ void add_rain(Scene& scene, int count, double height, unsigned seed) {
     }
 }
 
-/// A crane's rope: `links` capsules that hang on the world.
+/// A rope of `links` capsules that hangs on the world, .3 m above the first of them.
 void add_rope(Scene& scene, double x, int links) {
-    std::optional<BodyId> last;
-    for (int i = 0; i < links; ++i) {
-        const BodyId link =
-            scene.add({.shape = Capsule{0.5, 0.08}, .position = {x, -0.6 * i}, .angle = 1.5707963});
-        scene.add(Joint{.a = last, .b = link, .kind = RevoluteJoint{.anchor = Vec2{x, 0.3 - 0.6 * i}}});
-        last = link;
-    }
+    add_chain(scene, {.count = links,
+                      .origin = {x, 0},
+                      .direction = {0, -1},
+                      .spacing = 0.6,
+                      .body = {.shape = Capsule{0.5, 0.08}, .angle = 1.5707963}});
 }
 
 std::string joints_of(const Scene& scene) {

@@ -88,10 +88,8 @@ typename OfBundle::Mask measure_gaps(const CloseBundles<Real>& k, const JointBun
         const Pair2<F> d = between<OfBundle, true>(hinges, c, moved_a, moved_b, a, b);
         const auto length_of = [](Pair2<F> v) { return simd::sqrt(v.x * v.x + v.y * v.y); };
         const F limb = length_of(a.arm) + length_of(b.arm), gap = length_of(d);
-        // Lanes without a mechanism have nothing that moves, and in their columns what was there before;
-        // hinges of two centres have no limb.
-        const F moves = simd::abs(OfBundle::load_rows4(hinges.velocity, &of.child)[3]);
-        is_open = is_open | ((gap > F(k.open) * limb) & (limb > zero) & (moves > zero));
+        // Lanes without a mechanism have no arms, nor have hinges of two centres a limb.
+        is_open = is_open | ((gap > F(k.open) * limb) & (limb > zero));
         // What is left open is along the gap; one that is less open stays as it is.
         const F share = simd::select(gap > F(k.left) * limb, one - F(k.left) * limb / gap, zero);
         const F sign(of.parent_is_a ? Real(1) : Real(-1));

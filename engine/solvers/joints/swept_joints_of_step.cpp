@@ -252,9 +252,14 @@ void SweptJoints<Real>::load_bundles(const WorldState<Real>& world) {
     for (const std::size_t kind : {kHinges, kAngles}) {
         Kind& own = kinds_[kind];
         const std::size_t places = bundles_.empty() ? 0 : own.slot.size();
+        // Anew from zero: lanes without a mechanism have no arms.
+        const auto begin_column = [&](Column<double>& column, std::size_t of) {
+            column.clear();
+            column.resize(kind == of ? places : 0);
+        };
         for (Column<double>* column : {&own.anchor_a_x, &own.anchor_a_y, &own.anchor_b_x, &own.anchor_b_y})
-            column->resize(kind == kHinges ? places : 0);
-        own.angle_at_zero.resize(kind == kAngles ? places : 0);
+            begin_column(*column, kHinges);
+        begin_column(own.angle_at_zero, kAngles);
         for (std::size_t i = places_before_bundles(kind); i < places; ++i) {
             if (own.slot[i] < 0) continue;
             const typename Kind::Source& source = own.sources[i];

@@ -204,8 +204,8 @@ HardCases random_steps_of_eight_piles(Extent) {
     return random_steps("eight piles of 400", 1, more);
 }
 
-/// Of piles that are let go some are always about to slip, at steps of any length: at 1/60 s that is one in
-/// twenty.
+/// The measure is how many of the piles move, a sixth of them at most: some are always about to slip, at
+/// steps of any length, one in twenty at 1/60 s (docs/decisions/0095-piles-under-any-step.md).
 HardCases changing_steps_of_many_piles(Extent extent) {
     constexpr Lengths kLong[] = {kLengths[0], kLengths[1], kLengths[2], {0.05, 0.05, false}};
     const int piles = extent.is_short ? 6 : 24;

@@ -10,8 +10,8 @@ namespace {
 /// Bodies that start a step with an overlap of this share of the smaller radius are parted at its end.
 constexpr double kDeep = 0.1;
 
-// Of the longest substep that gravity allows, in which a body falls by 0.005 of the usual radius from rest.
-// docs/decisions/0095-piles-under-any-step.md has the measurements.
+// The next three are shares of the longest substep that gravity allows, in which a body falls by 0.005 of the
+// usual radius from rest. docs/decisions/0095-piles-under-any-step.md has the measurements.
 /// Substeps as long as this get one sweep more, and another one for each time as long.
 constexpr double kLengthOfSweep = 0.2;
 /// Shorter ones close gaps of contacts that carry something, and take away overlaps, no faster than these.

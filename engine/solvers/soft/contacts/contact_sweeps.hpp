@@ -95,8 +95,9 @@ class ContactSweeps {
     std::array<Part, 4> part_{};
     std::uint32_t parts_ = 0;  // of a sweep; zero: not listed yet
     bool has_far_ = false, has_crowded_ = false;
-    /// Of as many sweeps as there have been at once. Each has the same phases, so that they are listed anew
-    /// only when contacts of chunks that are no neighbours, or crowded bodies, have come or gone.
+    /// The list holds the phases of as many sweeps as there have been at once. Each sweep has the same ones,
+    /// so that they are listed anew only when contacts of chunks that are no neighbours, or crowded bodies,
+    /// have come or gone.
     std::vector<PhaseKind> phases_;
 };
 
