@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "narrowphase/disc_edge.hpp"
 #include "state/edges/edge_tracks.hpp"
@@ -25,6 +26,10 @@ constexpr double kAllowance = 0.5;
 // than this share of the bodies would cost more than to look at all of them.
 constexpr double kBodiesPerPiece = 4;
 constexpr double kMostPieces = 1024;  // of an edge that has left its margin
+
+// Pairs are counted into rows if there are more of them than one for so many rows: a row costs as much as a
+// comparison of a pair, of which there are about ten.
+constexpr double kPairsOfRow = 0.1;
 
 /// Farthest that a point of the body is from where it was.
 double way_between(Vec2 from, double from_angle, Vec2 to, double to_angle, double reach) {
@@ -167,7 +172,26 @@ void EdgeCandidates<Real>::find(const WorldState<Real>& world, const Candidates<
             else
                 find_of_body(world, candidates, i, farther, largest_reach);
     }
-    std::sort(pairs_.begin(), pairs_.end());
+    sort_pairs(bodies.moving());
+}
+
+/// Sorts the pairs: they are counted into their rows, where most come by edge already; if they are few beside
+/// the rows, they are compared.
+template <class Real>
+void EdgeCandidates<Real>::sort_pairs(std::size_t rows) {
+    if (static_cast<double>(pairs_.size()) < kPairsOfRow * static_cast<double>(rows)) {
+        std::sort(pairs_.begin(), pairs_.end());
+        return;
+    }
+    first_of_row_.assign(rows + 1, 0);
+    for (const EdgePair& pair : pairs_) ++first_of_row_[static_cast<std::size_t>(pair.row) + 1];
+    std::partial_sum(first_of_row_.begin(), first_of_row_.end(), first_of_row_.begin());
+    unsorted_.swap(pairs_), pairs_.resize(unsorted_.size());
+    for (const EdgePair& pair : unsorted_) pairs_[first_of_row_[static_cast<std::size_t>(pair.row)]++] = pair;
+    for (auto first = pairs_.begin(), last = first; first != pairs_.end(); first = last) {
+        while (last != pairs_.end() && last->row == first->row) ++last;
+        if (!std::is_sorted(first, last)) std::sort(first, last);
+    }
 }
 
 /// All discs that can touch an edge of one body.

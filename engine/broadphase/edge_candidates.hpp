@@ -93,7 +93,8 @@ class EdgeCandidates {
 
     std::size_t bytes() const {
         return poses_.capacity() * sizeof(EdgePose) + found_at_.capacity() * sizeof(FoundAt) +
-               (pairs_.capacity() + new_pairs_.capacity()) * sizeof(EdgePair) + near_.bytes() +
+               (pairs_.capacity() + new_pairs_.capacity() + unsorted_.capacity()) * sizeof(EdgePair) +
+               first_of_row_.capacity() * sizeof(std::uint32_t) + near_.bytes() +
                near_bodies_.capacity() * sizeof(std::int32_t);
     }
 
@@ -117,6 +118,7 @@ class EdgeCandidates {
     void add_around_edges(const WorldState<Real>& world, const Candidates<Real>& candidates, std::size_t body,
                           double margin);
     void add_pair(EdgePair pair);
+    void sort_pairs(std::size_t rows);
     void find_of_body(const WorldState<Real>& world, const Candidates<Real>& candidates, std::size_t body,
                       double margin, double largest_reach);
     void find_standing(const WorldState<Real>& world, const Candidates<Real>& candidates, double margin);
@@ -132,8 +134,10 @@ class EdgeCandidates {
     bool are_placed_ = false, are_rows_known_ = false, have_standing_tracks_ = false;
     std::vector<std::int32_t> near_bodies_;
     std::vector<EdgePair> pairs_, new_pairs_;
-    std::size_t added_ = 0;  // pairs since they were found
-    double allowance_ = 0;   // m, that a disc's reach may grow beyond what was looked at
+    std::vector<EdgePair> unsorted_;           // scratch of sort_pairs
+    std::vector<std::uint32_t> first_of_row_;  // likewise
+    std::size_t added_ = 0;                    // pairs since they were found
+    double allowance_ = 0;                     // m, that a disc's reach may grow beyond what was looked at
     Column<std::int32_t> near_;
 };
 

@@ -28,6 +28,13 @@ inline double distance_squared(Vec2 p, Vec2 a, Vec2 b) {
     return length_squared(p - point_at(a, b, nearest_share(p, a, b)));
 }
 
+/// Whether p is farther than `reach` from the box around an edge, and so from the edge: most that are looked
+/// at are, and it is a third of the work of distance_squared().
+inline bool is_beyond_box(Vec2 p, const Edge& edge, double reach) {
+    return std::min(edge.a.x, edge.b.x) - p.x > reach || p.x - std::max(edge.a.x, edge.b.x) > reach ||
+           std::min(edge.a.y, edge.b.y) - p.y > reach || p.y - std::max(edge.a.y, edge.b.y) > reach;
+}
+
 /// Whether a disc at p whose nearest point of an edge is at `share` touches that edge, and not the next or
 /// the one before: at a joint of a chain only one of the two may push, else a disc that rolls over the joint
 /// is kicked. Where the nearest point lies inside the next edge, that one pushes; a corner both have belongs

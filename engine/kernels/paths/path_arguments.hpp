@@ -113,8 +113,11 @@ struct SolvePaths {
     PathLoads<Real> coarse;   // for the kernels of path_loads.hpp alone
     std::uint32_t* closing;   // [bundles]: of contacts beside the paths, a bit for each lane that closes
     Real fast, light_press;   // for find_fast: m/s; share of the impulse that would stop both bodies
-    std::uint32_t* is_fast;   // [links], likewise, out: a bit for each lane that comes faster
+    std::uint32_t* is_fast;   // [links], likewise, out: a bit for each lane that may come faster and meet
     void* scratch;            // of path_scratch_bytes(longest bundle) bytes, aligned to 64
+    Real surely_fast;         // for find_fast: m/s, what is faster comes fast whatever joints do
+    const Real* foreseen;     // [rows][4], likewise: velocities at the end of the substep
+    std::uint32_t* comes;     // [links], likewise, out: a bit for each lane that comes so, but does not meet
 };
 
 /// Bytes that a link needs while its path is solved, in the widest batch.

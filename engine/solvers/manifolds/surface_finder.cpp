@@ -202,12 +202,32 @@ void SurfaceFinder<Real>::find_edges(const Inputs& in, ManifoldList<Real>& list)
         const auto row = static_cast<std::size_t>(pairs_[first].row);
         const EdgePose& pose = in.edges.pose_of(world.edges[near_edges_[0]]);
         if (!pose.takes_part) continue;
+        leave_out_distant(in, pose, row);
+        if (near_edges_.empty()) continue;
         world.shapes.for_each_piece(
             world.bodies.shape[row],
             [&](const ConvexShape<Real>& shape, std::int32_t number, const StoredPiece* piece) {
                 find_on_chain(in, pose, row, shape, number, piece, list);
             });
     }
+}
+
+/// Leaves edges out that a body cannot meet in the step, by a bound that is cheaper than to place its shape:
+/// fast bodies have margins of several steps, most edges within which are beyond the way of one.
+template <class Real>
+void SurfaceFinder<Real>::leave_out_distant(const Inputs& in, const EdgePose& pose, std::size_t row) {
+    if (pose.turns()) return;  // what is far from the axis is fast
+    const Bodies<Real>& bodies = in.world.bodies;
+    const auto radius = static_cast<double>(bodies.radius[row]);
+    const double come = reach_in_step(bodies, row, in.terms.dt) +
+                        std::sqrt(length_squared(pose.end_position - pose.position));
+    // To where it is by the end of its way, and from there as far as a contact is looked for, which is that
+    // way and the distance of contacts at rest. No piece is thicker than the radius of its body.
+    const double most = (1 + kRoundingOfReach) * ((1 + kMeetingTarget) * radius + in.near(radius) + 2 * come);
+    const Vec2 centre =
+        rotate_back(pose.turn, Vec2{bodies.position_x[row], bodies.position_y[row]} - pose.position);
+    std::erase_if(near_edges_,
+                  [&](std::int32_t number) { return is_beyond_box(centre, in.world.edges[number], most); });
 }
 
 /// Finds where a body, or a piece of it, touches the near edges, which are of one chain or track.

@@ -401,19 +401,22 @@ void PathSolver<Real>::run_loads(LoadPass pass, const PathLoads<Real>& loads, co
 }
 
 template <class Real>
-std::span<const std::uint32_t> PathSolver<Real>::find_fast(Column<Real>& velocity, double speed,
-                                                           double light_press, const SubstepTerms& terms,
-                                                           BodyRecords<Real>& records,
-                                                           const StepLoops<Real>& loops) {
+typename PathSolver<Real>::FastContacts PathSolver<Real>::find_fast(Column<Real>& velocity, double speed,
+                                                                    double sure_speed, double light_press,
+                                                                    const SubstepTerms& terms,
+                                                                    BodyRecords<Real>& records,
+                                                                    const StepLoops<Real>& loops) {
     if (manifolds.live().empty()) return {};
-    is_fast_.resize_for_overwrite(cut().links());
+    is_fast_.resize_for_overwrite(cut().links()), comes_.resize_for_overwrite(cut().links());
     SolvePaths<Real> k = arguments(terms, records);
-    k.velocity = velocity.data(), k.is_fast = is_fast_.data();
-    k.fast = static_cast<Real>(speed), k.light_press = static_cast<Real>(light_press);
+    k.foreseen = k.velocity, k.velocity = velocity.data();
+    k.is_fast = is_fast_.data(), k.comes = comes_.data();
+    k.fast = static_cast<Real>(speed), k.surely_fast = static_cast<Real>(sure_speed);
+    k.light_press = static_cast<Real>(light_press);
     const Pass kernel = loops.kernels->convex->paths.find_fast;
     run(kernel, k, loops);
     kernel(k, cut().first_watched(), cut().bundles());
-    return {is_fast_.data(), cut().links()};
+    return {{is_fast_.data(), cut().links()}, {comes_.data(), cut().links()}};
 }
 
 template <class Real>
@@ -481,9 +484,9 @@ template <class Real>
 std::size_t PathSolver<Real>::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
     return manifolds.bytes() + rolling_.bytes() + turning_edges_.bytes() + of(row_of_far_) +
-           of(with_kinematic_) + closing_.bytes() + is_fast_.bytes() + choice_.bytes() + links_.bytes() +
-           heads_.bytes() + restless_.bytes() + turns.bytes() + scratch_.bytes() + of(hidden_) +
-           of(first_of_share_);
+           of(with_kinematic_) + closing_.bytes() + is_fast_.bytes() + comes_.bytes() + choice_.bytes() +
+           links_.bytes() + heads_.bytes() + restless_.bytes() + turns.bytes() + scratch_.bytes() +
+           of(hidden_) + of(first_of_share_);
 }
 
 template class PathSolver<float>;

@@ -83,13 +83,17 @@ class PathSolver {
                            contact.link.separation1[contact.lane], contact.link.separation2[contact.lane]});
     }
     void unhide() { hidden_.clear(); }
+    /// Contacts that come fast, a bit for each lane of each link.
+    struct FastContacts {
+        std::span<const std::uint32_t> may_meet, comes;  // in the substep; surely fast, and surely not yet
+    };
     /// Tells which contacts have a point that comes faster than `speed` [m/s] and do not press by more than a
     /// share of what would stop their bodies, or may by rounding or what joints hold.
-    /// @param velocity  [rows][4], as records have them
-    /// @return a bit for each lane of each link
-    std::span<const std::uint32_t> find_fast(Column<Real>& velocity, double speed, double light_press,
-                                             const SubstepTerms& terms, BodyRecords<Real>& records,
-                                             const StepLoops<Real>& loops);
+    /// @param sure_speed  m/s: what comes faster is fast whatever joints hold
+    /// @param velocity  [rows][4], as records have them, of the start of the substep
+    FastContacts find_fast(Column<Real>& velocity, double speed, double sure_speed, double light_press,
+                           const SubstepTerms& terms, BodyRecords<Real>& records,
+                           const StepLoops<Real>& loops);
     /// The place of a contact: kPathLanes times its link, plus its lane.
     std::size_t place_of(const PathContact<Real>& contact) const {
         return kPathLanes * static_cast<std::size_t>(&contact.link - links_.data()) + contact.lane;
@@ -208,8 +212,8 @@ class PathSolver {
 
     PathRolling<Real> rolling_;
     TurningEdges<Real> turning_edges_;
-    std::vector<std::int32_t> row_of_far_;     // of each contact: the row of b in the records
-    Column<std::uint32_t> closing_, is_fast_;  // kernels/paths/path_arguments.hpp
+    std::vector<std::int32_t> row_of_far_;             // of each contact: the row of b in the records
+    Column<std::uint32_t> closing_, is_fast_, comes_;  // kernels/paths/path_arguments.hpp
     PathChoice<Real> choice_;
     Column<PathLink<Real>> links_;
     std::vector<Hidden> hidden_;

@@ -67,6 +67,7 @@ TEST_SUITE("broadphase/edge_candidates") {
             std::set<std::pair<std::int32_t, std::int32_t>> pairs;
             for (const EdgePair pair : found) pairs.insert({pair.row, pair.edge});
             CHECK(pairs.size() == found.size());  // none twice
+            CHECK(std::is_sorted(found.begin(), found.end()));
             std::size_t expected = 0;
             for (std::int32_t e = 0; e < static_cast<std::int32_t>(place.world.edges.edges.size()); ++e)
                 for (std::size_t row = 0; row < place.world.bodies.count; ++row) {
@@ -86,6 +87,25 @@ TEST_SUITE("broadphase/edge_candidates") {
                     }
                 }
             CHECK(expected > 20);
+        }
+    }
+
+    TEST_CASE("they come by row, then by edge, few and many") {
+        for (const double length : {1.0, 200.0}) {
+            Place<double> place;
+            Body chain{.type = BodyType::static_body, .position = {-0.25, 0.25}};
+            chain.shape = Chain{.points = {{0, 0}, {0.5 * length, 0}, {length, 0}}};
+            place.world.append(chain);
+            for (int i = 0; i < 400; ++i)
+                place.world.append(
+                    {.shape = Disc{0.4}, .position = {static_cast<double>(i * 37 % 200), i % 2 * 60.0}});
+            place.find(1.0 / 60);
+            const auto found = place.edges.pairs();
+            CHECK(std::is_sorted(found.begin(), found.end()));
+            if (length > 1)
+                CHECK(found.size() > 180);
+            else
+                CHECK((found.size() > 0 && found.size() < 10));
         }
     }
 

@@ -146,9 +146,9 @@ TEST_SUITE("kernels/questions") {
     TEST_CASE_TEMPLATE("contacts whose points come fast are told, and few others", Real, float, double) {
         Draw draw(11);
         const auto real = [](double value) { return static_cast<Real>(value); };
-        constexpr std::size_t kBundles = 6, kLength = 5;
-        constexpr double kFast = 0.05, kFall = 0.01, kLight = 0.1;  // m/s, m/s
-        Column<Real> velocity(4 * kRows);
+        constexpr std::size_t kBundles = 30, kLength = 5;
+        constexpr double kFast = 0.05, kSurelyFast = 0.07, kFall = 0.01, kLight = 0.1;  // m/s, m/s, m/s
+        Column<Real> velocity(4 * kRows), foreseen(4 * kRows), displacement(2 * kRows), turn(kRows);
         for (std::size_t row = 0; row < kRows; ++row) {
             const double speed = draw.chance(0.1) ? 1e4 : draw.chance(0.5) ? 0.1 : 0.02;
             for (std::size_t k = 0; k < 3; ++k) velocity[4 * row + k] = real(draw.between(-speed, speed));
@@ -168,47 +168,92 @@ TEST_SUITE("kernels/questions") {
                     lever[lane] = real(draw.between(-1, 1));
                 if (draw.chance(0.5)) link.normal1[lane] = real(draw.between(0, 0.01));
                 if (draw.chance(0.1)) link.normal2[lane] = real(draw.between(0, 10));
+                link.separation1[lane] = real(draw.between(-0.001, 0.003));
+                link.separation2[lane] = real(draw.chance(0.5) ? kNoPoint : draw.between(-0.001, 0.003));
             }
-        std::vector<std::uint32_t> found;
+        for (std::size_t row = 0; row < kRows; ++row) {
+            for (std::size_t k = 0; k < 4; ++k)
+                foreseen[4 * row + k] = velocity[4 * row + k] + real(k < 3 ? draw.between(-0.02, 0.02) : 0.0);
+            for (std::size_t k = 0; k < 2; ++k) displacement[2 * row + k] = real(draw.between(-0.001, 0.001));
+            turn[row] = real(draw.between(-0.001, 0.001));
+        }
+        std::vector<std::uint32_t> found, found_to_come;
         for (const KernelTables* tables : runnable_kernel_tables()) {
-            std::vector<std::uint32_t> now(links.size(), 77);
+            std::vector<std::uint32_t> now(links.size(), 77), to_come(links.size(), 78);
             SolvePaths<Real> k{};
             k.links = links.data(), k.first_link = first_link.data(), k.heads = heads.data();
-            k.velocity = velocity.data(), k.is_fast = now.data();
-            k.fast = real(kFast), k.fall = real(kFall), k.light_press = real(kLight);
+            k.velocity = velocity.data(), k.foreseen = foreseen.data();
+            k.displacement = displacement.data(), k.turn = turn.data(), k.h = real(kStep);
+            k.is_fast = now.data(), k.comes = to_come.data();
+            k.fast = real(kFast), k.surely_fast = real(kSurelyFast);
+            k.fall = real(kFall), k.light_press = real(kLight);
             const auto kernel = tables->of<Real>().convex->paths.find_fast;
             kernel(k, 0, 2), kernel(k, 2, kBundles);
-            if (found.empty()) found = now;
+            if (found.empty()) found = now, found_to_come = to_come;
             CHECK(now == found);
+            CHECK(to_come == found_to_come);
         }
-        std::size_t fast = 0, told = 0;
+        std::size_t fast = 0, told = 0, coming = 0, told_coming = 0;
         for (std::size_t i = 0; i < links.size(); ++i)
             for (std::size_t lane = 0; lane < kPathLanes; ++lane) {
                 const PathLink<Real>& link = links[i];
                 const bool is_first = i % kLength == 0;
                 const std::int32_t near =
                     is_first ? heads[kPathLanes * (i / kLength) + lane] : links[i - 1].body[lane];
-                const auto of = [&](std::int32_t row, std::size_t k) {
-                    return static_cast<double>(velocity[4 * static_cast<std::size_t>(row) + k]);
-                };
                 const std::int32_t far = link.body[lane];
-                const auto closing = [&](const Real* of_near, const Real* of_far) {
-                    return (of(near, 0) - of(far, 0)) * static_cast<double>(link.normal_x[lane]) +
-                           (of(near, 1) - of(far, 1)) * static_cast<double>(link.normal_y[lane]) +
-                           of(near, 2) * static_cast<double>(of_near[lane]) -
-                           of(far, 2) * static_cast<double>(of_far[lane]);
+                // How fast b leaves a at a point, or how far it has, by a column of so many numbers a row.
+                const auto leaving = [&](const auto& x, const auto& y, const auto& rim, const Real* of_near,
+                                         const Real* of_far) {
+                    const auto row_of_near = static_cast<std::size_t>(near),
+                               row_of_far = static_cast<std::size_t>(far);
+                    return (x(row_of_far) - x(row_of_near)) * static_cast<double>(link.normal_x[lane]) +
+                           (y(row_of_far) - y(row_of_near)) * static_cast<double>(link.normal_y[lane]) +
+                           rim(row_of_far) * static_cast<double>(of_far[lane]) -
+                           rim(row_of_near) * static_cast<double>(of_near[lane]);
                 };
-                const double comes = std::max(closing(link.near1, link.far1), closing(link.near2, link.far2)),
+                const auto part = [](const Column<Real>& of, std::size_t width, std::size_t k) {
+                    return
+                        [&of, width, k](std::size_t row) { return static_cast<double>(of[width * row + k]); };
+                };
+                struct Point {
+                    double closing, gap;  // m/s; m, at the end of the substep
+                };
+                const auto point = [&](const Real* of_near, const Real* of_far, Real separation) -> Point {
+                    const double come = leaving(part(displacement, 2, 0), part(displacement, 2, 1),
+                                                part(turn, 1, 0), of_near, of_far),
+                                 soon = leaving(part(foreseen, 4, 0), part(foreseen, 4, 1),
+                                                part(foreseen, 4, 2), of_near, of_far);
+                    return {-leaving(part(velocity, 4, 0), part(velocity, 4, 1), part(velocity, 4, 2),
+                                     of_near, of_far),
+                            static_cast<double>(separation) + come + kStep * soon};
+                };
+                const Point one = point(link.near1, link.far1, link.separation1[lane]),
+                            two = point(link.near2, link.far2, link.separation2[lane]);
+                const auto inverse_mass = [&](std::int32_t row) {
+                    return std::abs(static_cast<double>(velocity[4 * static_cast<std::size_t>(row) + 3]));
+                };
+                const double comes = std::max(one.closing, two.closing),
                              pressing = static_cast<double>(link.normal1[lane]) +
                                         static_cast<double>(link.normal2[lane]),
-                             most = kLight / (std::abs(of(near, 3)) + std::abs(of(far, 3))) *
-                                    (comes + kFall / 2);
-                const bool is_fast = comes > kFast && pressing <= most, is_told = (found[i] >> lane & 1) != 0;
-                if (is_fast) REQUIRE(is_told);
-                fast += is_fast, told += is_told;
+                             light = kLight / (inverse_mass(near) + inverse_mass(far));
+                const bool is_fast = comes > kFast && pressing <= light * (comes + kFall / 2);
+                const bool has_two = link.separation2[lane] < real(kNoPoint);
+                const bool is_coming =
+                    (one.closing > kSurelyFast || (has_two && two.closing > kSurelyFast)) &&
+                    pressing <= light * (comes - kFall / 2) && one.gap >= 0 && (!has_two || two.gap >= 0);
+                const bool may_meet = (found[i] >> lane & 1) != 0,
+                           is_told_to_come = (found_to_come[i] >> lane & 1) != 0;
+                if (is_fast) REQUIRE((may_meet || is_told_to_come));
+                REQUIRE_FALSE((may_meet && is_told_to_come));
+                if (is_told_to_come) REQUIRE(is_coming);
+                fast += is_fast, told += may_meet || is_told_to_come;
+                coming += is_coming, told_coming += is_told_to_come;
             }
         CHECK(fast > 50);
         CHECK(told <= fast + 3);
         CHECK(told < links.size() * kPathLanes - 50);
+        CHECK(coming > 20);
+        CHECK(fast > coming + 20);
+        CHECK(told_coming + 3 >= coming);
     }
 }

@@ -102,6 +102,25 @@ TEST_SUITE("narrowphase/disc_edge") {
         CHECK(is_touched_here({-0.1, -0.1}, 1, loop, loop[2]));
     }
 
+    TEST_CASE("what is beyond the box around an edge is farther from it than that, and most that is") {
+        std::mt19937 random(3);
+        std::uniform_real_distribution<double> coordinate(-2, 2), length(0.01, 1);
+        int far = 0, told = 0;
+        for (int i = 0; i < 4000; ++i) {
+            Edge edge{};
+            edge.a = {coordinate(random), coordinate(random)};
+            edge.b = {coordinate(random), coordinate(random)};
+            const Vec2 p{2 * coordinate(random), 2 * coordinate(random)};
+            const double reach = length(random);
+            const bool is_far = distance_squared(p, edge.a, edge.b) > reach * reach,
+                       is_beyond = is_beyond_box(p, edge, reach);
+            if (is_beyond) REQUIRE(is_far);
+            far += is_far, told += is_beyond;
+        }
+        CHECK(far > 2000);
+        CHECK(2 * told > far);
+    }
+
     TEST_CASE("taking a body's edges out keeps the others' numbers and neighbours right") {
         EdgeStore edges;
         edges.append({0, 0}, Segment{{0, 0}, {1, 0}});

@@ -63,7 +63,12 @@ double speed_of_none(const SubstepTerms& terms) {
     return (kRestFalls - 0.75) * terms.fall_speed();
 }
 
-/// Whether a point of a contact comes faster than that.
+/// What comes faster than this [m/s] comes fast, whatever joints hold.
+double speed_of_all(const SubstepTerms& terms) {
+    return (kRestFalls + 0.75) * terms.fall_speed();
+}
+
+/// Whether a point of a contact comes faster than speed_of_none().
 template <class Real>
 bool may_be_fast(const PathContact<Real>& contact, const SubstepTerms& terms,
                  const BodyRecords<Real>& records) {
@@ -146,13 +151,10 @@ void ShapeImpacts<Real>::list_bouncing(const PathSolver<Real>& paths, std::size_
     if (is_listed_) return;
     is_listed_ = true;
     bouncing_.clear(), at_place_.assign(kPathLanes * links, -1);
-    std::size_t number = 0;
     paths.for_each([&](const PathContact<Real>& contact) {
-        if (contact.restitution > 0) {
-            at_place_[paths.place_of(contact)] = static_cast<std::int32_t>(bouncing_.size());
-            bouncing_.push_back({number, contact.near, contact.far});
-        }
-        ++number;
+        if (!(contact.restitution > 0)) return;
+        at_place_[paths.place_of(contact)] = static_cast<std::int32_t>(bouncing_.size());
+        bouncing_.push_back(contact);
     });
 }
 
@@ -163,11 +165,11 @@ void ShapeImpacts<Real>::list_of_rows(std::size_t rows) {
     if (are_of_rows_listed_) return;
     are_of_rows_listed_ = true;
     first_of_row_.assign(rows + 1, 0);
-    const auto for_each_row = [&](const Bouncing& bouncing, const auto& fn) {
+    const auto for_each_row = [&](const PathContact<Real>& bouncing, const auto& fn) {
         for (const std::int32_t row : {bouncing.near, bouncing.far})
             if (static_cast<std::size_t>(row) < rows) fn(static_cast<std::size_t>(row));
     };
-    for (const Bouncing& bouncing : bouncing_)
+    for (const PathContact<Real>& bouncing : bouncing_)
         for_each_row(bouncing, [&](std::size_t row) { ++first_of_row_[row]; });
     for (std::size_t row = 0; row < rows; ++row) first_of_row_[row + 1] += first_of_row_[row];
     of_row_.resize(first_of_row_[rows]);
@@ -176,7 +178,8 @@ void ShapeImpacts<Real>::list_of_rows(std::size_t rows) {
                      [&](std::size_t row) { of_row_[--first_of_row_[row]] = static_cast<std::uint32_t>(i); });
 }
 
-/// Makes those due that come fast as the substep begins. @return whether there are any
+/// Makes those due that come fast as the substep begins, and may meet in it. @return whether there are any,
+/// or others that come
 template <class Real>
 bool ShapeImpacts<Real>::list_fast(PathSolver<Real>& paths, const SubstepTerms& terms,
                                    BodyRecords<Real>& records, const StepLoops<Real>& loops) {
@@ -187,18 +190,21 @@ bool ShapeImpacts<Real>::list_fast(PathSolver<Real>& paths, const SubstepTerms& 
         start_[4 * row] = start.x[row], start_[4 * row + 1] = start.y[row];
         start_[4 * row + 2] = start.rim ? start.rim[row] : Real(0);
     }
-    const std::span<const std::uint32_t> fast =
-        paths.find_fast(start_, speed_of_none(terms), kLightPress, terms, records, loops);
+    const typename PathSolver<Real>::FastContacts fast = paths.find_fast(
+        start_, speed_of_none(terms), speed_of_all(terms), kLightPress, terms, records, loops);
     bool any = false;
-    for (std::size_t link = 0; link < fast.size(); ++link)
-        for (std::uint32_t left = fast[link]; left != 0; left &= left - 1) {
-            list_bouncing(paths, fast.size());
-            const std::size_t lane = static_cast<std::size_t>(std::countr_zero(left));
-            const std::int32_t bouncing = at_place_[kPathLanes * link + lane];
-            if (bouncing < 0) continue;
-            if (!any) due_.clear(bouncing_.size());
-            any = true, due_.put(static_cast<std::size_t>(bouncing));
-        }
+    const auto list = [&](std::span<const std::uint32_t> links, Set& set) {
+        for (std::size_t link = 0; link < links.size(); ++link)
+            for (std::uint32_t left = links[link]; left != 0; left &= left - 1) {
+                list_bouncing(paths, links.size());
+                const std::size_t lane = static_cast<std::size_t>(std::countr_zero(left));
+                const std::int32_t bouncing = at_place_[kPathLanes * link + lane];
+                if (bouncing < 0) continue;
+                if (!any) due_.clear(bouncing_.size()), coming_.clear(bouncing_.size());
+                any = true, set.put(static_cast<std::size_t>(bouncing));
+            }
+    };
+    list(fast.may_meet, due_), list(fast.comes, coming_);
     return any;
 }
 
@@ -211,7 +217,6 @@ std::int64_t ShapeImpacts<Real>::carry_out(PathSolver<Real>& paths, const Subste
                                            Books& books, double& gravity_work) {
     deflected_.clear(), paths.unhide();
     if (!list_fast(paths, terms, records, loops)) return 0;
-    coming_.clear(bouncing_.size());
     const auto note_changed = [&](std::int32_t number) {
         const auto row = static_cast<std::size_t>(number);
         if (row >= records.count()) return;
@@ -220,7 +225,8 @@ std::int64_t ShapeImpacts<Real>::carry_out(PathSolver<Real>& paths, const Subste
     };
     std::int64_t impacts = 0;
     bool goes_on = true;
-    const auto look_at = [&](std::size_t i, const PathContact<Real>& contact) {
+    const auto look_at = [&](std::size_t i) {
+        const PathContact<Real>& contact = bouncing_[i];
         due_.take(i), coming_.take(i);
         if (!may_be_fast(contact, terms, records)) return;
         const Outcome outcome =
@@ -233,17 +239,12 @@ std::int64_t ShapeImpacts<Real>::carry_out(PathSolver<Real>& paths, const Subste
                 bodies.is_disc(static_cast<std::size_t>(row)))
                 deflected_.push_back(row);
     };
-    const auto at = [&](std::size_t i, const auto& fn) {
-        paths.for_each_of(bouncing_[i].number, bouncing_[i].number + 1, fn);
-    };
     for (int round = 0; round < kRounds && goes_on; ++round) {
         goes_on = false;
-        due_.for_each(
-            [&](std::size_t i) { at(i, [&](const PathContact<Real>& contact) { look_at(i, contact); }); });
+        due_.for_each(look_at);
     }
     if (!goes_on)  // else what was seen in the last round no longer holds
-        coming_.for_each(
-            [&](std::size_t i) { at(i, [&](const PathContact<Real>& contact) { paths.hide(contact); }); });
+        coming_.for_each([&](std::size_t i) { paths.hide(bouncing_[i]); });
     records.put_off_delays();
     return impacts;
 }

@@ -23,9 +23,10 @@ namespace carom {
 /// comes fast but would not yet meet is hidden from the paths: a push out of an overlap may take it to its
 /// partner in this substep, where it would be stopped.
 ///
-/// A kernel tells which contacts come fast as the substep begins. Only those, and those of bodies that an
-/// impact has changed since they were looked at, are looked at: in a round in their order, those that an
-/// impact makes due behind it in the same round, those before it in the next one.
+/// A kernel tells which contacts come fast as the substep begins, and which of them surely do not meet in it.
+/// Only the others, and those of bodies that an impact has changed since they were looked at, are looked at:
+/// in a round in their order, those that an impact makes due behind it in the same round, those before it in
+/// the next one.
 ///
 /// Cost: about 1 ns a contact and substep, 100 ns an impact, and 10 ns a contact of what it struck.
 /// docs/decisions/0087-shapes-that-bounce.md.
@@ -46,11 +47,6 @@ class ShapeImpacts {
     std::size_t bytes() const;
 
   private:
-    /// A contact that has restitution.
-    struct Bouncing {
-        std::size_t number;      // among all contacts of the step
-        std::int32_t near, far;  // rows in the records
-    };
     /// A bit for each of them.
     class Set {
       public:
@@ -80,10 +76,10 @@ class ShapeImpacts {
     void list_of_rows(std::size_t rows);
 
     bool is_listed_ = false, are_of_rows_listed_ = false;  // bouncing_; of_row_
-    std::vector<Bouncing> bouncing_;
-    std::vector<std::int32_t> at_place_;                // by PathSolver::place_of: of bouncing_; -1: none
-    std::vector<std::uint32_t> first_of_row_, of_row_;  // by row: its contacts, of bouncing_
-    Set due_, coming_;                                  // to be looked at; fast, but not near enough yet
+    std::vector<PathContact<Real>> bouncing_;              // contacts that have restitution
+    std::vector<std::int32_t> at_place_;                   // by PathSolver::place_of: of bouncing_; -1: none
+    std::vector<std::uint32_t> first_of_row_, of_row_;     // by row: its contacts, of bouncing_
+    Set due_, coming_;                                     // to be looked at; fast, but not near enough yet
     Column<Real> start_;  // [rows][4], m/s, velocities at the start of the substep
     std::vector<std::int32_t> deflected_;
 };

@@ -127,33 +127,48 @@ void ShapeTunnelling<Real>::list_swift(const Inputs& in, const Manifolds<Real>& 
         const std::int32_t contact = live[static_cast<std::size_t>(n)];
         mark(static_cast<std::size_t>(manifolds.list_of(contact).a[Manifolds<Real>::place_of(contact)]));
     });
-    const auto way_of_edge = [&](const Edge& edge) {
-        const EdgePose& pose = in.flight.edges.pose_of(edge);
-        const Vec2 way = pose.end_position - pose.position;
-        return static_cast<Real>(std::fabs(way.x) + std::fabs(way.y) +
-                                 std::fabs(pose.end_angle - pose.angle) *
-                                     in.world.edges.bodies[static_cast<std::size_t>(edge.body)].reach);
-    };
-    for (const EdgePair& pair : in.flight.edges.pairs()) {
-        const auto row = static_cast<std::size_t>(pair.row);
-        if (comes_far(row, way_of_edge(in.world.edges[pair.edge])) || begins_in_core(in, pair)) mark(row);
+    const std::span<const EdgePair> pairs = in.flight.edges.pairs();
+    for (std::size_t first = 0, last = 0; first < pairs.size(); first = last) {
+        const auto row = static_cast<std::size_t>(pairs[first].row);
+        while (last < pairs.size() && pairs[last].row == pairs[first].row) ++last;
+        if (is_swift_[row] == 0 && comes_upon_edges(in, pairs.subspan(first, last - first))) mark(row);
     }
     for (const std::int32_t row : swift_) is_swift_[static_cast<std::size_t>(row)] = 0;
     std::sort(swift_.begin(), swift_.end());
 }
 
-/// Whether an edge is in the core of a body, were it in one piece, at the start of the step. What is pressed
-/// into an edge slowly has come no way in any step; discs go on until their centre crosses it (Tunnelling).
+/// Whether one of the edges near a body comes far enough towards it, or is in its core, were it in one piece,
+/// at the start of the step. What is pressed into an edge slowly has come no way in any step; discs go on
+/// until their centre crosses it (Tunnelling).
+/// @param pairs  of one body
 template <class Real>
-bool ShapeTunnelling<Real>::begins_in_core(const Inputs& in, const EdgePair& pair) const {
+bool ShapeTunnelling<Real>::comes_upon_edges(const Inputs& in, std::span<const EdgePair> pairs) const {
     const Bodies<Real>& bodies = in.world.bodies;
-    const auto row = static_cast<std::size_t>(pair.row);
-    if (bodies.is_disc(row)) return false;
-    const Edge& edge = in.world.edges[pair.edge];
-    const EdgePose& pose = in.flight.edges.pose_of(edge);
-    const Vec2 from = rotate_back(pose.turn, in.flight.start_of(row) - pose.position);
-    const double core = kCore * static_cast<double>(bodies.inradius(row));
-    return distance_squared(from, edge.a, edge.b) < core * core;
+    const auto row = static_cast<std::size_t>(pairs[0].row);
+    const Real thickness = bodies.inradius(row);
+    const Real least = static_cast<Real>(kSmallestWay) * thickness,
+               come = way_along_axes(in.records.displacement.data() + 2 * row);
+    const double core = kCore * static_cast<double>(thickness);
+    const bool has_core = !bodies.is_disc(row);
+    const EdgePose* seen_from = nullptr;
+    Vec2 from;  // m, where the body begins, in the frame of `seen_from`
+    for (const EdgePair& pair : pairs) {
+        const Edge& edge = in.world.edges[pair.edge];
+        const EdgePose& pose = in.flight.edges.pose_of(edge);
+        if (&pose != seen_from) {
+            seen_from = &pose;
+            from = rotate_back(pose.turn, in.flight.start_of(row) - pose.position);
+            const Vec2 way = pose.end_position - pose.position;
+            const double reach = in.world.edges.bodies[static_cast<std::size_t>(edge.body)].reach;
+            const auto of_edge = static_cast<Real>(std::fabs(way.x) + std::fabs(way.y) +
+                                                   std::fabs(pose.end_angle - pose.angle) * reach);
+            if (come + of_edge > least) return true;
+        }
+        if (has_core && !is_beyond_box(from, edge, core) &&
+            distance_squared(from, edge.a, edge.b) < core * core)
+            return true;
+    }
+    return false;
 }
 
 template <class Real>

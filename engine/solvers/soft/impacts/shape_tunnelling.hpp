@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "narrowphase/convex_impact_time.hpp"
@@ -60,7 +61,7 @@ class ShapeTunnelling {
     };
     void list_swift(const Inputs& in, const Manifolds<Real>& manifolds, const Executor& executor);
     void mark(std::size_t row);
-    bool begins_in_core(const Inputs& in, const EdgePair& pair) const;
+    bool comes_upon_edges(const Inputs& in, std::span<const EdgePair> pairs) const;
     void look_at(const Inputs& in, std::size_t row);
     Passed first_passed(const Inputs& in, const Way& way, bool is_last);
     static bool sinks_in(const Core& core, const Edge& edge);
