@@ -12,7 +12,7 @@
 
 // B39 of docs/hard-cases.md: a pile at rest that is touched in every step.
 //     touched/<what>/<restitution>/<float|double>/bodies:<n>
-// `ratio` is the mean time of a step over that of the same pile that nobody touches, both in processor time
+// `ratio` is the mean time of a step over that of the same pile untouched, both in processor time
 // of the thread; `percent` of 1 touches 1 % of the bodies a step, 0 one body.
 
 namespace carom::bench {

@@ -194,8 +194,8 @@ void ContactGraph<Real>::colour_group(Found& found, std::size_t group, std::uint
     };
     const std::size_t first = found.begin[group], last = found.begin[group + 1];
     if (first == last) return;
-    // Those that carry something from the front, the others from the back, without a branch that nobody can
-    // foresee.
+    // Those that carry something from the front, the others from the back, without a branch that cannot
+    // be foreseen.
     std::uint32_t* order = found.order.data();
     std::size_t front = first, back = last - 1;
     for (std::size_t i = first; i < last; ++i) {

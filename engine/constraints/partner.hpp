@@ -9,7 +9,7 @@
 namespace carom {
 
 /// The other side of a contact: a body's row, a wall, or an edge of a segment or chain. Columns keep it as
-/// one number, `stored`; nobody but this type knows what the number means.
+/// one number, `stored`; only this type knows what the number means.
 class Partner {
   public:
     static constexpr Partner body(std::int32_t row) { return Partner(row); }

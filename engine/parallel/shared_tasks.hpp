@@ -10,7 +10,7 @@ namespace carom {
 
 /// Tasks that threads share: each thread has a run of neighbouring ones, the same whenever there are as many,
 /// so that it finds in its cache what it has worked on before; when it is done it takes over what others have
-/// not begun, from the ends of their runs. Who carries out a task must not matter.
+/// not begun, from the ends of their runs. Which thread carries out a task must not matter.
 class SharedTasks {
   public:
     /// @param tasks  < 2^32
@@ -20,7 +20,7 @@ class SharedTasks {
                                   std::memory_order_relaxed);
     }
 
-    /// What thread `thread` does: calls task(number) until there is none left that nobody has begun.
+    /// What thread `thread` does: calls task(number) until every one has been begun.
     template <class Task>
     void work(std::size_t thread, const Task& task) {
         std::size_t number;
@@ -31,7 +31,7 @@ class SharedTasks {
     }
 
   private:
-    /// The tasks of a thread that nobody has begun, on a cache line of its own: the first, and one beyond the
+    /// The tasks of a thread that none has begun, on a cache line of its own: the first, and one beyond the
     /// last.
     struct alignas(64) Run {
         std::atomic<std::uint64_t> left{0};

@@ -339,6 +339,6 @@ TEST_SUITE("hard cases/crowds") {
                " two seconds later, lowest at ", lowest, " m");
         CHECK(deepest < 0.2);
         CHECK(after < 0.01);
-        CHECK(lowest > 0);  // nobody is pressed through the mouth
+        CHECK(lowest > 0);  // no disc is pressed through the mouth
     }
 }

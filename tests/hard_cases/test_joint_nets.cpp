@@ -251,9 +251,9 @@ TEST_SUITE("hard cases: nets of joints") {
     }
 
     TEST_CASE("a crowd of figures is swept, comes to rest and holds together") {
-        World few(figures(8)), many(figures(80));
-        CHECK(World(figures(20)).plan().joints.find("20 of a crowd") != std::string::npos);
-        CHECK(few.plan().joints.find("swept") == std::string::npos);
+        World many(figures(80));
+        CHECK(World(figures(2)).plan().joints.find("2 of a crowd") != std::string::npos);
+        CHECK(World(figures(1)).plan().joints.find("swept") == std::string::npos);
         CHECK(many.plan().joints.find("80 of a crowd") != std::string::npos);
         CHECK(many.plan().substeps == 4);
         const auto largest_gap = [&] {

@@ -198,7 +198,7 @@ TEST_SUITE("hard cases/quarantine") {
         CHECK(world.state({1, 0}).velocity.y == doctest::Approx(8e6).epsilon(1e-3));
     }
 
-    TEST_CASE_TEMPLATE("a disabled body is in nobody's way, and can be removed", Real, float, double) {
+    TEST_CASE_TEMPLATE("a disabled body is in no body's way, and can be removed", Real, float, double) {
         Scene scene;
         scene.accuracy.solver = Solver::impulse;
         const BodyId rogue = scene.add(disc(5, 1, {0.9999e8, 0}, {9e6, 0}, 1));

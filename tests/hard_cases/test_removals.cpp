@@ -166,8 +166,8 @@ TEST_SUITE("hard cases/removals") {
             }
     }
 
-    // What a weight had pressed into the pile may fall or roll into the hole it leaves, but nobody is thrown.
-    TEST_CASE_TEMPLATE("B24: nobody is thrown when a weight is taken off a pile", Real, float, double) {
+    // What a weight had pressed into the pile may fall or roll into the hole it leaves, but none is thrown.
+    TEST_CASE_TEMPLATE("B24: no disc is thrown when a weight is taken off a pile", Real, float, double) {
         for (const double radius : {kRadius, 5 * kRadius}) {
             Scene scene = pile(20, 20);
             const double top = 0.51 + 0.9 * 19 + kRadius;

@@ -223,8 +223,8 @@ TEST_SUITE("hard cases/sleeping") {
         }
     }
 
-    TEST_CASE_TEMPLATE("a kinematic body wakes what it moves into, and nobody sleeps on one that moves", Real,
-                       float, double) {
+    TEST_CASE_TEMPLATE("a kinematic body wakes what it moves into, and no body sleeps on one that moves",
+                       Real, float, double) {
         Scene scene = box(40);
         scene.add({.type = BodyType::kinematic_body, .shape = Disc{1}, .position = {3, 1}});
         scene.add(rough_disc(0.5, {10, 0.5}));

@@ -10,8 +10,8 @@
 
 namespace carom::test {
 
-/// A scene stepped as every hard case has to stand it: nothing drives it, so energy does not grow, nobody is
-/// faster than falling makes him, nothing leaves the walls, nothing is quarantined; and a second world,
+/// A scene stepped as every hard case has to stand it: nothing drives it, so energy does not grow, no body is
+/// faster than falling makes it, nothing leaves the walls, nothing is quarantined; and a second world,
 /// whose parallel tasks run in another order, ends with the same bits.
 template <class Real>
 class PassiveRun {

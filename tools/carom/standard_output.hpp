@@ -9,8 +9,8 @@ namespace carom::tool {
 /// program's text.
 void hold_standard_streams();
 
-/// From here on all results are in files under their final names; what is printed only repeats them. A reader
-/// of standard output who has gone is no reason to end, let alone to fail. @param where  "out/seed"
+/// From here on all results are in files under their final names; what is printed only repeats them. That
+/// the reader of standard output has gone is no reason to end, let alone to fail. @param where  "out/seed"
 void note_results_in(std::string where);
 
 /// The exit code of a program that is through with `code`: if what it printed was lost, and stands nowhere

@@ -216,7 +216,7 @@ class BasicWorld {
     /// Goes on from a state as the world that saved it would have, bit for bit, whatever scene this world was
     /// made of, on any number of threads and any instruction set. Handles are those of the saved world;
     /// `profile()` goes on counting. States are of one precision and one build of the library; they are no
-    /// file format. A checksum tells bytes that were damaged on their way, not those that somebody made up:
+    /// file format. A checksum tells bytes that were damaged on their way, not those that were made up:
     /// take states from where programs may come from.
     /// @throws Error (malformed, inconsistent) if the bytes are no such state or are damaged; the world is
     /// then unchanged Cost: O(state); no allocation once the world has been as large.

@@ -142,7 +142,7 @@ class ImpulseSolver {
     std::vector<std::int32_t> held_;
     std::vector<std::int32_t> moved_;
     std::vector<std::uint32_t> deflections_;  // [rows], how often each body was deflected, ever
-    std::vector<std::int32_t> place_of_row_;  // [rows], all -1, for those who solve simultaneous impacts
+    std::vector<std::int32_t> place_of_row_;  // [rows], all -1, for the solvers of simultaneous impacts
 };
 
 extern template class ImpulseSolver<float>;

@@ -89,7 +89,7 @@ class Manifolds {
     ManifoldMemory<Real>& memory_of(std::int32_t contact) {
         return list_of(contact).memory[place_of(contact)];
     }
-    /// The contacts that carry an impulse at the end of a step, for those who look after sleepers.
+    /// The contacts that carry an impulse at the end of a step, for what looks after sleepers.
     std::span<const LoadedContact> loaded();
 
     /// Number of the geometry that an item of a body has: the body's, or a piece's.

@@ -7,7 +7,7 @@
 using carom::RowRenaming;
 
 TEST_SUITE("constraints/row renaming") {
-    TEST_CASE("rows that nobody moved need no new names") {
+    TEST_CASE("rows that were not moved need no new names") {
         RowRenaming trail;
         trail.start(3);
         CHECK_FALSE(trail.has_moved());
@@ -36,7 +36,7 @@ TEST_SUITE("constraints/row renaming") {
         CHECK(trail.new_rows() == std::vector<std::int32_t>{RowRenaming::kGone, 0, 2, 3});
     }
 
-    TEST_CASE("rows that were added since are nobody's, even when they are sorted among the old ones") {
+    TEST_CASE("rows that were added since belong to none, even when they are sorted among the old ones") {
         RowRenaming trail;
         trail.start(2);
         const std::int32_t order[] = {2, 1, 0};

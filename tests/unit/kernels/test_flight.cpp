@@ -108,7 +108,7 @@ TEST_SUITE("kernels/flight") {
     }
 
     TEST_CASE_TEMPLATE(
-        "begin_flight lists who reaches a wall, leaves its margin or the limits, and nobody else", Real,
+        "begin_flight lists rows that reach a wall, leave their margin or the limits, and no others", Real,
         float, double) {
         constexpr std::size_t kRows = 64;
         const Columns<Real> columns(kRows);

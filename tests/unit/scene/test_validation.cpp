@@ -347,7 +347,7 @@ TEST_SUITE("scene/validation") {
         CHECK(found->statement.find("body 0 has radius 1e-06 m") != std::string::npos);
     }
 
-    TEST_CASE("a disc may reach over a wall, a static one may stand outside, an open side holds nobody") {
+    TEST_CASE("a disc may reach over a wall, a static one may stand outside, an open side holds none") {
         Scene scene = sound_scene();
         scene.bodies[1].position = {0, 8};
         CHECK_FALSE(scene.find_problem().has_value());

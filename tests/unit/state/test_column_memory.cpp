@@ -38,7 +38,7 @@ class Blocks {
             aligned = aligned && reinterpret_cast<std::uintptr_t>(block.place) % kColumnAlignment == 0;
         return aligned;
     }
-    /// Whether each block has its own byte from end to end: nobody else writes there.
+    /// Whether each block has its own byte from end to end: no other block writes there.
     bool all_whole() const {
         bool whole = true;
         for (const Block& block : blocks_)

@@ -8,7 +8,7 @@
 
 namespace carom::tool {
 
-/// The materials of a file: those with names, and the one for whom names none.
+/// The materials of a file: those with names, and the one of what names none.
 struct Materials {
     std::map<std::string, Material, std::less<>> named;
     Material standard;

@@ -8,7 +8,7 @@
 
 namespace carom::tool {
 
-/// What is wrong with a text that is not JSON, in the words of somebody who wrote it by hand.
+/// What is wrong with a text that is not JSON, in words for a text that was written by hand.
 struct SyntaxHint {
     ErrorCode code;
     std::string statement;

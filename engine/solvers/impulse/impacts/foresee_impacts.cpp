@@ -4,7 +4,7 @@
 
 #include "solvers/impulse/impacts/impact_resolver.hpp"
 
-// When and with whom: the part of a resolver that looks ahead.
+// When and with what a body collides next: the part of a resolver that looks ahead.
 
 namespace carom {
 namespace {

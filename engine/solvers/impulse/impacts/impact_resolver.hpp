@@ -14,7 +14,7 @@
 
 namespace carom {
 
-/// What all who resolve impacts of a substep have in common.
+/// What all resolvers of the impacts of a substep have in common.
 template <class Real>
 struct ImpactTerms {
     const Candidates<Real>* candidates = nullptr;

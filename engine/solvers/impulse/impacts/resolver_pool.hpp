@@ -14,7 +14,7 @@ namespace carom {
 template <class Real>
 class ResolverPool {
   public:
-    /// Calls fn(resolver) with one that nobody else uses; waits for one if all are in use.
+    /// Calls fn(resolver) with one that no other task uses; waits for one if all are in use.
     template <class Fn>
     void with_resolver(const Fn& fn) {
         for (std::size_t i = 0;; i = (i + 1) % kResolvers) {

@@ -113,7 +113,8 @@ void ShapeTunnelling<Real>::list_swift(const Inputs& in, const Manifolds<Real>& 
     const auto is_swift = [&](std::size_t n) {
         const ManifoldList<Real>& list = manifolds.list_of(live[n]);
         const std::size_t i = Manifolds<Real>::place_of(live[n]);
-        if (live[n] < 0)  // an edge has one but where it faces a body; it tells who is pressed into it
+        if (live[n] <
+            0)  // an edge has one but where it faces a body; it tells whether the body is pressed into it
             return std::min(list.separation1[i], list.separation2[i]) < -least * list.thickness[i];
         const auto other = static_cast<std::size_t>(list.b[i]);
         if (other < bodies.count && !bodies.is_immovable(other)) return false;
