@@ -22,6 +22,10 @@ constexpr float kTiny = 1e-30f;  // m², so that a contact in the centre of mass
 /// Contacts of a path that is not slender, as towers are: its loads spread to others anyhow, and a long
 /// bundle is solved again as a whole for one contact that changes. docs/decisions/0038-broad-paths.md.
 constexpr std::uint32_t kLongestBroad = 64;
+/// Of so many contacts, it has no more than fill the lanes of a colour, but at least the shortest: a colour
+/// takes as long as its longest path. docs/decisions/0098-turns-around-what-is-restless.md.
+constexpr std::uint32_t kShortestBroad = 16;
+constexpr std::size_t kFewestShort = 1024;
 constexpr std::uint32_t kMostColours = 64;  // of a round: bits of a word
 /// Rounds of as many colours. What is left then goes one by one, so that the work of a cut stays in
 /// proportion to the contacts, whatever a body has of them. docs/decisions/0086-steps-that-stall.md.
@@ -220,10 +224,12 @@ void PathCut::walk_from(std::span<const ContactLink> contacts, std::size_t conta
 
 /// Cuts paths into parts of about the same length if they are longer than what is no tower needs.
 void PathCut::split_broad(std::span<const ContactLink> contacts) {
-    const std::size_t count = pieces_.size();
+    const std::size_t count = pieces_.size(), all = contacts.size();
+    const auto fill = static_cast<std::uint32_t>(all / (kColours * kPathLanes));
+    const auto longest = all < kFewestShort ? kLongestBroad : std::clamp(fill, kShortestBroad, kLongestBroad);
     for (std::size_t i = 0; i < count; ++i) {
-        if (pieces_[i].length <= kLongestBroad || is_slender(contacts, pieces_[i])) continue;
-        const std::uint32_t length = pieces_[i].length, parts = (length + kLongestBroad - 1) / kLongestBroad;
+        if (pieces_[i].length <= longest || is_slender(contacts, pieces_[i])) continue;
+        const std::uint32_t length = pieces_[i].length, parts = (length + longest - 1) / longest;
         const std::uint32_t first = pieces_[i].first;
         pieces_[i].length = length / parts;
         for (std::uint32_t part = 1; part < parts; ++part) {

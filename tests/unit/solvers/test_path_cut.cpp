@@ -315,6 +315,31 @@ TEST_SUITE("solvers/paths/path_cut") {
         CHECK(cut_tower(false) == 100);
         CHECK(cut_tower(true) == 51);  // the last body leads on to its neighbour: 101 contacts in two parts
     }
+    TEST_CASE("paths of a wall of a thousand bricks fill the lanes of their bundles") {
+        // Courses of 40 bricks that touch side by side, each brick on two of the course below.
+        constexpr std::int32_t kCourses = 25, kBricks = 40;
+        std::vector<ContactLink> contacts;
+        for (std::int32_t course = 0; course < kCourses; ++course)
+            for (std::int32_t k = 0; k < kBricks; ++k) {
+                const std::int32_t brick = course * kBricks + k;
+                if (k + 1 < kBricks) contacts.push_back({brick, brick + 1, 0.5F, 0, -0.5F, 0, false});
+                if (course == 0) {
+                    contacts.push_back({brick, ContactLink::kNothing, 0, -0.5F, 0, 0, true});
+                    continue;
+                }
+                const std::int32_t aside = course % 2 == 0 ? k - 1 : k + 1;
+                contacts.push_back({brick - kBricks, brick, 0.25F, 0.5F, -0.25F, -0.5F, true});
+                if (aside >= 0 && aside < kBricks)
+                    contacts.push_back(
+                        {(course - 1) * kBricks + aside, brick, -0.25F, 0.5F, 0.25F, -0.5F, true});
+            }
+        PathCut cut;
+        cut.cut(contacts, kCourses * kBricks, 128, Executor());
+        const Walked walked = walk(cut, contacts);
+        CHECK(walked.hangs_together);
+        CHECK(colours_share_no_body(cut, walked));
+        CHECK(3 * contacts.size() > 2 * kPathLanes * cut.links());  // no more than a third of them are free
+    }
     TEST_CASE("up to twelve contacts of a body are joined by twos, those without load, too") {
         for (const bool is_loaded : {true, false})
             for (std::int32_t count = 2; count <= 20; ++count) {
