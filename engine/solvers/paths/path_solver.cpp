@@ -90,6 +90,7 @@ void PathSolver<Real>::lay_out(const WorldState<Real>& world, const EdgeCandidat
     if (manifolds.some_are_carried()) carry_links(terms, records, loops);
     fill_links(true, world, records, loops);
     links_hold_ = true;
+    pieces_.forget();
     move_still_rows(world, edges, terms, records);
 }
 
@@ -389,6 +390,27 @@ void PathSolver<Real>::sweep(const SubstepTerms& terms, BodyRecords<Real>& recor
 }
 
 template <class Real>
+bool PathSolver<Real>::sweep_restless(const SubstepTerms& terms, BodyRecords<Real>& records,
+                                      const StepLoops<Real>& loops, Real least) {
+    if (!manifolds.is_crowd() || !rolling_.empty() || is_wild_crowd()) return false;
+    if (!pieces_.knows_contacts()) {
+        ends_.clear();
+        for (const PathCut::Place& place : cut().places())
+            ends_.push_back({near_row(place), links_[place.link].body[place.lane]});
+        pieces_.list_contacts(cut(), ends_, records.rows());
+    }
+    bool are_few = false;
+    without_hidden([&] {
+        are_few = pieces_.gather(cut(), records.velocity, records.count(), least, links_, heads_,
+                                 static_cast<std::int32_t>(first_still_row_));
+    });
+    if (!are_few) return false;
+    pieces_.sweep(arguments(terms, records), loops.kernels->convex->paths,
+                  plan_of(choice_.mood_of_cut(), manifolds.is_crowd()).sweeps_of_watched, links_);
+    return true;
+}
+
+template <class Real>
 void PathSolver<Real>::run_loads(LoadPass pass, const PathLoads<Real>& loads, const SubstepTerms& terms,
                                  BodyRecords<Real>& records, const StepLoops<Real>& loops) {
     if (manifolds.live().empty()) return;
@@ -433,15 +455,6 @@ void PathSolver<Real>::advance(const SubstepTerms& terms, BodyRecords<Real>& rec
 }
 
 template <class Real>
-void PathSolver<Real>::add_impulses(std::size_t number, const std::array<double, 3>& more) {
-    const PathCut::Place place = cut().places()[number];
-    PathLink<Real>& link = links_[place.link];
-    link.normal1[place.lane] += static_cast<Real>(more[0]);
-    link.normal2[place.lane] += static_cast<Real>(more[1]);
-    link.tangent[place.lane] += static_cast<Real>(more[2]);
-}
-
-template <class Real>
 void PathSolver<Real>::take_from(const std::vector<std::uint8_t>& is_of, Column<Real>& velocity) const {
     if (manifolds.live().empty()) return;  // then the cut is that of an earlier step
     for (const PathCut::Place place : cut().places()) {
@@ -451,13 +464,6 @@ void PathSolver<Real>::take_from(const std::vector<std::uint8_t>& is_of, Column<
         if ((is_of[near] | is_of[far]) != 0) give_impulses(link, place.lane, near, far, Real(-1), velocity);
     }
     rolling_.take_from(is_of, velocity);
-}
-
-template <class Real>
-void PathSolver<Real>::take_back(const std::vector<std::uint8_t>& is_of, BodyRecords<Real>& records) {
-    take_from(is_of, records.velocity);
-    const auto is_theirs = [&](std::int32_t row) { return is_of[static_cast<std::size_t>(row)] != 0; };
-    scale([&](std::int32_t near, std::int32_t far) { return is_theirs(near) || is_theirs(far) ? 0 : 1; });
 }
 
 template <class Real>
@@ -485,8 +491,8 @@ std::size_t PathSolver<Real>::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
     return manifolds.bytes() + rolling_.bytes() + turning_edges_.bytes() + of(row_of_far_) +
            of(with_kinematic_) + closing_.bytes() + is_fast_.bytes() + comes_.bytes() + choice_.bytes() +
-           links_.bytes() + heads_.bytes() + restless_.bytes() + turns.bytes() + scratch_.bytes() +
-           of(hidden_) + of(first_of_share_);
+           links_.bytes() + heads_.bytes() + restless_.bytes() + turns.bytes() + pieces_.bytes() + of(ends_) +
+           scratch_.bytes() + of(hidden_) + of(first_of_share_);
 }
 
 template class PathSolver<float>;

@@ -9,6 +9,7 @@
 #include "kernels/paths/path_arguments.hpp"
 #include "solvers/manifolds/manifolds.hpp"
 #include "solvers/paths/path_choice.hpp"
+#include "solvers/paths/path_pieces.hpp"
 #include "solvers/paths/path_rolling.hpp"
 #include "solvers/paths/turn_rows.hpp"
 #include "solvers/paths/turning_edges.hpp"
@@ -77,6 +78,16 @@ class PathSolver {
     bool pushes_twice = false;  ///< whether a solve takes as much from overlaps as two would
     /// The bundles of a turn.
     Bundles near_turns() const { return turns.are_known() ? Bundles::near_turns : Bundles::all; }
+    /// Velocities of now: `sweep_restless` goes by what has changed since.
+    void begin_restless(const BodyRecords<Real>& records) {
+        if (manifolds.is_crowd()) pieces_.remember(records.velocity);
+    }
+    /// Sweeps once over pieces of paths around bodies whose velocities have changed by more than `least`
+    /// [m/s] since `begin_restless`, or since it was called last.
+    /// @return whether it did: not where contacts are few, where those of such bodies are many, where paths
+    /// are short anyhow, or with rolling resistance
+    bool sweep_restless(const SubstepTerms& terms, BodyRecords<Real>& records, const StepLoops<Real>& loops,
+                        Real least);
     /// Hides a contact from `solve` until `unhide`: it is to have an impact in a later substep.
     void hide(const PathContact<Real>& contact) {
         hidden_.push_back({static_cast<std::size_t>(&contact.link - links_.data()), contact.lane,
@@ -226,6 +237,8 @@ class PathSolver {
     std::size_t first_still_row_ = 0, still_rows_ = 0;
     Column<Real> restless_;  // m/s, kernels/paths/path_arguments.hpp
     Column<std::byte> scratch_;
+    PathPieces<Real> pieces_;
+    std::vector<typename PathPieces<Real>::Ends> ends_;  // scratch: of contacts
 };
 
 template <class Real>
@@ -240,6 +253,22 @@ void PathSolver<Real>::for_each_of(std::size_t first, std::size_t last, const Fn
                              links_[place.link].body[place.lane], Partner(list.b[i]),
                              static_cast<double>(list.restitution[i])});
     }
+}
+
+template <class Real>
+void PathSolver<Real>::add_impulses(std::size_t number, const std::array<double, 3>& more) {
+    const PathCut::Place place = cut().places()[number];
+    PathLink<Real>& link = links_[place.link];
+    link.normal1[place.lane] += static_cast<Real>(more[0]);
+    link.normal2[place.lane] += static_cast<Real>(more[1]);
+    link.tangent[place.lane] += static_cast<Real>(more[2]);
+}
+
+template <class Real>
+void PathSolver<Real>::take_back(const std::vector<std::uint8_t>& is_of, BodyRecords<Real>& records) {
+    take_from(is_of, records.velocity);
+    const auto is_theirs = [&](std::int32_t row) { return is_of[static_cast<std::size_t>(row)] != 0; };
+    scale([&](std::int32_t near, std::int32_t far) { return is_theirs(near) || is_theirs(far) ? 0 : 1; });
 }
 
 template <class Real>

@@ -23,6 +23,9 @@ constexpr int kTurnsOfCrowd = 1;
 /// gravity adds in a substep: contacts hold as well then, and those of all other bodies are not solved once
 /// more for nothing.
 constexpr double kJointsSettled = 0.001;
+/// In such a turn bodies are restless, and contacts near them are swept alone, that joints or the turn before
+/// have changed by more than this share of the same. docs/decisions/0098-turns-around-what-is-restless.md.
+constexpr double kJointsRestless = 0.01;
 /// Times at most that energy is bounded in a substep, with a turn between each two.
 constexpr int kRounds = 6;
 constexpr std::size_t kRowsPerTask = 1024;  // where there is but one group
@@ -136,11 +139,12 @@ void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
 /// Joints, then contacts. @return whether contacts are left as they are, since neither joints nor what
 /// weighs on them have changed a velocity by more than `settled` [m/s]; below zero: never.
 /// @param is_near  whether those of shapes are solved alone that are near bodies which joints have changed by
-/// more than that
+/// more than that; in a crowd only those are swept that have anything left to do, where they are few
 /// @param sweeps  whether contacts of shapes are swept in place of solved
 template <class Real>
 bool SoftSolver<Real>::solve_turn(WorldState<Real>& world, double settled, bool is_near, bool sweeps) {
     const auto next = Sweeps::next(view(), Sweeps::Blocks::all, 1);
+    if (!is_near) paths.begin_restless(records_);
     if (!world.joints.empty()) {
         double change = joints.solve_again(joint_step(world), loops_);
         if (!heavy_.empty())
@@ -152,11 +156,14 @@ bool SoftSolver<Real>::solve_turn(WorldState<Real>& world, double settled, bool 
         paths.turns.begin();
         const bool has_asked = joints.ask_turns(settled, paths.turns);
         const Bundles which = is_near && has_asked ? paths.near_turns() : Bundles::all;
+        const auto restless = static_cast<Real>(kJointsRestless * terms_.fall_speed());
+        const bool is_done =
+            settled >= 0 && has_asked && !sweeps && paths.sweep_restless(terms_, records_, loops_, restless);
         if (sweeps)
             paths.sweep(terms_, records_, loops_, which);
-        else if (is_near)
+        else if (is_near && !is_done)
             paths.solve_again(terms_, records_, loops_, true, which);
-        else
+        else if (!is_done)
             paths.solve(terms_, records_, loops_, 1, true, which);
     }
     sweeps_.run(view(), {next.data(), next.size()});
