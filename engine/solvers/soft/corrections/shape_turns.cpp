@@ -24,6 +24,11 @@ constexpr double kMostTurnsOfStep = 4 * kMostTurns;
 /// after a few where the change has not become less.
 constexpr double kSettled = 0.2;
 constexpr int kFewTurns = 7;
+/// In crowds they end from the third on where a turn leaves more than this share of the change of the one
+/// before: a light body or two between heavy ones, while all others hold. What is left goes on in the next
+/// substep. docs/decisions/0098-turns-around-what-is-restless.md.
+constexpr double kStalled = 0.9;
+constexpr int kTurnsOfStalled = 3;
 /// They end after fewer where it changes one by more than so many times that: a few heavy bodies that strike
 /// light ones, and do not lie on them. In heaps of heavy and light ones, where one body in so many is a heavy
 /// one that touches light ones, they do not: their light bodies would be swallowed. Without gravity nothing
@@ -117,7 +122,7 @@ void ShapeTurns<Real>::settle(const StepView<Real>& step, ContactSweeps<Real>& s
     const auto struck = static_cast<Real>(kStruck * step.terms.fall_speed());
     const double share = std::ceil(kMostTurnsOfStep * step.terms.substep_dt / step.terms.dt);
     const int most = std::min(most_, static_cast<int>(share));
-    Real first = 0;  // change [m/s]
+    Real first = 0, before = 0;  // changes [m/s]
     paths.turns.begin();
     for (const Uneven& contact : uneven_) paths.turns.ask(contact.heavy);
     using Bundles = typename PathSolver<Real>::Bundles;
@@ -136,8 +141,11 @@ void ShapeTurns<Real>::settle(const StepView<Real>& step, ContactSweeps<Real>& s
         const Real change = *std::max_element(changes.begin(), changes.end());
         if (!(change > settled)) return;
         if (turn == 1) first = change;
+        const bool is_stalled = paths.manifolds.is_crowd() && turn >= kTurnsOfStalled &&
+                                change > static_cast<Real>(kStalled) * before;
         is_last = turn == most || (turn >= most_of_struck_ && change > struck) ||
-                  (turn == kFewTurns && change > first);
+                  (turn == kFewTurns && change > first) || is_stalled;
+        before = change;
         which = change > struck ? paths.near_turns() : Bundles::all;
         paths.solve_again(step.terms, step.records, step.loops, false, which);
     }
