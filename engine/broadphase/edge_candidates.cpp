@@ -28,8 +28,9 @@ constexpr double kBodiesPerPiece = 4;
 constexpr double kMostPieces = 1024;  // of an edge that has left its margin
 
 // Pairs are counted into rows if there are more of them than one for so many rows: a row costs as much as a
-// comparison of a pair, of which there are about ten.
+// comparison of a pair, of which there are about ten. Small worlds need no memory for that.
 constexpr double kPairsOfRow = 0.1;
+constexpr std::size_t kFewPairs = 256;
 
 /// Farthest that a point of the body is from where it was.
 double way_between(Vec2 from, double from_angle, Vec2 to, double to_angle, double reach) {
@@ -179,7 +180,8 @@ void EdgeCandidates<Real>::find(const WorldState<Real>& world, const Candidates<
 /// the rows, they are compared.
 template <class Real>
 void EdgeCandidates<Real>::sort_pairs(std::size_t rows) {
-    if (static_cast<double>(pairs_.size()) < kPairsOfRow * static_cast<double>(rows)) {
+    if (pairs_.size() < kFewPairs ||
+        static_cast<double>(pairs_.size()) < kPairsOfRow * static_cast<double>(rows)) {
         std::sort(pairs_.begin(), pairs_.end());
         return;
     }
