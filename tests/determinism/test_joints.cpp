@@ -70,8 +70,8 @@ constexpr Golden kGolden[] = {
     {"net of rods", 0xc9766baaa9013493, 0xcc473225a7d37df},
     {"net of rods beside centres", 0xaf184cf7d115621, 0x20acc8a1a91d08aa},
     {"net of hinges", 0xb085cbbfb070441c, 0x5748400fa6290ac},
-    {"crowd of ragdolls", 0xafb5dee16ee234e2, 0xc76d83b7edccff68},
-    {"crowd of ropes", 0x91697a94cf7c3483, 0xfcd0e3f76ba417a0},
+    {"crowd of ragdolls", 0x2b75f5e6b0215012, 0x215342abe5a531f3},
+    {"crowd of ropes", 0xf385cf2c85878daa, 0x8dd42173a70ce987},
 };
 
 }  // namespace

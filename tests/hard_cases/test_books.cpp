@@ -48,8 +48,9 @@ Scene falling_discs(int count) {
     return scene;
 }
 
-/// A chain of smooth elastic boxes that whirls, with two loose ones in its way; it falls on a floor.
-Scene whirling_chain(int links) {
+/// Chains of smooth elastic boxes that whirl, each with two loose ones in its way; they fall on a floor.
+/// @param chains  far from each other
+Scene whirling_chains(int chains, int links) {
     constexpr double kLength = 0.5;  // m
     constexpr double kSpin = 3;      // rad/s
     Scene scene;
@@ -59,19 +60,23 @@ Scene whirling_chain(int links) {
     const auto box = [&](Vec2 at) {
         return Body{.shape = Box{kLength, 0.2}, .position = at, .material = smooth};
     };
-    for (int i = 0; i < links; ++i) {
-        Body link = box({kLength * i, 3});
-        link.velocity = {0, kSpin * (link.position.x - 0.5 * kLength * (links - 1))};
-        link.angular_velocity = kSpin;
-        scene.add(link);
-        if (i == 0) continue;
-        scene.joints.push_back({.a = BodyId{static_cast<std::uint32_t>(i - 1), 0},
-                                .b = BodyId{static_cast<std::uint32_t>(i), 0},
-                                .kind = RevoluteJoint{.anchor = Vec2{kLength * (i - 0.5), 3}}});
+    for (int chain = 0; chain < chains; ++chain) {
+        const double x = 40 * chain;
+        BodyId last;
+        for (int i = 0; i < links; ++i) {
+            Body link = box({x + kLength * i, 3});
+            link.velocity = {0, kSpin * kLength * (i - 0.5 * (links - 1))};
+            link.angular_velocity = kSpin;
+            const BodyId id = scene.add(link);
+            if (i > 0)
+                scene.joints.push_back(
+                    {.a = last, .b = id, .kind = RevoluteJoint{.anchor = Vec2{x + kLength * (i - 0.5), 3}}});
+            last = id;
+        }
+        scene.add(box({x + 1, 4})), scene.add(box({x + kLength * links - 1, 4}));
     }
-    scene.add(box({1, 4})), scene.add(box({kLength * links - 1, 4}));
     Body floor{
-        .type = BodyType::static_body, .shape = Box{100, 1}, .position = {0, -0.5}, .material = smooth};
+        .type = BodyType::static_body, .shape = Box{200, 1}, .position = {20, -0.5}, .material = smooth};
     scene.add(floor);
     return scene;
 }
@@ -79,8 +84,8 @@ Scene whirling_chain(int links) {
 /// Steps a world of a chain that whirls for ten seconds. @param fn  fn(cause) is called after each step
 /// @return J, kinetic energy at the start
 template <class Real, class Fn>
-double follow_chain(int links, const Fn& fn) {
-    BasicWorld<Real> world(whirling_chain(links), {.solver = Solver::soft});
+double follow_chains(int chains, int links, const Fn& fn) {
+    BasicWorld<Real> world(whirling_chains(chains, links), {.solver = Solver::soft});
     const double start = world.ledger().energy.kinetic;
     for (int i = 0; i < 600; ++i) {
         world.step(kStep);
@@ -148,7 +153,7 @@ TEST_SUITE("hard cases/books") {
     TEST_CASE_TEMPLATE("where what joints hold is struck, displacement has no work but that of overlaps",
                        Real, float, double) {
         double least = 0, most = 0;
-        const double start = follow_chain<Real>(2, [&](const EnergyByCause& cause) {
+        const double start = follow_chains<Real>(1, 2, [&](const EnergyByCause& cause) {
             least = std::fmin(least, cause.correction), most = std::fmax(most, cause.correction);
         });
         report("displacement works ", least / start, " to ", most / start, " of the energy");
@@ -161,7 +166,19 @@ TEST_SUITE("hard cases/books") {
     TEST_CASE_TEMPLATE("where something of a long chain is struck, all of the energy has a cause", Real,
                        float, double) {
         double largest = 0, before = 0;
-        const double start = follow_chain<Real>(24, [&](const EnergyByCause& cause) {
+        const double start = follow_chains<Real>(1, 24, [&](const EnergyByCause& cause) {
+            largest = std::fmax(largest, std::abs(cause.unexplained - before)), before = cause.unexplained;
+        });
+        report("a step leaves at most ", largest / start, " of the energy without a cause");
+        CHECK(largest < 1e-5 * start);
+    }
+
+    // Hinges of a crowd that are open are closed within a substep, by displacement: the books took the arms
+    // that bodies had after that for those at which the joints had acted.
+    TEST_CASE_TEMPLATE("where chains of a crowd are struck and closed, all of the energy has a cause", Real,
+                       float, double) {
+        double largest = 0, before = 0;
+        const double start = follow_chains<Real>(2, 24, [&](const EnergyByCause& cause) {
             largest = std::fmax(largest, std::abs(cause.unexplained - before)), before = cause.unexplained;
         });
         report("a step leaves at most ", largest / start, " of the energy without a cause");

@@ -157,11 +157,12 @@ TEST_SUITE("hard cases: crowds that hang") {
     // lies on it, twelve times as slow, and open by .03 m.
     TEST_CASE("chains that lie about are swept, and stay in one piece") {
         CHECK(joints_of(free_chains(2, 3)).find("swept") != std::string::npos);
-        CHECK(joints_of(free_chains(1, 20)).find("swept") == std::string::npos);
+        CHECK(joints_of(free_chains(1, 18)).find("swept") != std::string::npos);
+        CHECK(joints_of(free_chains(1, 17)).find("swept") == std::string::npos);
         Scene weightless = free_chains(4, 20);
         weightless.gravity = {};
         CHECK(joints_of(weightless).find("swept") == std::string::npos);
-        for (const int count : {2, 5})
+        for (const int count : {1, 2, 5})
             for (const unsigned seed : {1u, 2u}) {
                 CAPTURE(count);
                 CAPTURE(seed);

@@ -87,7 +87,7 @@ void sweep_springs(const SweepJoints<Real>& arguments, std::size_t first, std::s
         if constexpr (kFirst) {
             simd::forget_loads();
             a.push(l * nx, l * ny, one), b.push(l * nx, l * ny, F(-1));
-            turn_arms<Lanes>(k, c, a, b);
+            turn_arms<Lanes>(k, c, a, b), keep_arms<Lanes>(k, c, a, b);
             auto moved_a = Lanes::load_rows2(k.displacement, k.joints.a + c);
             auto moved_b = Lanes::load_rows2(k.displacement, k.joints.b + c);
             const auto now = direction_of<Lanes>(between<Lanes, true>(k, c, moved_a, moved_b, a, b));
@@ -129,7 +129,7 @@ void give_springs(const SweepJoints<Real>& arguments, std::size_t first, std::si
         JointSide<Lanes, true> a, b;
         load_velocities<Lanes>(k, c, a, b);
         load_arms<Lanes, true>(k, c, a, b);
-        turn_arms<Lanes>(k, c, a, b);
+        turn_arms<Lanes>(k, c, a, b), keep_arms<Lanes>(k, c, a, b);
         const typename Lanes::Batch2 still{{zero, zero}};
         const auto n = direction_of<Lanes>(between<Lanes, true>(k, c, still, still, a, b));
         Lanes::store(k.joints.normal_x + c, n.x), Lanes::store(k.joints.normal_y + c, n.y);

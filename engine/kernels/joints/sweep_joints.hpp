@@ -181,6 +181,13 @@ template <class Lanes, class Real>
     };
     a.arm = turned(k.joints.a + c, a.per_rim, k.joints.start_arm_a_x, k.joints.start_arm_a_y);
     b.arm = turned(k.joints.b + c, b.per_rim, k.joints.start_arm_b_x, k.joints.start_arm_b_y);
+}
+
+/// Those that the sweeps of a substep act at, and its books.
+template <class Lanes, class Real>
+[[gnu::always_inline]] inline void keep_arms(const SweepJoints<Real>& k, std::size_t c,
+                                             const JointSide<Lanes, true>& a,
+                                             const JointSide<Lanes, true>& b) {
     Lanes::store(k.joints.arm_a_x + c, a.arm.x), Lanes::store(k.joints.arm_a_y + c, a.arm.y);
     Lanes::store(k.joints.arm_b_x + c, b.arm.x), Lanes::store(k.joints.arm_b_y + c, b.arm.y);
 }
@@ -311,7 +318,7 @@ template <class Lanes, bool kArms, bool kFirst, class Real>
         F torque_a = zero, torque_b = zero;
         if constexpr (kArms) {
             torque_a = a.arm.x * old_y - a.arm.y * old_x, torque_b = b.arm.x * old_y - b.arm.y * old_x;
-            turn_arms<Lanes>(k, c, a, b);
+            turn_arms<Lanes>(k, c, a, b), keep_arms<Lanes>(k, c, a, b);
         }
         typename Lanes::Batch2 moved_a, moved_b;
         load_displacements<Lanes>(k, c, moved_a, moved_b);
@@ -365,7 +372,7 @@ template <class Lanes, bool kFirst, class Real>
     F torque_a = zero, torque_b = zero;
     if constexpr (kFirst) {
         torque_a = a.arm.x * ly - a.arm.y * lx, torque_b = b.arm.x * ly - b.arm.y * lx;
-        turn_arms<Lanes>(k, c, a, b);
+        turn_arms<Lanes>(k, c, a, b), keep_arms<Lanes>(k, c, a, b);
     }
     // The inverse mass at the anchor, 2 × 2, and its inverse.
     const F ia = a.inverse_inertia(), ib = b.inverse_inertia(), w = a.inverse_mass() + b.inverse_mass();
@@ -414,7 +421,7 @@ template <class Lanes, bool kArms, class Real>
     JointSide<Lanes, kArms> a, b;
     load_velocities<Lanes>(k, c, a, b);
     load_arms<Lanes, kArms>(k, c, a, b);
-    if constexpr (kArms) turn_arms<Lanes>(k, c, a, b);
+    if constexpr (kArms) turn_arms<Lanes>(k, c, a, b), keep_arms<Lanes>(k, c, a, b);
     const typename Lanes::Batch2 still{{zero, zero}};
     const auto n = direction_of<Lanes>(between<Lanes, kArms>(k, c, still, still, a, b));
     Lanes::store(k.joints.normal_x + c, n.x), Lanes::store(k.joints.normal_y + c, n.y);
@@ -439,7 +446,7 @@ template <class Lanes, class Real>
     JointSide<Lanes, true> a, b;
     load_velocities<Lanes>(k, c, a, b);
     load_arms<Lanes, true>(k, c, a, b);
-    turn_arms<Lanes>(k, c, a, b);
+    turn_arms<Lanes>(k, c, a, b), keep_arms<Lanes>(k, c, a, b);
     const F lx = Lanes::load(k.joints.impulse_x + c), ly = Lanes::load(k.joints.impulse_y + c);
     a.push(lx, ly, F(-1)), b.push(lx, ly, F(1));
     store_velocities<Lanes>(k, c, a, b);

@@ -20,8 +20,8 @@ constexpr std::size_t kWorkOfCrowd = 200;
 constexpr std::size_t kFewestJoints = 2;
 constexpr std::size_t kFewestJointsOfHung = 4;
 constexpr double kLargestMassRatio = 16;
-/// Free trees that are a crowd under gravity, however little work they are: they will lie on something, and
-/// have no energy then that an exact solve would keep.
+/// Free trees that are a crowd under gravity, however little work they are, and one alone that is not small:
+/// they will lie on something, and have no energy then that an exact solve would keep.
 /// docs/decisions/0097-crowds-that-hang.md.
 constexpr std::size_t kFewestFree = 2;
 /// Groups that hang on what stands, below which these are of no crowd:
@@ -131,7 +131,10 @@ void SoftJoints<Real>::find_groups(const WorldState<Real>& world) {
     for (const Candidate& candidate : crowd) work += direct_[candidate.group].work();
     if (work < kWorkOfCrowd) {
         std::erase_if(crowd, [&](const Candidate& c) { return c.hangs || direct_[c.group].loops() > 0; });
-        if (world.gravity == Vec2{} || crowd.size() < kFewestFree) crowd.clear();
+        const auto is_long = [](const Candidate& c) { return c.slots.size() > kMostJointsOfSmall; };
+        const bool are_enough =
+            crowd.size() >= kFewestFree || std::any_of(crowd.begin(), crowd.end(), is_long);
+        if (world.gravity == Vec2{} || !are_enough) crowd.clear();
     }
     crowd_groups_ = crowd.size();
     std::vector<std::vector<std::size_t>> of_crowd;  // slots of each of its groups
