@@ -10,6 +10,9 @@ namespace {
 
 /// A pivot below this share of its diagonal is that of a row which says what others say.
 constexpr double kRedundant = 1e-12;
+/// What a body is along one direction, beside the diagonal that the bodies it carries give it: less is
+/// round-off, which may be zero or below where they are 1e15 times as heavy as it.
+constexpr double kLeastPivot = 1e-15;
 
 std::size_t index_of(std::int32_t body) {
     return static_cast<std::size_t>(body);
@@ -19,8 +22,9 @@ std::size_t index_of(std::int32_t body) {
 
 /// By elimination, xx first; a body that nothing turns has an infinite zz.
 JointSystem::Symmetric JointSystem::inverse_of(const Symmetric& m) {
-    const double l1 = m.xy / m.xx, l2 = m.xz / m.xx, d1 = m.yy - l1 * m.xy, e = m.yz - l2 * m.xy, l3 = e / d1,
-                 d2 = m.zz - l2 * m.xz - l3 * e;
+    const double l1 = m.xy / m.xx, l2 = m.xz / m.xx, d1 = std::max(m.yy - l1 * m.xy, kLeastPivot * m.yy),
+                 e = m.yz - l2 * m.xy, l3 = e / d1,
+                 d2 = std::max(m.zz - l2 * m.xz - l3 * e, kLeastPivot * m.zz);
     const double i0 = 1 / m.xx, i1 = 1 / d1, i2 = 1 / d2, m2 = l1 * l3 - l2;
     return {
         i0 + l1 * l1 * i1 + m2 * m2 * i2, -l1 * i1 - m2 * l3 * i2, m2 * i2, i1 + l3 * l3 * i2, -l3 * i2, i2};
