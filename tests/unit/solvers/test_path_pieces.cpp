@@ -23,7 +23,7 @@ namespace {
 /// A net of bodies that move at random, with contacts of neighbours in courses and across them that press at
 /// random, cut into paths; one in 16 stands beside these.
 template <class Real>
-struct Net {
+struct SharedNet {
     static constexpr std::int32_t kAcross = 24, kUp = 20, kBodies = kAcross * kUp;
     std::vector<ContactLink> contacts;
     PathCut cut;
@@ -34,7 +34,7 @@ struct Net {
     Column<std::uint32_t> closing;
     std::int32_t still = kBodies;
 
-    explicit Net(std::uint64_t seed) {
+    explicit SharedNet(std::uint64_t seed) {
         Random random(seed);
         const auto draw = [&](double low, double high) {
             return static_cast<Real>(low + (high - low) * static_cast<double>(random.next() % 10001) * 1e-4);
@@ -149,17 +149,17 @@ TEST_SUITE("solvers/path pieces") {
         const PathKernels<Real>& kernels = runnable_kernel_tables().front()->of<Real>().convex->paths;
         for (std::uint64_t seed = 1; seed <= 20; ++seed) {
             CAPTURE(seed);
-            Net<Real> net(seed);
+            SharedNet<Real> net(seed);
             Random random(seed);
             PathPieces<Real> pieces;
-            pieces.list_contacts(net.cut, net.ends, Net<Real>::kBodies + 1);
+            pieces.list_contacts(net.cut, net.ends, SharedNet<Real>::kBodies + 1);
             pieces.remember(net.velocity);
             std::set<std::int32_t> restless;
             for (int i = 0; i < 12; ++i)
-                restless.insert(static_cast<std::int32_t>(random.next() % Net<Real>::kBodies));
+                restless.insert(static_cast<std::int32_t>(random.next() % SharedNet<Real>::kBodies));
             for (const std::int32_t body : restless)
                 net.velocity[4 * static_cast<std::size_t>(body) + random.next() % 3] += Real(0.5);
-            Net<Real> only = net;
+            SharedNet<Real> only = net;
             const std::set<std::size_t> around = net.contacts_around(restless);
             REQUIRE(around.size() > 2 * restless.size());
             REQUIRE(around.size() < net.contacts.size() / 2);
@@ -167,9 +167,9 @@ TEST_SUITE("solvers/path pieces") {
                 if (!around.contains(n)) only.take(n);
             only.sweep_all(kernels, 2);
 
-            const Net<Real> before = net;
-            REQUIRE(pieces.gather(net.cut, net.velocity, Net<Real>::kBodies, Real(0.1), net.links, net.heads,
-                                  net.still));
+            const SharedNet<Real> before = net;
+            REQUIRE(pieces.gather(net.cut, net.velocity, SharedNet<Real>::kBodies, Real(0.1), net.links,
+                                  net.heads, net.still));
             pieces.sweep(net.arguments(), kernels, 2, net.links);
             CHECK(have_equal_bits(net.velocity, only.velocity));
             bool are_equal = true;
@@ -183,8 +183,8 @@ TEST_SUITE("solvers/path pieces") {
             }
             CHECK(are_equal);
             // Velocities have been remembered since, and no sweep changes any by so much.
-            CHECK(pieces.gather(net.cut, net.velocity, Net<Real>::kBodies, Real(1e9), net.links, net.heads,
-                                net.still));
+            CHECK(pieces.gather(net.cut, net.velocity, SharedNet<Real>::kBodies, Real(1e9), net.links,
+                                net.heads, net.still));
             const Column<Real> swept = net.velocity;
             pieces.sweep(net.arguments(), kernels, 2, net.links);
             CHECK(have_equal_bits(net.velocity, swept));
@@ -192,12 +192,12 @@ TEST_SUITE("solvers/path pieces") {
     }
 
     TEST_CASE("where most bodies are restless there are no pieces") {
-        Net<float> net(1);
+        SharedNet<float> net(1);
         PathPieces<float> pieces;
-        pieces.list_contacts(net.cut, net.ends, Net<float>::kBodies + 1);
+        pieces.list_contacts(net.cut, net.ends, SharedNet<float>::kBodies + 1);
         pieces.remember(net.velocity);
-        for (std::size_t body = 0; body < Net<float>::kBodies; body += 2) net.velocity[4 * body] += 1;
-        CHECK_FALSE(
-            pieces.gather(net.cut, net.velocity, Net<float>::kBodies, 0.1F, net.links, net.heads, net.still));
+        for (std::size_t body = 0; body < SharedNet<float>::kBodies; body += 2) net.velocity[4 * body] += 1;
+        CHECK_FALSE(pieces.gather(net.cut, net.velocity, SharedNet<float>::kBodies, 0.1F, net.links,
+                                  net.heads, net.still));
     }
 }
