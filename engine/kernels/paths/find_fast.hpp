@@ -23,7 +23,7 @@ template <class Lanes, class Real>
 [[gnu::always_inline]] inline auto stay_apart(const PathBatch<Real>& p, const LinkLanes<Lanes, Real>& l,
                                               std::size_t i, typename Lanes::Batch rounding) {
     using F = typename Lanes::Batch;
-    using simd::abs, simd::min;
+    using simd::abs;
     const SolvePaths<Real>& k = p.k;
     const PathLink<Real>& link = p.link[i];
     const PathPlace<Lanes> near(k.displacement, k.turn, p.near_rows(i)),
@@ -53,7 +53,7 @@ template <class Real, class Isa>
 PathCounts find_fast(const SolvePaths<Real>& arguments, std::size_t first, std::size_t last) {
     using Lanes = simd::Lanes<Real, Isa>;
     using F = typename Lanes::Batch;
-    using simd::abs, simd::max, simd::min;
+    using simd::abs, simd::min;
     const SolvePaths<Real> k = arguments;  // a copy: no store can change it
     // Six sums and products lead to a velocity, each off by half of this at most.
     constexpr Real kRounding = 8 * std::numeric_limits<Real>::epsilon();

@@ -22,8 +22,8 @@ constexpr float kTiny = 1e-30f;  // m², so that a contact in the centre of mass
 /// Contacts of a path that is not slender, as towers are: its loads spread to others anyhow, and a long
 /// bundle is solved again as a whole for one contact that changes. docs/decisions/0038-broad-paths.md.
 constexpr std::uint32_t kLongestBroad = 64;
-/// Of so many contacts, it has no more than fill the lanes of a colour, but at least the shortest: a colour
-/// takes as long as its longest path. docs/decisions/0098-turns-around-what-is-restless.md.
+/// Such a path has no more contacts than fill the lanes of a colour, but at least so many, where there are
+/// kFewestShort in all: record 0098, docs/decisions/0098-turns-around-what-is-restless.md.
 constexpr std::uint32_t kShortestBroad = 16;
 constexpr std::size_t kFewestShort = 1024;
 constexpr std::uint32_t kMostColours = 64;  // of a round: bits of a word

@@ -4,6 +4,7 @@
 #include "kernels/paths/path_arguments.hpp"
 #include "math/random.hpp"
 #include "state/columns/column.hpp"
+#include "support/drawn_link.hpp"
 #include "support/equal_bits.hpp"
 
 #include <doctest/doctest.h>
@@ -63,15 +64,7 @@ struct RandomPaths {
                 link.body[lane] = ++row;
                 add_body(row, i + 1 < lengths[lane] || lane % 3 != 0);
                 const double angle = static_cast<double>(draw(-0.7, 0.7));
-                link.normal_x[lane] = static_cast<Real>(std::cos(angle));
-                link.normal_y[lane] = static_cast<Real>(std::sin(angle));
-                link.near1[lane] = draw(-1, -0.2), link.near2[lane] = draw(0.2, 1),
-                link.near_t[lane] = draw(0.5, 1);
-                link.far1[lane] = draw(-1, -0.2), link.far2[lane] = draw(0.2, 1),
-                link.far_t[lane] = draw(-1, -0.5);
-                link.separation1[lane] = draw(0, 0.002), link.separation2[lane] = draw(0, 0.002);
-                link.friction[lane] = static_cast<Real>(friction), link.thickness[lane] = 1;
-                link.normal1[lane] = draw(0, 0.2), link.normal2[lane] = draw(0, 0.2);
+                carom::test::draw_contact(link, lane, angle, static_cast<Real>(friction), draw);
             }
         }
     }
@@ -335,7 +328,7 @@ TEST_SUITE("kernels/paths/solve_paths") {
     TEST_CASE_TEMPLATE("paths that do not settle come to the same in a batch of their own", Real, float,
                        double) {
         std::vector<RandomPaths<Real>> bundles;
-        for (const std::size_t length : {16, 16, 16, 9, 9, 16})
+        for (const std::size_t length : {16U, 16U, 16U, 9U, 9U, 16U})
             bundles.emplace_back(100 + bundles.size(), length, 0.5);
         for (const KernelTables* tables : runnable_kernel_tables())
             for (const bool tries_pieces : {true, false}) {

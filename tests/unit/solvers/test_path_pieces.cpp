@@ -13,6 +13,7 @@
 #include "isa/select_isa.hpp"
 #include "math/random.hpp"
 #include "narrowphase/convex.hpp"
+#include "support/drawn_link.hpp"
 #include "support/equal_bits.hpp"
 
 using namespace carom;
@@ -64,15 +65,8 @@ struct SharedNet {
             if (cut.first_contacts()[kPathLanes * place.bundle + lane] == static_cast<std::int32_t>(n))
                 heads[kPathLanes * place.bundle + lane] = ends[n][0];
             const auto angle = static_cast<double>(draw(0, 6));
-            link.normal_x[lane] = static_cast<Real>(std::cos(angle));
-            link.normal_y[lane] = static_cast<Real>(std::sin(angle));
-            link.near1[lane] = draw(-1, -0.2), link.near2[lane] = draw(0.2, 1),
-            link.near_t[lane] = draw(0.5, 1);
-            link.far1[lane] = draw(-1, -0.2), link.far2[lane] = draw(0.2, 1),
-            link.far_t[lane] = draw(-1, -0.5);
-            link.separation1[lane] = draw(0, 0.002), link.separation2[lane] = draw(0, 0.002);
-            link.friction[lane] = draw(0, 1), link.thickness[lane] = 1;
-            link.normal1[lane] = draw(0, 0.2), link.normal2[lane] = draw(0, 0.2);
+            const Real friction = draw(0, 1);
+            carom::test::draw_contact(link, lane, angle, friction, draw);
         }
         for (const PathCut::Jump& jump : cut.jumps())
             links[jump.link].body[jump.lane] = ends[static_cast<std::size_t>(jump.contact)][0];
