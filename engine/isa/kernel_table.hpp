@@ -60,8 +60,9 @@ struct KernelTable {
                       std::size_t last);
     // smooth; rough; rough, and some bodies do not turn; the last two with rolling resistance
     std::array<ContactKernels<Real>, 5> contacts;
-    // rods between centres, between anchors; hinges; springs and ropes; what acts on angles
-    std::array<JointKernels<Real>, 5> joints;
+    // rods between centres, between anchors; hinges; springs and ropes; wheels and sliders; what acts on
+    // angles
+    std::array<JointKernels<Real>, 6> joints;
     void (*begin_bundles)(const BeginBundles<Real>&, std::size_t first, std::size_t last);
     void (*sweep_bundles)(const SweepBundles<Real>&, std::size_t first, std::size_t last);
     std::size_t (*close_bundles)(const CloseBundles<Real>&, std::size_t first, std::size_t last);

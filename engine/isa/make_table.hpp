@@ -18,6 +18,7 @@
 #include "kernels/flight/find_impacts.hpp"
 #include "kernels/joints/begin_bundles.hpp"
 #include "kernels/joints/close_bundles.hpp"
+#include "kernels/joints/sweep_axles.hpp"
 #include "kernels/joints/sweep_bundles.hpp"
 #include "kernels/joints/sweep_drives.hpp"
 #include "kernels/joints/sweep_joints.hpp"
@@ -78,6 +79,7 @@ constexpr KernelTable<Real> make_table(std::string_view isa, const ConvexKernels
                &sweep_rods<true, false, Real, Isa>},
               {&give_hinges<Real, Isa>, &sweep_hinges<true, Real, Isa>, &sweep_hinges<false, Real, Isa>},
               {&give_springs<Real, Isa>, &sweep_springs<true, Real, Isa>, &sweep_springs<false, Real, Isa>},
+              {&give_axles<Real, Isa>, &sweep_axles<true, Real, Isa>, &sweep_axles<false, Real, Isa>},
               {&give_angles<Real, Isa>, &sweep_angles<true, Real, Isa>, &sweep_angles<false, Real, Isa>}}},
         .begin_bundles = &begin_bundles<Real, Isa>,
         .sweep_bundles = &sweep_bundles<Real, Isa>,

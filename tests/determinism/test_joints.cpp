@@ -54,6 +54,35 @@ Scene crowd_of_ropes() {
     return scene;
 }
 
+/// Cars on suspensions, of which one has a slider on it with a motor and ends, that fall on a floor.
+Scene crowd_of_cars() {
+    Scene scene;
+    scene.name = "crowd of cars", scene.gravity = {0, -10};
+    scene.walls.emplace();
+    scene.walls->max = {80, 100}, scene.walls->top = false;
+    for (int i = 0; i < 19; ++i) {
+        const Vec2 at{3 + 4.0 * i, 1.5 + 0.1 * (i % 3)};
+        const BodyId chassis = scene.add({.shape = Box{3, 0.6}, .position = at, .angle = 0.03 * (i % 4)});
+        for (const double side : {-1.1, 1.1}) {
+            const BodyId wheel = scene.add({.shape = Disc{0.4}, .position = {at.x + side, at.y - 0.5}});
+            scene.add(Joint{.a = chassis,
+                            .b = wheel,
+                            .kind = WheelJoint{.frequency = 2.0 + 0.3 * i,
+                                               .damping_ratio = 0.5,
+                                               .motor_speed = -10,
+                                               .max_motor_torque = i % 2 == 0 ? 5.0 : 0.0}});
+        }
+        if (i % 3 != 0) continue;
+        const BodyId mast = scene.add({.shape = Box{0.2, 1}, .position = {at.x, at.y + 1}});
+        scene.add(Joint{
+            .a = chassis,
+            .b = mast,
+            .kind = PrismaticJoint{
+                .axis = {0.2, 1}, .lower = -0.1, .upper = 0.4, .motor_speed = 1, .max_motor_force = 40}});
+    }
+    return scene;
+}
+
 std::vector<Scene> scenes_with_joints() {
     Scene every = every_joint(), chain = weighted_chain(10, 100, {1, 0}), net = hanging_net(12);
     Scene grid = net, hinges = net;
@@ -61,7 +90,7 @@ std::vector<Scene> scenes_with_joints() {
     grid.name = "net of rods beside centres", hinges.name = "net of hinges";
     for (Joint& joint : grid.joints) std::get<DistanceJoint>(joint.kind).anchor_b = {0.05, 0.02};
     for (Joint& joint : hinges.joints) joint.kind = RevoluteJoint{};
-    return {every, chain, net, grid, hinges, crowd_of_ragdolls(), crowd_of_ropes()};
+    return {every, chain, net, grid, hinges, crowd_of_ragdolls(), crowd_of_ropes(), crowd_of_cars()};
 }
 
 constexpr Golden kGolden[] = {
@@ -72,6 +101,7 @@ constexpr Golden kGolden[] = {
     {"net of hinges", 0xb085cbbfb070441c, 0x5748400fa6290ac},
     {"crowd of ragdolls", 0x2b75f5e6b0215012, 0x215342abe5a531f3},
     {"crowd of ropes", 0xf385cf2c85878daa, 0x8dd42173a70ce987},
+    {"crowd of cars", 0x2e264d316aaaf528, 0x4dc12466dbb9ab63},
 };
 
 }  // namespace

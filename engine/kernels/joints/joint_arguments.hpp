@@ -4,8 +4,8 @@
 #include <cstdint>
 
 // Plain arguments of the kernels that sweep over joints (solver `soft`): rods between centres, rods between
-// anchors, hinges; springs and ropes; limits, motors and springs of angles. Columns are padded and 64-byte
-// aligned; `first` and `last` are multiples of kRowPadding. Records of bodies are those of
+// anchors, hinges; springs and ropes; wheels and sliders; limits, motors and springs of angles. Columns are
+// padded and 64-byte aligned; `first` and `last` are multiples of kRowPadding. Records of bodies are those of
 // contact_arguments.hpp; the world is a row beyond the bodies, at rest.
 
 namespace carom {
@@ -51,6 +51,10 @@ struct JointColumns {
     Real *lower, *upper;            // at the end of the step; beyond all numbers where there is no end
     Real *lower_rate, *upper_rate;  // m/s or rad/s, where ends move
     Real *speed, *most;             // m/s or rad/s; N s or N m s in a substep, 0 where there is no motor
+    // Only of wheels and sliders. Their normal is the axis, start_x and the others are those of a hinge, and
+    // arm_a reaches to b's anchor.
+    Real *axis_x, *axis_y;  // no unit, at the start of the step
+    Real* across;           // N s, across the axis
 };
 
 /// One Gauss-Seidel sweep over joints of a kind.

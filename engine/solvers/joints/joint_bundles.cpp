@@ -96,7 +96,8 @@ Mechanism mechanism_of(const WorldState<Real>& world, const std::vector<std::siz
     };
     for (const std::size_t slot : slots) {
         const StoredJoint& joint = world.joints[slot];
-        if (joint.type == JointType::distance || (is_hung(world, joint) && !joint.is_on_world())) return {};
+        if (joint.type != JointType::revolute && joint.type != JointType::weld) return {};
+        if (is_hung(world, joint) && !joint.is_on_world()) return {};
         const std::int32_t a = number_of(joint.a), b = number_of(joint.b);
         if (mechanism.rows.size() > kMostBodiesOfBundle) return {};
         mechanism.hinges.push_back({slot, a, b});

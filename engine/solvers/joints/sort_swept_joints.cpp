@@ -93,6 +93,9 @@ std::vector<std::size_t> SweptJoints<Real>::sort(const WorldState<Real>& world,
     longest_ = 0, is_loaded_ = false;
     breakable_.clear();
     groups_ = {}, bundles_.clear();
+    has_joints_of_groups_ = false;
+    kinds_.resize(slots.empty() && crowd.empty() ? std::size_t{0} : std::size_t{kKinds});
+    if (kinds_.empty()) return {};
     for (const std::vector<std::size_t>& group : crowd) {
         Mechanism mechanism = mechanism_of(world, group, &has_angle_part);
         if (mechanism.rows.empty())

@@ -30,12 +30,12 @@ constexpr double kNanosecondsToClose = 1;  // a part of a joint, on one thread, 
 
 template <class Real>
 bool SweptJoints<Real>::knows(const StoredJoint& joint) {
-    return joint.type == JointType::distance || joint.type == JointType::revolute ||
-           joint.type == JointType::weld;
+    return joint.type != JointType::target && joint.type != JointType::gear;
 }
 
 template <class Real>
 std::size_t SweptJoints<Real>::kind_of(const StoredJoint& joint) {
+    if (joint.type == JointType::prismatic || joint.type == JointType::wheel) return kAxles;
     if (joint.type != JointType::distance) return kHinges;
     if (joint.is_spring() || joint.has_lower || joint.has_upper) return kSprings;
     const bool has_arms = joint.anchor_b != Vec2{} || (!joint.is_on_world() && joint.anchor_a != Vec2{});
@@ -44,15 +44,22 @@ std::size_t SweptJoints<Real>::kind_of(const StoredJoint& joint) {
 
 template <class Real>
 bool SweptJoints<Real>::has_angle_part(const StoredJoint& joint) {
-    return joint.type == JointType::weld ||
-           (joint.type == JointType::revolute &&
-            (joint.has_lower || joint.has_upper || joint.has_motor || joint.is_spring()));
+    return law_of_angle(joint).acts();
+}
+
+template <class Real>
+DriveLaw SweptJoints<Real>::law_of(const StoredJoint& joint, std::size_t kind) {
+    return kind == kAngles ? law_of_angle(joint) : law_of_way(joint);
 }
 
 template <class Real>
 unsigned SweptJoints<Real>::needs_of(std::size_t kind) {
-    constexpr unsigned kNeeds[kKinds] = {kPoints, kPoints | kArms | kRims, kPoints | kArms | kRims,
-                                         kPoints | kArms | kRims | kDrives, kRims | kDrives};
+    constexpr unsigned kNeeds[kKinds] = {kPoints,
+                                         kPoints | kArms | kRims,
+                                         kPoints | kArms | kRims,
+                                         kPoints | kArms | kRims | kDrives,
+                                         kPoints | kArms | kRims | kDrives | kAxes,
+                                         kRims | kDrives};
     return kNeeds[kind];
 }
 
@@ -69,6 +76,7 @@ void SweptJoints<Real>::Kind::for_each_column(const Fn& fn) {
     for (Column<Real>* column : {&impulse_z, &impulse_w, &value, &alpha, &gamma, &lower, &upper, &lower_rate,
                                  &upper_rate, &speed, &most})
         fn(*column, unsigned{kDrives});
+    for (Column<Real>* column : {&axis_x, &axis_y, &across}) fn(*column, unsigned{kAxes});
 }
 
 template <class Real>
@@ -115,7 +123,10 @@ JointColumns<Real> SweptJoints<Real>::Kind::columns() {
             lower_rate.data(),
             upper_rate.data(),
             speed.data(),
-            most.data()};
+            most.data(),
+            axis_x.data(),
+            axis_y.data(),
+            across.data()};
 }
 
 template <class Real>
@@ -296,10 +307,18 @@ double SweptJoints<Real>::work_of_bend(const JointStep<Real>& step, std::size_t 
               b = has_arms ? end_of(own.b[i], {own.arm_b_x[i], own.arm_b_y[i]}, own.per_rim_b[i])
                            : end_of(own.b[i], {}, 0);
     Vec2 bend = b.bend - a.bend;
-    if (kind != kHinges && own.per_length[i] > 0) {
+    if (own.per_length[i] > 0) {
         const Vec2 normal{own.normal_x[i], own.normal_y[i]};
         const double across = cross(normal, b.velocity - a.velocity), per_length = own.per_length[i];
         bend += (0.5 * bend_at(across * per_length) / per_length) * normal;
+    }
+    if (kind == kAxles) {
+        const Vec2 axis{own.normal_x[i], own.normal_y[i]};
+        const double spin = static_cast<double>(own.per_rim_a[i]) *
+                            static_cast<double>(
+                                step.records.velocity[4 * static_cast<std::size_t>(own.a[i]) + 2]),
+                     led = std::clamp(h * spin, -kMostBend, kMostBend) * dot(axis, b.velocity - a.velocity);
+        bend += led * Vec2{axis.y, -axis.x};
     }
     const double most = kBodiesOfBend * length_squared(bend) / (a.inverse_mass + b.inverse_mass);
     return std::clamp(-dot(impulse, bend), -most, most);

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "constraints/joints/drive_law.hpp"
 #include "constraints/task_groups.hpp"
 #include "kernels/joints/joint_arguments.hpp"
 #include "parallel/phases.hpp"
@@ -14,7 +15,8 @@ namespace carom {
 
 /// Joints of groups that are too entangled to be solved exactly, or so many and small that it is not worth
 /// it: swept by lanes, with the impulses of the step before to start from. A joint is swept in up to two
-/// parts, that of its points and that of its angle: a weld is a hinge whose angle has both its ends at 0.
+/// parts, that of its points and that of its angle: a weld is a hinge whose angle has both its ends at 0, a
+/// slider an axle of which that is so.
 ///
 /// They have task groups of their own (constraints/task_groups.hpp), by rows alone: bodies in the order of
 /// their rows. In each the joints of a kind are sorted by colour, and a run over a group is one call of a
@@ -74,7 +76,7 @@ class SweptJoints {
     /// motor, and of what keeps bodies on paths that bend.
     template <class Fn>
     void for_each_drive(const JointStep<Real>& step, const Fn& fn) const {
-        for (std::size_t kind = 0; kind < kKinds; ++kind)
+        for (std::size_t kind = 0; kind < kinds_.size(); ++kind)
             for (std::size_t i = 0; i < kinds_[kind].slot.size(); ++i)
                 if (kinds_[kind].slot[i] >= 0)
                     fn(kinds_[kind].a[i], kinds_[kind].b[i],
@@ -104,12 +106,14 @@ class SweptJoints {
         Column<Real> arm_a_x, arm_a_y, arm_b_x, arm_b_y, per_rim_a, per_rim_b, seen_a, seen_b;
         Column<Real> impulse_z, impulse_w, value, alpha, gamma, lower, upper, lower_rate, upper_rate, speed,
             most;
+        Column<Real> axis_x, axis_y, across;
         std::vector<std::size_t> begin;  // of each group, and the end
         /// What a joint is made of, in the order of the columns: joints themselves lie apart in memory.
         struct Source {
             std::int32_t row_a, row_b;  // below zero: the world
             Vec2 anchor_a, anchor_b;    // m, in the frame of the body, or of the world
             double angle;               // rad, at which the angle counts as 0
+            Vec2 axis;                  // no unit, in the frame of a
         };
         std::vector<Source> sources;
         /// What drives a joint.
@@ -129,12 +133,15 @@ class SweptJoints {
         template <class Fn>
         void for_each_column(const Fn& fn);
     };
-    enum : std::size_t { kRods, kRodsOfAnchors, kHinges, kSprings, kAngles, kKinds };
-    enum Needs : unsigned { kPoints = 1, kArms = 2, kRims = 4, kDrives = 8 };
+    enum : std::size_t { kRods, kRodsOfAnchors, kHinges, kSprings, kAxles, kAngles, kKinds };
+    enum Needs : unsigned { kPoints = 1, kArms = 2, kRims = 4, kDrives = 8, kAxes = 16 };
     static unsigned needs_of(std::size_t kind);
     /// The part of a joint that is about points, and whether it has one about its angle.
     static std::size_t kind_of(const StoredJoint& joint);
     static bool has_angle_part(const StoredJoint& joint);
+    /// What acts on the coordinate of a kind that gives way.
+    static DriveLaw law_of(const StoredJoint& joint, std::size_t kind);
+    static bool gives_way(std::size_t kind) { return kind >= kSprings; }
     Real* turn_of(BodyRecords<Real>& records);
     void add_bundles();
     SweepJoints<Real> of_bundles(std::size_t kind) const;
@@ -154,7 +161,8 @@ class SweptJoints {
     void add_stiffness(const Kind& own, std::size_t places);
     [[gnu::always_inline]] static inline void store_joint(StoredJoint& joint, const Kind& own,
                                                           std::size_t kind, std::size_t i, double substep_dt);
-    /// The impulse of a spring, a rope or an angle: along the length [N s] or about the angle [N m s].
+    /// The impulse of a spring, a rope or an angle, or along an axle: along the length [N s] or about the
+    /// angle [N m s].
     static double sum_of_impulses(const Kind& own, std::size_t i) {
         return static_cast<double>(own.impulse_x[i]) + static_cast<double>(own.impulse_y[i]) +
                static_cast<double>(own.impulse_z[i]) + static_cast<double>(own.impulse_w[i]);
@@ -162,9 +170,11 @@ class SweptJoints {
     /// The impulse on b of the part of a joint that is about points [N s].
     static Vec2 impulse_on_b(const Kind& own, std::size_t i, std::size_t kind) {
         if (kind == kHinges) return {own.impulse_x[i], own.impulse_y[i]};
-        const double along =
-            kind == kSprings ? sum_of_impulses(own, i) : static_cast<double>(own.impulse_x[i]);
-        return along * Vec2{own.normal_x[i], own.normal_y[i]};
+        const Vec2 normal{own.normal_x[i], own.normal_y[i]};
+        if (!gives_way(kind)) return static_cast<double>(own.impulse_x[i]) * normal;
+        const Vec2 along = sum_of_impulses(own, i) * normal;
+        if (kind != kAxles) return along;
+        return along + static_cast<double>(own.across[i]) * Vec2{-normal.y, normal.x};
     }
 
     double work_of_drive(const JointStep<Real>& step, std::size_t kind, std::size_t i) const;
@@ -178,7 +188,7 @@ class SweptJoints {
     };
     std::vector<Breakable> breakable_;
 
-    std::array<Kind, kKinds> kinds_;
+    std::vector<Kind> kinds_;  // kKinds of them; none where no joint is swept, as in most worlds
     TaskGroups groups_;
     JointBundles bundles_;
     Column<double> inertia_of_bundles_, longest_of_bundle_, hung_x_,

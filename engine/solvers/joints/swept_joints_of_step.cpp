@@ -70,9 +70,9 @@ void SweptJoints<Real>::begin_step(const JointStep<Real>& step, const StepLoops<
     if (!bundles_.empty()) begin_bundles(step, loops);
     for (std::size_t kind = 0; kind < kKinds; ++kind) {
         Kind& own = kinds_[kind];
-        arguments_[kind].most = real(kind == kHinges   ? kLargestCorrection * longest_
-                                     : kind == kAngles ? kLargestTurn
-                                                       : kLargestCorrection);
+        arguments_[kind].most = real(kind == kHinges || kind == kAxles ? kLargestCorrection * longest_
+                                     : kind == kAngles                 ? kLargestTurn
+                                                                       : kLargestCorrection);
         if (own.seen_a.empty()) continue;
         const auto seen = [&](std::int32_t row) { return real(stiffness_.seen(step.world.bodies, row, h)); };
         for_each_task(kind, [&](std::size_t first, std::size_t last) {
@@ -200,13 +200,19 @@ void SweptJoints<Real>::begin_joint(const JointStep<Real>& step, Kind& own, std:
     own.start_arm_b_x[i] = real(b.arm.x), own.start_arm_b_y[i] = real(b.arm.y);
     own.per_rim_a[i] = real(a.per_rim), own.per_rim_b[i] = real(b.per_rim);
     Vec2 pull{own.impulse_x[i], own.impulse_y[i]};  // N s, on b
-    if (kind != kHinges) {
-        const Vec2 d = (b.place + b.arm) - (a.place + a.arm);
-        const double distance = std::sqrt(length_squared(d));
-        const double along = kind == kSprings ? sum_of_impulses(own, i) : pull.x;
-        pull = distance > 0 ? (along / distance) * d : Vec2{};
+    Vec2 arm_a = a.arm;
+    const Vec2 between = (b.place + b.arm) - (a.place + a.arm);
+    if (kind == kAxles) {
+        const Vec2 axis = rotate(turns[0], source.axis);
+        own.axis_x[i] = real(axis.x), own.axis_y[i] = real(axis.y);
+        own.normal_x[i] = own.axis_x[i], own.normal_y[i] = own.axis_y[i];
+        pull = impulse_on_b(own, i, kind), arm_a += between;
+    } else if (kind != kHinges) {
+        const double distance = std::sqrt(length_squared(between));
+        const double along = gives_way(kind) ? sum_of_impulses(own, i) : pull.x;
+        pull = distance > 0 ? (along / distance) * between : Vec2{};
     }
-    moments_[i] = {-dot(a.arm, pull), dot(b.arm, pull)};
+    moments_[i] = {-dot(arm_a, pull), dot(b.arm, pull)};
 }
 
 /// Adds up how joints with arms turn their bodies, in the order of their places, and notes the longest arm.
@@ -238,10 +244,12 @@ void SweptJoints<Real>::load(const WorldState<Real>& world) {
             const StoredJoint& joint = world.joints[static_cast<std::size_t>(own.slot[i])];
             has_springs_ = has_springs_ || joint.is_spring();
             has_motors_ = has_motors_ || joint.has_motor;
-            own.sources[i] = {row_of(joint.a), row_of(joint.b), joint.anchor_a, joint.anchor_b, joint.angle};
+            own.sources[i] = {row_of(joint.a), row_of(joint.b), joint.anchor_a,
+                              joint.anchor_b,  joint.angle,     joint.axis};
             if ((needs_of(kind) & kPoints) != 0) own.length[i] = real(joint.length);
             if ((needs_of(kind) & kDrives) == 0)
                 own.impulse_x[i] = real(joint.impulse[0]), own.impulse_y[i] = real(joint.impulse[1]);
+            if (kind == kAxles) own.across[i] = real(joint.impulse[0]);
         }
     }
     load_bundles(world);
@@ -309,22 +317,24 @@ void SweptJoints<Real>::begin_drive(const JointStep<Real>& step, Kind& own, std:
     const double h = step.terms.substep_dt;
     // A spring that is too stiff for the substep holds as a rod does: as a spring it would close its gap by
     // velocities, and sweeps that have not converged make energy of that.
-    const bool is_stiff = joint.is_spring() && kTwoPi * joint.frequency * h > kStiffestAlone;
-    const bool is_held = is_stiff || (joint.type == JointType::weld && !joint.is_spring());
-    const double rest_at = kind == kAngles ? 0 : joint.length;
-    own.lower[i] = real(is_held ? rest_at : joint.has_lower ? joint.lower.at : -kNoEnd);
-    own.upper[i] = real(is_held ? rest_at : joint.has_upper ? joint.upper.at : kNoEnd);
-    own.lower_rate[i] = real(joint.lower.rate), own.upper_rate[i] = real(joint.upper.rate);
-    const bool springs = joint.is_spring() && !is_stiff;
+    const DriveLaw law = law_of(joint, kind);
+    const bool is_stiff = law.springs && kTwoPi * joint.frequency * h > kStiffestAlone;
+    const bool is_held = is_stiff || law.is_held;
+    const double rest_at = kind == kSprings ? joint.length : 0;
+    own.lower[i] = real(is_held ? rest_at : law.has_ends && joint.has_lower ? joint.lower.at : -kNoEnd);
+    own.upper[i] = real(is_held ? rest_at : law.has_ends && joint.has_upper ? joint.upper.at : kNoEnd);
+    own.lower_rate[i] = real(law.has_ends ? joint.lower.rate : 0);
+    own.upper_rate[i] = real(law.has_ends ? joint.upper.rate : 0);
+    const bool springs = law.springs && !is_stiff;
     SpringTerms terms;
     if (springs)
         terms =
             spring_terms(joint.frequency, joint.damping_ratio, h, step.springs.least_gamma_in_turns(slot));
     own.alpha[i] = real(terms.alpha), own.gamma[i] = real(terms.gamma);
-    const double most = joint.has_motor ? joint.max_motor * h : 0;
+    const double most = law.has_motor ? joint.max_motor * h : 0;
     own.speed[i] = real(joint.motor_speed), own.most[i] = real(most);
     own.drives[i] = {most, springs};
-    share_out(own, i, joint.impulse[kind == kAngles ? 2 : 0]);
+    share_out(own, i, joint.impulse[law.slot]);
 }
 
 /// Shares the sum of the impulses of a joint out, which is what the store keeps: a motor has as much of it as
@@ -392,12 +402,14 @@ template <class Real>
                                                                   std::size_t kind, std::size_t i,
                                                                   double substep_dt) {
     if (kind == kAngles) {
-        joint.impulse[2] = sum_of_impulses(own, i);
-        joint.torque = joint.impulse[2] / substep_dt;
+        const double impulse = sum_of_impulses(own, i);
+        joint.impulse[law_of_angle(joint).slot] = impulse;
+        joint.torque = impulse / substep_dt;
         return;
     }
-    joint.impulse = {kind == kSprings ? sum_of_impulses(own, i) : static_cast<double>(own.impulse_x[i]),
-                     own.impulse_y[i], 0};
+    joint.impulse = {own.impulse_x[i], own.impulse_y[i], 0};
+    if (kind == kAxles) joint.impulse = {own.across[i], 0, 0};
+    if (gives_way(kind)) joint.impulse[law_of_way(joint).slot] = sum_of_impulses(own, i);
     joint.force = (1 / substep_dt) * impulse_on_b(own, i, kind);
     joint.torque = 0;
 }

@@ -18,7 +18,7 @@ using namespace carom;
 
 namespace {
 
-enum Kind : std::size_t { kHinges = 2, kAngles = 4 };  // as KernelTable::joints has them
+enum Kind : std::size_t { kHinges = 2, kAngles = 5 };  // as KernelTable::joints has them
 
 /// A mechanism is a trunk with two arms of two limbs.
 constexpr std::size_t kBodies = 5, kJoints = 4;
