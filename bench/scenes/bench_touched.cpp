@@ -11,7 +11,8 @@
 #include "measure/text.hpp"
 
 // B39 of docs/hard-cases.md: a pile at rest that is touched in every step.
-//     touched/<what>/<restitution>/<float|double>/bodies:<n>
+//     touched/<what>/<restitution>/<float|double>/bodies:<n>        discs
+//     touched-boxes/<what>/<restitution>/<float|double>/bodies:<n>  boxes
 // `ratio` is the mean time of a step over that of the same pile untouched, both in processor time
 // of the thread; `percent` of 1 touches 1 % of the bodies a step, 0 one body.
 
@@ -22,16 +23,24 @@ constexpr double kStep = measure::kStep;
 constexpr int kSettling = 2400, kMeasured = 100, kMeasuredOfMany = 20;  // steps
 
 enum class Touch { nothing, remove, add, throw_up, teleport, drive };
+enum class Kind { discs, boxes };
 
 struct TouchedPile {
     Scene scene;
     double width;  // m
+    Kind kind;
     BodyId segment;
 };
 
-/// Rough discs in a box open at the top, and a segment of 4 m just below the floor.
-TouchedPile touched_pile(int discs, double restitution) {
-    TouchedPile pile{.scene = {}, .width = std::ceil(std::sqrt(discs)), .segment = {}};
+/// A body as the others of a pile are, of a size from .8 to 1.2 m.
+Shape shape_of(Kind kind, double size) {
+    if (kind == Kind::discs) return Disc{size / 2};
+    return Box{size, size};
+}
+
+/// Rough discs or boxes in a box open at the top, and a segment of 4 m just below the floor.
+TouchedPile touched_pile(Kind kind, int count, double restitution) {
+    TouchedPile pile{.scene = {}, .width = std::ceil(std::sqrt(count)), .kind = kind, .segment = {}};
     Scene& scene = pile.scene;
     const Material material{.friction = 0.5, .restitution = restitution};
     scene.accuracy.solver = Solver::soft;
@@ -39,12 +48,12 @@ TouchedPile touched_pile(int discs, double restitution) {
     scene.walls =
         Walls{.min = {0, 0}, .max = {pile.width, 20 * pile.width}, .top = false, .material = material};
     const int columns = static_cast<int>((pile.width - 0.7) / 1.25);
-    for (int i = 0; i < discs; ++i)
-        scene.add({.shape = Disc{0.4 + 0.2 * ((i * 37) % 101) / 101},
+    for (int i = 0; i < count; ++i)
+        scene.add({.shape = shape_of(kind, 0.8 + 0.4 * ((i * 37) % 101) / 101),
                    .position = {0.65 + 1.25 * (i % columns) + 0.04 * ((i * 53) % 97) / 97,
                                 0.7 + 1.25 * (i / columns)},
                    .material = material});
-    pile.segment = {static_cast<std::uint32_t>(discs), 0};
+    pile.segment = {static_cast<std::uint32_t>(count), 0};
     scene.add({.type = BodyType::kinematic_body,
                .shape = Segment{{-2, 0}, {2, 0}},
                .position = {pile.width / 2, -0.2},
@@ -83,7 +92,7 @@ double time_of_step(const World& start, const TouchedPile& pile, Touch touch, in
         for (int k = 0; k < touched; ++k) {
             if (touch == Touch::remove) world.remove(pick());
             if (touch == Touch::add)
-                world.add({.shape = Disc{0.5},
+                world.add({.shape = shape_of(pile.kind, 1),
                            .position = free_place(),
                            .material = pile.scene.bodies[0].material});
             if (touch == Touch::throw_up) world.set_velocity(pick(), {0, 3});
@@ -96,12 +105,12 @@ double time_of_step(const World& start, const TouchedPile& pile, Touch touch, in
 }
 
 template <class World>
-void run_touched(benchmark::State& state, Touch touch, double restitution, bool one_percent) {
-    const auto discs = static_cast<int>(state.range(0));
-    const TouchedPile pile = touched_pile(discs, restitution);
+void run_touched(benchmark::State& state, Kind kind, Touch touch, double restitution, bool one_percent) {
+    const auto count = static_cast<int>(state.range(0));
+    const TouchedPile pile = touched_pile(kind, count, restitution);
     World start(pile.scene, {.threads = 1});
     for (int i = 0; i < kSettling; ++i) start.step(kStep);
-    const int touched = one_percent ? discs / 100 : 1;
+    const int touched = one_percent ? count / 100 : 1;
     double time = 0;
     for (auto _ : state) {
         time = time_of_step(start, pile, touch, touched);
@@ -112,12 +121,13 @@ void run_touched(benchmark::State& state, Touch touch, double restitution, bool 
 }
 
 const bool kAdded = [] {
-    const auto add = [](const char* name, Touch touch, bool one_percent) {
+    const auto add_of = [](Kind kind, const char* name, Touch touch, bool one_percent) {
+        const char* of_kind = kind == Kind::discs ? "touched/" : "touched-boxes/";
         for (const double restitution : {0.0, 0.3}) {
             const auto add_for = [&](const char* precision, auto run) {
                 benchmark::RegisterBenchmark(
-                    measure::joined("touched/", name, restitution > 0 ? "/0.3/" : "/0/", precision).c_str(),
-                    [=](benchmark::State& state) { run(state, touch, restitution, one_percent); })
+                    measure::joined(of_kind, name, restitution > 0 ? "/0.3/" : "/0/", precision).c_str(),
+                    [=](benchmark::State& state) { run(state, kind, touch, restitution, one_percent); })
                     ->ArgName("bodies")
                     ->Arg(1000)
                     ->Arg(10000)
@@ -128,6 +138,9 @@ const bool kAdded = [] {
             add_for("float", &run_touched<World>);
             add_for("double", &run_touched<World64>);
         }
+    };
+    const auto add = [&](const char* name, Touch touch, bool one_percent) {
+        for (const Kind kind : {Kind::discs, Kind::boxes}) add_of(kind, name, touch, one_percent);
     };
     add("remove", Touch::remove, false);
     add("add", Touch::add, false);

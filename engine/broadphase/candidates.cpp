@@ -311,6 +311,7 @@ void Candidates<Real>::follow_rows(const Bodies<Real>& bodies, std::span<const s
     is_standing_known_ = false;
     renewed_count_ += names_.follow(bodies.count, now, is_elsewhere);
     places_.follow_rows(names_, bodies);
+    slim_.follow_rows(names_);
     names_.move(first_reach_, [](std::size_t) { return Real(0); });
     names_.move(reach_, [&](std::size_t row) { return bodies.radius[row]; });
     std::erase_if(added_pairs_, [&](Pair& pair) {

@@ -79,6 +79,15 @@ void SlimBodies<Real>::set(const Bodies<Real>& bodies, std::size_t row, Vec2 pla
 }
 
 template <class Real>
+void SlimBodies<Real>::follow_rows(const RowNames& names) {
+    if (empty()) return;
+    for (Column<Record>* column : {&pose_, &size_, &first_pose_, &first_size_})
+        names.move(*column, [](std::size_t) { return Record{}; });
+    for (Column<Real>* column : {&place_x_, &place_y_, &angle_, &turn_})
+        names.move(*column, [](std::size_t) { return Real(0); });
+}
+
+template <class Real>
 std::size_t SlimBodies<Real>::drop_parted(const KernelTable<Real>& kernels, std::int32_t* a, std::int32_t* b,
                                           std::size_t count) const {
     return kernels.convex->drop_parted({pose_.data()->data(), size_.data()->data(), a, b, count});

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "broadphase/row_names.hpp"
 #include "isa/kernel_table.hpp"
 #include "narrowphase/rectangle_gap.hpp"
 #include "state/bodies.hpp"
@@ -26,8 +27,7 @@ class SlimBodies {
   public:
     /// To be called before pairs are found anew. Cost: O(shapes) where they have changed.
     void read_shapes(const ShapeStore<Real>& shapes);
-    /// Whether there are none: then pairs are not asked for rectangles. Rows of worlds that have some do not
-    /// change while pairs last.
+    /// Whether there are none: then pairs are not asked for rectangles.
     bool empty() const { return !some_are_slim_; }
     void clear() { some_are_slim_ = false; }
 
@@ -41,6 +41,8 @@ class SlimBodies {
     void set(const Bodies<Real>& bodies, std::size_t row, Vec2 place, double margin, double reach, double dt);
     /// What `set` gave all rows is what pairs are found by.
     void note_all_are_first() { first_pose_ = pose_, first_size_ = size_; }
+    /// Rectangles go with their bodies when rows change; fresh rows are to be `set`.
+    void follow_rows(const RowNames& names);
     /// Drops the pairs that are parted.
     std::size_t drop_parted(const KernelTable<Real>& kernels, std::int32_t* a, std::int32_t* b,
                             std::size_t count) const;

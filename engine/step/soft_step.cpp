@@ -77,7 +77,8 @@ class SoftStep final : public SoftSimulation<Real> {
 
     static constexpr Stage<Sim> kBegin[] = {
         {"follow_changes", [](Sim& sim) { sim.follow_changes(); }, has_changes, KernelChoice::none,
-         "position, radius, candidate pairs", "candidate pairs, coloured candidates"},
+         "position, radius, candidate pairs, contacts of shapes",
+         "candidate pairs, coloured candidates, contacts of shapes"},
         {"watch_built_in_pairs",
          [](Sim& sim) {
              if (watch_built_in_pairs(sim.world)) sim.candidates.invalidate_pairs();

@@ -12,7 +12,6 @@ constexpr std::size_t kPairsPerTask = 4096, kRowsPerTask = 1024;
 // For the executor, on one thread: ns a pair; ns a row or a new pair.
 constexpr double kNanosecondsToScan = 2, kNanosecondsToDescribe = 2;
 
-constexpr int kTaken = -1;              // thickness of a pair that was taken out
 constexpr std::size_t kPairsOfGap = 8;  // gaps are closed when one pair in so many is one
 
 /// Share of the lengths in it by which a gap may be off through rounding.

@@ -30,6 +30,17 @@ class DistantPairs {
 
     bool empty() const { return a_.empty(); }
     void clear();
+    /// Pairs go with their bodies when rows change, those of bodies that are gone are dropped.
+    /// @param row_now  row_now(former row), negative where its body is gone
+    template <class RowNow>
+    void follow_rows(const RowNow& row_now) {
+        for (std::size_t n = 0; n < count(); ++n) {
+            a_[n] = row_now(a_[n]), b_[n] = row_now(b_[n]);
+            if (n < thickness_.size() && (a_[n] < 0 || b_[n] < 0)) thickness_[n] = kTaken;
+        }
+        close_gaps();
+        frame_.clear();
+    }
     /// Adds a pair that is to be looked at in the next step.
     void add(std::int32_t a, std::int32_t b) { a_.push_back(a), b_.push_back(b); }
     /// Takes out the pairs that may touch in this step, in the order of their coming.
@@ -49,6 +60,8 @@ class DistantPairs {
     }
 
   private:
+    static constexpr int kTaken = -1;  // thickness of a pair that was taken out
+
     std::size_t count() const { return a_.size(); }
     void describe_new_pairs(const WorldState<Real>& world, const Executor& executor);
     void describe_rows(const WorldState<Real>& world, double dt, const PoseWatch<Real>& poses,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace carom {
 
@@ -11,7 +12,8 @@ bool LiveContacts::list_all(std::span<const std::uint32_t> found_blocks) {
     const bool same_surfaces =
         std::equal(surfaces_.begin(), surfaces_.end(),
                    numbers_.begin() + static_cast<std::ptrdiff_t>(of_bodies_), numbers_.end());
-    const bool lists_bodies = changes > 0 || first_.size() != masks_.size() + 1;
+    const bool has_new_rows = std::exchange(has_new_rows_, false);
+    const bool lists_bodies = changes > 0 || has_new_rows || first_.size() != masks_.size() + 1;
     if (lists_bodies) list_bodies();
     if (lists_bodies || !same_surfaces) {
         numbers_.resize(of_bodies_);
@@ -25,7 +27,7 @@ bool LiveContacts::list_all(std::span<const std::uint32_t> found_blocks) {
         for (std::uint32_t n = first_[block]; n < first_[block + 1]; ++n)
             found_.push_back(static_cast<std::int32_t>(n));
     for (std::size_t n = of_bodies_; n < numbers_.size(); ++n) found_.push_back(static_cast<std::int32_t>(n));
-    return changes == 0 && same_surfaces;
+    return changes == 0 && same_surfaces && !has_new_rows;
 }
 
 void LiveContacts::list_bodies() {

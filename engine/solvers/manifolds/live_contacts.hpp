@@ -21,6 +21,15 @@ class LiveContacts {
   public:
     /// Forgets the step before: contacts get other numbers.
     void clear() { numbers_.clear(), masks_.clear(), first_.clear(), found_.clear(), of_bodies_ = 0; }
+    /// Contacts have the rows of other bodies, or other numbers: the next list is not that of the step
+    /// before.
+    void note_new_rows() { has_new_rows_ = true; }
+    /// Contact `from` of two bodies takes the number `to`, of one that is gone; they may be the same.
+    void move(std::size_t from, std::size_t to) {
+        const bool is_live = (mask(from / kContactsOfBlock) >> from % kContactsOfBlock & 1) != 0;
+        put(from, false);
+        if (from != to) put(to, is_live);
+    }
     bool empty() const { return numbers_.empty(); }
     std::span<const std::int32_t> numbers() const { return numbers_; }
     /// Places in `numbers` of those that were found in this step, in order.
@@ -64,6 +73,12 @@ class LiveContacts {
     static constexpr std::size_t kContactsOfBlock = kRowPadding;
     static_assert(kContactsOfBlock == 16, "a mask has a bit for each contact of a block");
 
+    void put(std::size_t number, bool is_live) {
+        if (number / kContactsOfBlock >= masks_.size()) return;
+        std::uint16_t& mask = masks_[number / kContactsOfBlock];
+        const auto bit = static_cast<std::uint16_t>(1u << number % kContactsOfBlock);
+        mask = static_cast<std::uint16_t>(is_live ? mask | bit : mask & ~bit);
+    }
     bool list_all(std::span<const std::uint32_t> found_blocks);
     void list_bodies();
     void read_masks();
@@ -76,6 +91,7 @@ class LiveContacts {
     std::vector<std::uint32_t> first_;    // by block, and the end: places in numbers_
     std::vector<std::int32_t> surfaces_;  // of this step
     double changed_share_ = -1;
+    bool has_new_rows_ = false;  // since the last list
 };
 
 }  // namespace carom

@@ -22,6 +22,20 @@ void ManifoldList<Real>::add(std::int32_t row_a, std::int32_t partner, const Man
 }
 
 template <class Real>
+void ManifoldList<Real>::remove(std::size_t i) {
+    const std::size_t last = count() - 1;
+    const auto remove_from = [&](auto& column) {
+        if (column.size() <= last) return;
+        column[i] = column[last];
+        column.resize(last);
+    };
+    for (Column<std::int32_t>* column : {&a, &b, &item_a, &item_b}) remove_from(*column);
+    for (Column<Real>* column : {&margin, &thickness, &friction, &restitution}) remove_from(*column);
+    for_each_found_column(*this, remove_from);
+    remove_from(names), remove_from(memory);
+}
+
+template <class Real>
 void ManifoldList<Real>::add_kept(const KeptManifold<Real>& kept) {
     add(0, 0, kept.name);
     memory.back() = kept.memory, memory.back().slot = -1;

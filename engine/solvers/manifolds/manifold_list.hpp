@@ -49,12 +49,14 @@ struct ManifoldName {
     static std::int32_t place_of_pieces(std::int32_t piece_a, std::int32_t piece_b) {
         return kPlaces * piece_a + piece_b;
     }
+    static std::int32_t piece_of_a(std::int32_t place) { return place / kPlaces; }
+    static std::int32_t piece_of_b(std::int32_t place) { return place % kPlaces; }
     static std::int32_t place_of_side(std::int32_t side, std::int32_t piece) {
         return side - kPlaces * piece;
     }
     static std::int32_t piece_of_surface(std::int32_t place) { return -place / kPlaces; }
     /// The same contact of two bodies, seen from the other one.
-    ManifoldName reversed() const { return {b, a, place_of_pieces(place % kPlaces, place / kPlaces)}; }
+    ManifoldName reversed() const { return {b, a, place_of_pieces(piece_of_b(place), piece_of_a(place))}; }
     friend bool operator==(const ManifoldName&, const ManifoldName&) = default;
 };
 
@@ -91,6 +93,8 @@ struct ManifoldList {
     /// twice: what kernels find there is not looked at, but row 0 may be edges, which have no shape.
     void add(std::int32_t row_a, std::int32_t partner, const ManifoldName& name);
     void fit();
+    /// Contact i goes, and the last one takes its place; `fit` is to be called when all are gone.
+    void remove(std::size_t i);
     /// Appends what is known of a contact whose body wakes; its rows are those of no contact, to be found
     /// anew.
     void add_kept(const KeptManifold<Real>& kept);

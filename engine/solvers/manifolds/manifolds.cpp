@@ -15,8 +15,7 @@ namespace carom {
 namespace {
 
 // For the executor: ns a contact on one thread, and contacts of a task.
-constexpr double kNanosecondsToFind = 10, kNanosecondsToRecall = 5, kNanosecondsToList = 1,
-                 kNanosecondsToJudge = 3;
+constexpr double kNanosecondsToFind = 10, kNanosecondsToList = 1, kNanosecondsToJudge = 3;
 constexpr std::size_t kContactsPerTask = 256, kBlocksPerTask = kContactsPerTask / kRowPadding;
 
 template <class Real>
@@ -98,8 +97,7 @@ void Manifolds<Real>::take_near(const WorldState<Real>& world, double dt, const 
     const bool is_crowd = kContactsOfBody * world.bodies.moving() >= kContactsOfSmallWorld;
     const auto taken =
         distant_.take_near(world, dt, is_crowd, poses_, near, *loops.kernels->convex, *loops.executor);
-    if (shapes_of_boxes_ != world.shapes.revision())
-        list_boxes(world.shapes), ahead_.note_shapes(world.shapes);
+    read_shapes(world.shapes);
     // Boxes first: blocks of them alone have a quicker kernel.
     for (const bool boxes : {true, false})
         for (const auto& pair : taken)
@@ -116,22 +114,6 @@ void Manifolds<Real>::take_near(const WorldState<Real>& world, double dt, const 
     asleep_then_ = world.bodies.asleep;
 }
 
-/// Keeps what no contact has recalled, if it is of a body that sleeps.
-template <class Real>
-void Manifolds<Real>::keep_of_sleepers(const WorldState<Real>& world) {
-    asleep_.clear();
-    const auto sleeps = [&](BodyId id) {
-        return world.handles.is_alive(id) && world.handles.row_of_slot(id.index) >= world.bodies.count;
-    };
-    for (std::size_t i = 0; i < old_.count(); ++i)
-        if (!is_recalled_[i] && old_.memory[i].is_loaded() &&
-            (sleeps(old_.names[i].a) || sleeps(old_.names[i].b)))
-            asleep_.push_back({old_.names[i], 0, old_.memory[i], old_.friction[i]});
-    for (std::size_t i = 0; i < surfaces_.count(); ++i)
-        if (surfaces_.memory[i].is_loaded() && sleeps(surfaces_.names[i].a))
-            asleep_.push_back({surfaces_.names[i], 1, surfaces_.memory[i], surfaces_.friction[i]});
-}
-
 template <class Real>
 std::span<const LoadedContact> Manifolds<Real>::loaded() {
     loaded_.clear();
@@ -146,8 +128,10 @@ std::span<const LoadedContact> Manifolds<Real>::loaded() {
 }
 
 template <class Real>
-void Manifolds<Real>::list_boxes(const ShapeStore<Real>& shapes) {
+void Manifolds<Real>::read_shapes(const ShapeStore<Real>& shapes) {
+    if (shapes_of_boxes_ == shapes.revision()) return;
     shapes_of_boxes_ = shapes.revision();
+    ahead_.note_shapes(shapes);
     is_box_of_.resize(shapes.size());
     for (std::size_t shape = 0; shape < shapes.size(); ++shape)
         is_box_of_[shape] = is_box(shapes[static_cast<std::int32_t>(shape)]) &&
@@ -175,48 +159,6 @@ void Manifolds<Real>::add(const WorldState<Real>& world, const Candidates<Real>&
         if (can_touch(world, pair.a, pair.b)) list_pair(world, pair.a, pair.b);
 }
 
-/// Gives the contacts of a list what those of the same name had in the old one.
-template <class Real>
-void Manifolds<Real>::recall(ManifoldList<Real>& list, const ManifoldList<Real>& old,
-                             const Executor& executor) {
-    list.fit();
-    index_.file(old);
-    is_recalled_.assign(old.count(), 0);
-    const auto recall_one = [&](std::size_t i) {
-        const ManifoldName &name = list.names[i], reversed = name.reversed();
-        index_.for_each_like(name, [&](std::size_t n) {
-            const bool is_same = old.names[n] == name;
-            if (!is_same && !(old.names[n] == reversed)) return;
-            list.memory[i] = is_same ? old.memory[n] : old.memory[n].reversed(), is_recalled_[n] = 1;
-        });
-    };
-    executor.for_each_chunk(list.count(), kContactsPerTask, kNanosecondsToRecall,
-                            [&](std::size_t, std::size_t first, std::size_t last) {
-                                for (std::size_t i = first; i < last; ++i) recall_one(i);
-                            });
-}
-
-/// A body may touch a chain in several places: each takes what the one before it had that faced the same way.
-template <class Real>
-void Manifolds<Real>::recall_surfaces() {
-    index_.file(old_surfaces_);
-    is_recalled_.assign(old_surfaces_.count(), 0);
-    for (std::size_t i = 0; i < surfaces_.count(); ++i) {
-        const ManifoldName& name = surfaces_.names[i];
-        std::size_t best = old_surfaces_.count();
-        Real most = static_cast<Real>(kSameNormal);
-        index_.for_each_like(name, [&](std::size_t k) {
-            if (is_recalled_[k] || !(old_surfaces_.names[k] == name)) return;
-            const ManifoldMemory<Real>& memory = old_surfaces_.memory[k];
-            const Real alike =
-                memory.normal_x * surfaces_.normal_x[i] + memory.normal_y * surfaces_.normal_y[i];
-            if (alike > most) best = k, most = alike;
-        });
-        if (best == old_surfaces_.count()) continue;
-        is_recalled_[best] = 1, surfaces_.memory[i] = old_surfaces_.memory[best];
-    }
-}
-
 template <class Real>
 void Manifolds<Real>::rescale(double factor) {
     if (factor == 1) return;
@@ -229,6 +171,7 @@ void Manifolds<Real>::rescale(double factor) {
 template <class Real>
 bool Manifolds<Real>::must_find(std::size_t block) const {
     if (block >= first_new_block_) return true;
+    if (block < is_changed_block_.size() && is_changed_block_[block] != 0) return true;
     const std::size_t last = std::min(bodies_.count(), (block + 1) * kRowPadding);
     unsigned moved = 0;  // without a branch for each, as most blocks have to be looked at whole
     for (std::size_t i = block * kRowPadding; i < last; ++i)
@@ -329,6 +272,7 @@ void Manifolds<Real>::choose_blocks(const Executor& executor) {
                                 for (std::size_t block = first; block < last; ++block)
                                     block_is_found_[block] = must_find(block);
                             });
+    is_changed_block_.clear();
     found_blocks_.clear();
     for (std::size_t block = 0; block < block_is_found_.size(); ++block)
         if (block_is_found_[block] != 0) found_blocks_.push_back(static_cast<std::uint32_t>(block));

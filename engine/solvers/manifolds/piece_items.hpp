@@ -36,6 +36,11 @@ class PieceItems {
         const StoredPiece* piece = empty() ? nullptr : piece_of(world, row, item);
         return piece ? piece->number : world.bodies.shape[static_cast<std::size_t>(row)];
     }
+    /// The item of a piece of a row; of a body that has none, the row.
+    std::int32_t item_of(std::int32_t row, std::int32_t piece) const {
+        const auto i = static_cast<std::size_t>(row);
+        return first_[i] == first_[i + 1] ? row : first_[i] + piece;
+    }
     /// Pieces, which are the items behind the rows.
     std::size_t count() const { return row_.size(); }
     /// Calls fn(item, row of its body, number of its geometry) for each piece.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -31,6 +32,12 @@ class PoseWatch {
     /// How far the surface of each body can have come [m] is to be counted from here on; rows may have
     /// changed.
     void begin_paths() { begins_paths_ = true; }
+    /// What is known of bodies goes with them when rows change; contacts of those that came or were put
+    /// elsewhere are to be found.
+    /// @param now  present row of each former one, or negative
+    /// @param is_elsewhere  a present row, whether its body was put elsewhere
+    void follow_rows(const Bodies<Real>& bodies, std::span<const std::int32_t> now,
+                     std::span<const std::uint8_t> is_elsewhere);
     /// Rows that the last look was at: all, or those of what can move where what stands and what sleeps is
     /// where it was and has been seen to be still.
     std::size_t rows_looked_at() const { return rows_looked_at_; }
@@ -88,6 +95,8 @@ class PoseWatch {
     Column<Real> come_, turned_, moved_, way_;
     Column<double> path_;  // m, by row: small steps must not get lost in a long way
     bool begins_paths_ = false;
+    std::vector<std::int32_t> old_rows_, changed_rows_;  // scratch of follow_rows
+    std::vector<std::int32_t> fresh_rows_;  // whose contacts are to be found, since the last look
     struct Driven {
         std::size_t row;
         Real way;  // m

@@ -36,15 +36,27 @@ void SoftSimulation<Real>::note_change(bool may_follow) {
         forget_derived_state();
 }
 
+/// Whether pairs and contacts can follow what becomes of a body: not where it has edges, nor where a shape
+/// stands, which others may be held by.
+template <class Real>
+bool SoftSimulation<Real>::can_follow(std::size_t row) const {
+    const Bodies<Real>& bodies = this->world.bodies;
+    return bodies.is_disc(row) ||
+           (bodies.has_shapes && bodies.shape[row] >= 0 && (bodies.flags_of(row) & (kEdges | kSensor)) == 0 &&
+            !bodies.is_immovable(row));
+}
+
 template <class Real>
 void SoftSimulation<Real>::remove(std::size_t row) {
     note_leaving(row);
     soft.graph.trail.follow_removed(row, this->world.bodies.count - 1);
     const Bodies<Real>& bodies = this->world.bodies;
     const Radii* radii = this->candidates.known_radii();
-    // A small disc that goes may change what radius is usual.
+    // A small disc that goes may change what radius is usual; where there are shapes that waits until pairs
+    // are found anew.
     const bool may_follow =
-        bodies.is_disc(row) && radii && (bodies.radius.is_uniform() || bodies.radius[row] > radii->usual);
+        can_follow(row) && radii &&
+        (bodies.has_shapes || bodies.radius.is_uniform() || bodies.radius[row] > radii->usual);
     const EdgeStore::Removed edges = this->world.remove(row);
     soft.graph.supports.follow_removed_edges(edges);
     if (edges.count > 0) sleepers.forget_woken();
@@ -55,10 +67,10 @@ template <class Real>
 void SoftSimulation<Real>::note_added(std::size_t row) {
     const Radii* radii = this->candidates.known_radii();
     const Bodies<Real>& bodies = this->world.bodies;
-    const double radius = bodies.radius[row];
+    const double least = bodies.has_shapes ? bodies.inradius(row) : static_cast<double>(bodies.radius[row]);
     if (bodies.standing > 0 && !bodies.stands(row)) soft.graph.trail.follow_made_room(row, bodies.count - 1);
-    note_change(this->world.bodies.is_disc(row) && radii && radius >= radii->usual &&
-                radius <= radii->largest);
+    note_change(can_follow(row) && radii && least >= (bodies.has_shapes ? radii->smallest : radii->usual) &&
+                static_cast<double>(bodies.radius[row]) <= radii->largest);
 }
 
 template <class Real>
@@ -69,7 +81,7 @@ void SoftSimulation<Real>::note_place_before(std::size_t row) {
 template <class Real>
 void SoftSimulation<Real>::note_place(std::size_t row) {
     elsewhere_.push_back(this->world.bodies.id[row]);
-    note_change(this->world.bodies.is_disc(row));
+    note_change(can_follow(row));
 }
 
 /// What contacts have columns of: one bit each.
@@ -91,7 +103,8 @@ void SoftSimulation<Real>::follow_changes() {
     const WorldState<Real>& state = this->world;
     const std::size_t count = state.bodies.count, changes = changes_;
     const bool may_follow = this->candidates.may_follow(changes, state.bodies.moving()) &&
-                            state.bodies.asleep == 0 && state.joints.empty() && !state.bodies.has_shapes &&
+                            state.bodies.asleep == 0 && state.joints.empty() &&
+                            soft.paths.manifolds.may_follow_rows(state) &&
                             !state.effects.rolling_resistance && kinds_of_graph == kinds_of_columns() &&
                             graph_of_rebuild == this->candidates.rebuild_count();
     changes_ = 0;
@@ -107,6 +120,7 @@ void SoftSimulation<Real>::follow_changes() {
     const std::vector<std::int32_t>& now = soft.graph.trail.new_rows();
     this->candidates.follow_rows(state.bodies, now, is_elsewhere_);
     edge_candidates.follow_rows(now, is_elsewhere_);
+    soft.paths.manifolds.follow_rows(state, edge_candidates, now, is_elsewhere_);
     soft.graph.follow_rows(state.bodies, is_elsewhere_);
     soft.follow_rows();
 }

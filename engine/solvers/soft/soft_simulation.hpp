@@ -92,6 +92,7 @@ class SoftSimulation : public Simulation<Real> {
 
   private:
     void note_change(bool may_follow);
+    bool can_follow(std::size_t row) const;
     void note_leaving(std::size_t row);
 
     Books start_books_;  // of the present step
