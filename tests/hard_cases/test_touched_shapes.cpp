@@ -4,7 +4,7 @@
 #include "math/vec2_math.hpp"
 #include "support/report.hpp"
 
-#include <carom/world.hpp>
+#include <carom/carom.hpp>
 
 #include <doctest/doctest.h>
 
@@ -112,6 +112,28 @@ class Touches {
     bool with_compounds_;
 };
 
+/// Chains and cars on suspensions, of which bodies are removed with their joints among others.
+Scene touched_mechanisms() {
+    Scene scene = touched_pile(false);
+    for (int i = 0; i < 4; ++i)
+        add_chain(scene, {.count = 8,
+                          .origin = {2.0 + 4 * i, 38},
+                          .spacing = 0.6,
+                          .pinned = i == 0,
+                          .body = {.shape = Capsule{0.5, 0.1}, .material = kRough}});
+    for (int i = 0; i < 3; ++i) {
+        const BodyId chassis =
+            scene.add({.shape = Box{2, 0.5}, .position = {4.0 + 5 * i, 41}, .material = kRough});
+        for (const double side : {-0.7, 0.7}) {
+            const BodyId wheel =
+                scene.add({.shape = Disc{0.35}, .position = {4 + 5 * i + side, 40.6}, .material = kRough});
+            scene.add(
+                Joint{.a = chassis, .b = wheel, .kind = WheelJoint{.frequency = 4, .damping_ratio = 0.7}});
+        }
+    }
+    return scene;
+}
+
 template <class Real>
 double lowest(const BasicWorld<Real>& world) {
     double y = 0;
@@ -127,10 +149,9 @@ TEST_SUITE("hard cases/touched worlds of shapes") {
     // Each touch had all pairs and contacts found anew: a step of a heap of 2,000 boxes took 2.6 times as
     // long when one body far away was put elsewhere.
     TEST_CASE("B39: what is done to one body far away costs no search for the pairs of the others") {
-        for (const bool with_compounds : {false, true}) {
-            CAPTURE(with_compounds);
-            World world(touched_pile(with_compounds), {.threads = 1});
-            for (int i = 0; i < 600; ++i) world.step(kStep);
+        for (const Scene& scene : {touched_pile(false), touched_pile(true), touched_mechanisms()}) {
+            World world(scene, {.threads = 1});
+            for (int i = 0; i < 900; ++i) world.step(kStep);
             const auto rebuilds_of = [&](const auto& touch) {
                 const std::int64_t before = world.profile().rebuilds;
                 for (int i = 0; i < 60; ++i) {
@@ -232,6 +253,33 @@ TEST_SUITE("hard cases/touched worlds of shapes") {
                 touches.touch(world), same.touch(other);
             }
         }
+    }
+
+    TEST_CASE_TEMPLATE("B39: mechanisms in a touched world hold together, and go on from a state saved there",
+                       Real, float, double) {
+        BasicWorld<Real> world(touched_mechanisms(), {.threads = 1});
+        for (int i = 0; i < 120; ++i) world.step(kStep);
+        Touches<Real> touches(7, false);
+        for (int i = 0; i < 60; ++i) {
+            touches.touch(world);
+            world.step(kStep);
+        }
+        CHECK(world.joint_count() < touched_mechanisms().joints.size());  // some were removed
+        CHECK(world.joint_count() > 10);
+        touches.touch(world);
+        BasicWorld<Real> other(world);
+        Touches<Real> same(touches);
+        for (int i = 0; i < 30; ++i) {
+            world.step(kStep), other.step(kStep);
+            REQUIRE(world.state_hash() == other.state_hash());
+            touches.touch(world), same.touch(other);
+        }
+        for (int i = 0; i < 400; ++i) world.step(kStep);
+        report("mechanisms in a touched world: joints ", world.joint_count(), ", open by ",
+               world.joint_errors().max, " m, overlap ", world.overlaps().max, " inradii");
+        CHECK(world.joint_errors().max < 0.02);
+        CHECK(world.overlaps().max < 0.6);
+        CHECK(world.quarantined().empty());
     }
 
     TEST_CASE("B39: a touched world of shapes has the same bits for every instruction set and thread count") {

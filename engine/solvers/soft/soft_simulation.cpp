@@ -57,10 +57,12 @@ void SoftSimulation<Real>::remove(std::size_t row) {
     const bool may_follow =
         can_follow(row) && radii &&
         (bodies.has_shapes || bodies.radius.is_uniform() || bodies.radius[row] > radii->usual);
+    const std::size_t joints = this->world.joints.count();
     const EdgeStore::Removed edges = this->world.remove(row);
     soft.graph.supports.follow_removed_edges(edges);
     if (edges.count > 0) sleepers.forget_woken();
-    note_change(may_follow);
+    // What a joint kept apart may touch now.
+    note_change(may_follow && this->world.joints.count() == joints);
 }
 
 template <class Real>
@@ -103,8 +105,7 @@ void SoftSimulation<Real>::follow_changes() {
     const WorldState<Real>& state = this->world;
     const std::size_t count = state.bodies.count, changes = changes_;
     const bool may_follow = this->candidates.may_follow(changes, state.bodies.moving()) &&
-                            state.bodies.asleep == 0 && state.joints.empty() &&
-                            soft.paths.manifolds.may_follow_rows(state) &&
+                            state.bodies.asleep == 0 && soft.paths.manifolds.may_follow_rows(state) &&
                             !state.effects.rolling_resistance && kinds_of_graph == kinds_of_columns() &&
                             graph_of_rebuild == this->candidates.rebuild_count();
     changes_ = 0;
@@ -118,11 +119,15 @@ void SoftSimulation<Real>::follow_changes() {
         if (state.handles.is_alive(body)) is_elsewhere_[state.handles.row_of_slot(body.index)] = 1;
     elsewhere_.clear();
     const std::vector<std::int32_t>& now = soft.graph.trail.new_rows();
+    bool are_renamed = now.size() != count;  // some rows; joints name theirs
+    for (std::size_t row = 0; row < now.size() && !are_renamed; ++row)
+        are_renamed = now[row] != static_cast<std::int32_t>(row);
     this->candidates.follow_rows(state.bodies, now, is_elsewhere_);
     edge_candidates.follow_rows(now, is_elsewhere_);
     soft.paths.manifolds.follow_rows(state, edge_candidates, now, is_elsewhere_);
     soft.graph.follow_rows(state.bodies, is_elsewhere_);
     soft.follow_rows();
+    if (are_renamed) soft.joints.forget();
 }
 
 template <class Real>
