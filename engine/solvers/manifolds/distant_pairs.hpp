@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -34,9 +35,10 @@ class DistantPairs {
     /// @param row_now  row_now(former row), negative where its body is gone
     template <class RowNow>
     void follow_rows(const RowNow& row_now) {
+        assert(thickness_.size() == count());  // pairs are looked at in the step that adds them
         for (std::size_t n = 0; n < count(); ++n) {
             a_[n] = row_now(a_[n]), b_[n] = row_now(b_[n]);
-            if (n < thickness_.size() && (a_[n] < 0 || b_[n] < 0)) thickness_[n] = kTaken;
+            if (a_[n] < 0 || b_[n] < 0) thickness_[n] = kTaken;
         }
         close_gaps();
         frame_.clear();
