@@ -94,7 +94,7 @@ std::vector<Scene> scenes_with_joints() {
 }
 
 constexpr Golden kGolden[] = {
-    {"every joint", 0x3350e7cf030564a4, 0xe2d3d5216f60e2eb},
+    {"every joint", 0xe638bbb7cc8a48c6, 0x54bad1f3d9453b9f},
     {"weighted chain", 0xe7a214c17be4a80c, 0x949dfc6291b5ce2b},
     {"net of rods", 0xc9766baaa9013493, 0xcc473225a7d37df},
     {"net of rods beside centres", 0xaf184cf7d115621, 0x20acc8a1a91d08aa},

@@ -173,6 +173,7 @@ void JointSystem::prepare(Part part, bool keeps) {
     couple_extras();
     if (keeps) recall_extras();
     limit_pulls();
+    held_before_ = held_;
 }
 
 /// Rows that were there before have the impulses that they had.
@@ -192,6 +193,17 @@ void JointSystem::give_impulses() {
                 body.spin += impulse * body.seen_inverse_inertia * row[2];
             });
         }
+}
+
+void JointSystem::forget_impulses() {
+    for (Member& member : joints) {
+        // What draws a body to a target is in its force at once.
+        if (member.joint->type == JointType::target)
+            member.force -= Vec2{member.impulse[0], member.impulse[1]};
+        member.impulse = {};
+    }
+    for (Extra& extra : extras_) extra.impulse = 0;
+    held_ = held_before_;
 }
 
 double JointSystem::row_velocity(std::size_t joint, int number) const {

@@ -103,6 +103,8 @@ class JointSystem {
     void prepare(Part part, bool keeps = false);
     /// Gives bodies the impulses that joints have.
     void give_impulses();
+    /// Forgets what joints have given and taken since `prepare`; velocities stay as they are.
+    void forget_impulses();
     /// Displaces bodies so that what is held is where it should be, as far as the rows of `prepare` tell.
     /// @param least  m: errors below it are left
     /// @param length  m, of the system: joints are corrected by a tenth of it at most
@@ -375,6 +377,7 @@ class JointSystem {
     double largest_error_ = 0;
     std::vector<TautLoop> taut_;
     double held_ = 0;             // J, what they have taken from motion and may give back
+    double held_before_ = 0;      // J, likewise at `prepare`
     std::vector<Vector> pulled_;  // N s, by joint and slot, of loops: in the whole substep before
 
     std::vector<JointRows> rows_;                                 // by joint

@@ -262,6 +262,21 @@ void DirectJoints<Real>::solve_again(const JointStep<Real>& step) {
 }
 
 template <class Real>
+void DirectJoints<Real>::solve_anew(const JointStep<Real>& step) {
+    read_velocities(step);
+    for (std::size_t i = 1; i < rows_.size(); ++i) {
+        SystemBody& body = system_.bodies[i];
+        if (body.inverse_mass > 0) body.velocity -= given_[i].velocity, body.spin -= given_[i].spin;
+        given_[i] = {};
+    }
+    before_ = system_.bodies;
+    system_.forget_impulses();
+    system_.pull();
+    system_.solve_curved(kRounds);
+    write_velocities(step);
+}
+
+template <class Real>
 void DirectJoints<Real>::find_answers(std::span<const std::int32_t> rows) {
     asked_.clear();
     for (const std::int32_t row : rows) asked_.push_back(number_of(row));

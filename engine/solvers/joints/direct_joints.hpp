@@ -42,7 +42,9 @@ class DirectJoints {
     void solve_first(const JointStep<Real>& step, int substep);
     /// What contacts have changed since; nothing where they have changed nothing in a tree.
     void solve_again(const JointStep<Real>& step);
-    /// By which that changed the velocity of a centre or a rim, at most [m/s].
+    /// Velocities of the substep once more, from those without what its joints have given so far.
+    void solve_anew(const JointStep<Real>& step);
+    /// By which solve_again changed the velocity of a centre or a rim, at most [m/s].
     double largest_change() const { return largest_change_; }
     bool touches() const { return touches_; }
     /// At the end of a step: nothing that it could touch presses on it.

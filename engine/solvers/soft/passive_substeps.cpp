@@ -15,7 +15,7 @@ namespace {
 constexpr double kLeastShare = 3e-3;
 constexpr double kFalls = 8;
 /// Where impulses of what has risen cannot be blamed for more than this share, the others are let stand.
-constexpr double kLastShare = 0.1;
+constexpr double kLastShare = 0.01;
 /// Share of the energy of all bodies that is the round-off of its sums.
 constexpr double kRoundOff = 1e-5;
 

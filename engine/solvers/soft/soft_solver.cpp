@@ -186,15 +186,15 @@ void SoftSolver<Real>::bound_energy(WorldState<Real>& world) {
     const StepView<Real> contacts = view();
     const SolvedSubstep<Real> solved{step, contacts, paths, joints};
     double before = std::numeric_limits<double>::infinity();  // J, gained at the round before
-    for (int round = 1; round <= kRounds; ++round) {
-        const bool is_last = round == kRounds;
-        const double gained = passive_.bound(solved, is_last);
+    for (int round = 1; round < kRounds; ++round) {
+        const double gained = passive_.bound(solved, false);
+        if (!(gained > 0)) return;
         // Where exact solves of joints give energy, further turns would only give more.
-        const bool becomes_less = passive_.has_scaled() || gained < before;
-        if (is_last || !(gained > 0) || !becomes_less) break;
+        if (!passive_.has_scaled() && !(gained < before)) break;
         before = gained;
         solve_turn(world, -1, false, false);
     }
+    passive_.bound(solved, true);
 }
 
 /// Joints and contacts act at once, and a mean velocity says nothing of which came first: where a joint draws

@@ -70,9 +70,69 @@ struct Ring {
     }
 };
 
+/// Links in a row, hinged to each other and to the world at both ends, as far apart as the chain is long; a
+/// motor turns the second one.
+struct TautChain {
+    std::vector<StoredJoint> stored;
+    JointSystem system;
+
+    explicit TautChain(int links) {
+        system.bodies.emplace_back();
+        for (int i = 0; i < links; ++i) {
+            SystemBody body;
+            body.pose = {{i + 0.5, 0}, {1, 0}, 0};
+            body.inverse_mass = 1 + 0.1 * i;
+            body.inverse_inertia = body.seen_inverse_inertia = 12 * body.inverse_mass;
+            system.bodies.push_back(body);
+        }
+        stored.resize(static_cast<std::size_t>(links + 1));
+        for (int j = 0; j <= links; ++j) {
+            const int a = j, b = j < links ? j + 1 : 0;
+            const Vec2 at{static_cast<double>(j), 0};
+            StoredJoint& joint = stored[static_cast<std::size_t>(j)];
+            joint.type = JointType::revolute;
+            joint.anchor_a = at - system.bodies[static_cast<std::size_t>(a)].pose.position;
+            joint.anchor_b = at - system.bodies[static_cast<std::size_t>(b)].pose.position;
+            joint.has_motor = j == 1, joint.motor_speed = 3, joint.max_motor = 5;
+            JointSystem::Member member;
+            member.joint = &joint, member.a = a, member.b = b;
+            system.joints.push_back(member);
+        }
+        system.plan();
+        system.set_substep(1.0 / 240);
+        system.begin_step();
+        system.prepare(JointSystem::Part::whole);
+    }
+    /// Solves the chain for links that are as fast as this across it, a blow that grows along it [m/s].
+    void solve(double blow) {
+        for (std::size_t i = 1; i < system.bodies.size(); ++i)
+            system.bodies[i].velocity = {0, blow * static_cast<double>(i)}, system.bodies[i].spin = 0;
+        system.solve_curved(2);
+    }
+};
+
 }  // namespace
 
 TEST_SUITE("unit: joint answers") {
+    TEST_CASE("a system that forgets what it gave solves other velocities as if it had solved none before") {
+        TautChain once(4), twice(4);
+        once.solve(0.5);
+        twice.solve(40);
+        REQUIRE(twice.system.held() > 2 * once.system.held());
+        twice.system.forget_impulses();
+        twice.solve(0.5);
+        CHECK(twice.system.held() == once.system.held());
+        for (std::size_t i = 1; i < once.system.bodies.size(); ++i) {
+            const SystemBody &expected = once.system.bodies[i], &found = twice.system.bodies[i];
+            CHECK(found.velocity.x == expected.velocity.x);
+            CHECK(found.velocity.y == expected.velocity.y);
+            CHECK(found.spin == expected.spin);
+        }
+        for (std::size_t j = 0; j < once.system.joints.size(); ++j)
+            for (std::size_t k = 0; k < 3; ++k)
+                CHECK(twice.system.joints[j].impulse[k] == once.system.joints[j].impulse[k]);
+    }
+
     TEST_CASE("free rows are solved one by one and side by side") {
         for (const std::size_t count : {std::size_t{1}, std::size_t{2}, std::size_t{7}, std::size_t{48}}) {
             const Matrix matrix(count);

@@ -286,7 +286,7 @@ void SoftJoints<Real>::forget_blows(const JointStep<Real>& step, const StepView<
     if (!blows_.find(step, contacts, paths, contacts_, group_touches_)) return;
     blows_.take_back(contacts, paths);
     for (std::size_t i = 0; i < first_beside_; ++i)
-        if (blows_.is_thrown(i)) direct_[i].solve_again(step);
+        if (blows_.is_thrown(i)) direct_[i].solve_anew(step);
 }
 
 template <class Real>
