@@ -7,6 +7,8 @@
 #include <numeric>
 
 #include "effects/flight.hpp"
+#include "solvers/paths/contact_work.hpp"
+#include "solvers/soft/contacts/stored_contact.hpp"
 
 namespace carom {
 namespace {
@@ -31,6 +33,33 @@ constexpr int kRounds = 6;
 constexpr std::size_t kRowsPerTask = 1024;  // where there is but one group
 
 static_assert(kContactBlock == kRowPadding);
+
+/// The work of contacts' impulses at the velocities that bodies have now [J]: nothing or less along normals
+/// and against friction where their laws hold.
+template <class Real>
+double work_at_end(const StepView<Real>& step, const PathSolver<Real>& paths, const Bodies<Real>& bodies) {
+    const Column<Real>& velocity = step.records.velocity;
+    double work = 0;
+    const ContactRows<Real>&pairs = step.graph.pairs, &supports = step.supports;
+    pairs.for_each([&](std::size_t i) {
+        if (pairs.is_live[i / kContactBlock])
+            work += StoredContact<Real>(pairs, i).work(body_at(velocity, pairs.a[i]),
+                                                       body_at(velocity, pairs.b[i]));
+    });
+    supports.for_each([&](std::size_t i) {
+        work +=
+            StoredContact<Real>(supports, i).work(body_at(velocity, supports.a[i]), surface_at(supports, i));
+    });
+    if (!bodies.has_shapes) return work;
+    const auto motion = [&](std::int32_t row) {
+        const DoubleBody body = body_at(velocity, row);
+        return MeanVelocity{{body.record[0], body.record[1]}, body.record[2]};
+    };
+    paths.for_each([&](const PathContact<Real>& contact) {
+        work += ContactWork<Real>(contact).work(motion(contact.near), motion(contact.far));
+    });
+    return work;
+}
 
 }  // namespace
 
@@ -199,8 +228,9 @@ void SoftSolver<Real>::bound_energy(WorldState<Real>& world) {
 
 /// Joints and contacts act at once, and a mean velocity says nothing of which came first: where a joint draws
 /// back bodies that part, and a contact stops them, the contact seems to give what the joint takes too much.
-/// Contacts give nothing, so what they seem to give joints took less, as far as they took any: what springs,
-/// motors and targets did is theirs.
+/// Contacts give no more than their work at the velocities of the end, for then they have stopped what they
+/// stop: what they seem to give beyond that joints took less, as far as they took any. What springs, motors
+/// and targets did is theirs where contacts do give something.
 /// @param before  J, what they had given before this substep
 template <class Real>
 void SoftSolver<Real>::share_with_joints(WorldState<Real>& world, Books& books, double before) {
@@ -209,7 +239,9 @@ void SoftSolver<Real>::share_with_joints(WorldState<Real>& world, Books& books, 
     double of_rigid = books_.work_of_joints;  // J
     joints.for_each_drive(joint_step(world),
                           [&](std::int32_t, std::int32_t, double work) { of_rigid -= work; });
-    const double share = std::fmin(given, std::fmax(0, -of_rigid));
+    const double of_order =
+        std::fmin(given - std::fmax(0, work_at_end(view(), paths, world.bodies)), -books_.work_of_joints);
+    const double share = std::fmax(of_order, std::fmin(given, std::fmax(0, -of_rigid)));
     books.restitution -= share, books.joints += share;
 }
 
