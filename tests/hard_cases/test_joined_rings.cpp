@@ -65,7 +65,7 @@ Rings drawn_rings(unsigned seed, int count, const Material& material) {
             const std::size_t next = (i + 1) % own.size();
             const Vec2 between{0.5 * (at[i].x + at[next].x), 0.5 * (at[i].y + at[next].y)};
             Joint joint{.a = own[i], .b = own[next], .kind = DistanceJoint{}};
-            const unsigned kind = random() % 3;
+            const auto kind = static_cast<unsigned>(random() % 3);
             if (kind == 0) joint.kind = WeldJoint{.anchor = between};
             if (kind == 1) joint.kind = RevoluteJoint{.anchor = between};
             scene.add(joint);
