@@ -69,7 +69,7 @@ struct KernelTable {
     // These four: without and with rotation; then the same where some bodies have joints.
     std::array<void (*)(const BeginSubsteps<Real>&, std::size_t first, std::size_t last), 2> begin_substeps;
     std::array<void (*)(const AdvanceBodies<Real>&, std::size_t first, std::size_t last), 4> advance_bodies;
-    std::array<EnergyGain (*)(const MeasureGain<Real>&, std::size_t first, std::size_t last), 2> measure_gain;
+    std::array<EnergyGain (*)(const MeasureGain<Real>&, std::size_t first, std::size_t last), 4> measure_gain;
     // These four: without and with rotation; then the same with drag.
     std::array<void (*)(const TakeMeans<Real>&, std::size_t first, std::size_t last, FlightSums&), 4>
         take_means;

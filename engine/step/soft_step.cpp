@@ -69,8 +69,8 @@ class SoftStep final : public SoftSimulation<Real> {
         return !sim.world.joints.empty() && sim.soft.joints.touches() && sim.can_touch();
     };
     static constexpr auto may_gain = [](const Sim& sim) {
-        return sim.can_touch() &&
-               (!sim.world.joints.empty() || has_shapes(sim) || !sim.world.immovable_rows.empty());
+        return sim.can_touch() && (!sim.world.joints.empty() || has_shapes(sim) ||
+                                   !sim.world.immovable_rows.empty() || sim.soft.takes_gains());
     };
     static constexpr auto has_sensors = [](const Sim& sim) { return sim.world.sensing.is_called_for(); };
     static constexpr auto has_lost_bodies = [](const Sim& sim) { return !sim.lost.empty(); };
@@ -168,9 +168,11 @@ class SoftStep final : public SoftSimulation<Real> {
         {"book_substep", [](Sim& sim) { sim.soft.book_substep(sim.world, sim.world.books); }, has_books,
          KernelChoice::none, "joints, contacts, velocity records", "books"},
         {"carry_out_impacts",
-         [](Sim& sim) { sim.soft.carry_out_impacts(sim.motion, sim.world.books, sim.interruption); }, bounces,
-         KernelChoice::scalar_f64, "impacts, motion, velocity records, displacements",
-         "velocity records, displacements, contacts, books"},
+         [](Sim& sim) {
+             sim.soft.carry_out_impacts(sim.world, sim.motion, sim.world.books, sim.interruption);
+         },
+         bounces, KernelChoice::scalar_f64, "impacts, impulses, motion, velocity records, displacements",
+         "impulses, velocity records, displacements, contacts, books"},
         {"settle_struck_contacts",
          [](Sim& sim) { sim.soft.settle_struck_contacts(sim.world, sim.motion, sim.world.books); },
          has_struck_contacts, KernelChoice::contacts,

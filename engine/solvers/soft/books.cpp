@@ -122,7 +122,14 @@ void SubstepBooks<Real>::book_contacts(const StepView<Real>& step, Books& books)
     };
     step.loops.executor->for_each_task(
         works_.size(), kNanosecondsToBook * static_cast<double>(pairs.a.size() + supports.a.size()), book);
-    for (const Work& work : works_) books.restitution += work.normal, books.friction += work.tangent;
+    Work all{0, 0};  // J
+    for (const Work& work : works_) all.normal += work.normal, all.tangent += work.tangent;
+    // Both act at once, and a mean velocity says nothing of which came first: where friction draws a body on
+    // to what stops it, the stop seems to give what friction takes too much. Neither gives any.
+    const double shared = all.normal > 0    ? std::min(all.normal, std::max(-all.tangent, 0.0))
+                          : all.tangent > 0 ? -std::min(all.tangent, -all.normal)
+                                            : 0;
+    books.restitution += all.normal - shared, books.friction += all.tangent + shared;
 }
 
 template <class Real>

@@ -4,20 +4,9 @@
 #include <vector>
 
 #include "sleeping/islands.hpp"
-#include "solvers/paths/path_solver.hpp"
-#include "solvers/soft/joints/soft_joints.hpp"
-#include "solvers/soft/step_view.hpp"
+#include "solvers/soft/solved_substep.hpp"
 
 namespace carom {
-
-/// What was solved in a substep.
-template <class Real>
-struct SolvedSubstep {
-    const JointStep<Real>& step;
-    const StepView<Real>& contacts;
-    PathSolver<Real>& paths;
-    SoftJoints<Real>& joints;
-};
 
 /// Keeps joints and contacts from making energy.
 ///

@@ -8,6 +8,7 @@
 #include "constraints/contact_rows.hpp"
 #include "solvers/paths/path_solver.hpp"
 #include "solvers/soft/books.hpp"
+#include "solvers/soft/contact_gains.hpp"
 #include "solvers/soft/contacts/contact_finder.hpp"
 #include "solvers/soft/contacts/contact_settings.hpp"
 #include "solvers/soft/contacts/contact_sweeps.hpp"
@@ -130,7 +131,8 @@ class SoftSolver {
         if (!world.joints.empty()) share_with_joints(world, books, before);
     }
     /// Carries out the impacts of a substep.
-    void carry_out_impacts(const Column<Real>& motion, Books& books, Interruption& interruption);
+    void carry_out_impacts(const WorldState<Real>& world, const Column<Real>& motion, Books& books,
+                           Interruption& interruption);
     /// Whether impacts have left contacts closing that hold, in a world whose crowds are settled.
     bool has_struck_contacts(const WorldState<Real>& world) const {
         return impacts.left_closing.any() && settles_crowds(world);
@@ -160,8 +162,11 @@ class SoftSolver {
     }
     /// Contacts and joints in turns, where they bear on each other.
     void solve_joints_and_contacts(WorldState<Real>& world);
-    /// Scales what joints and contacts gave where that made energy, and solves them once more, in turns.
+    /// Scales what joints and contacts gave where that made energy, and solves them once more, in turns; of
+    /// discs that bounce, whatever energy they gave.
     void bound_energy(WorldState<Real>& world);
+    /// Whether contacts are kept from doing work in this step: where several discs bounce.
+    bool takes_gains() const { return takes_gains_; }
     void end_joints_of_substep(WorldState<Real>& world, Books& books) {
         const double before = books.joints;
         joints.end_substep(joint_step(world), books);
@@ -223,10 +228,14 @@ class SoftSolver {
 
   private:
     using Sweeps = ContactSweeps<Real>;
-
+    bool is_bouncing_crowd(const WorldState<Real>& world) const;
     /// Not where masses differ much, for sweeps would undo what corrections of uneven ones do, nor where
     /// there are contacts or joints that these sweeps do not know: docs/decisions/0093-crowds-that-bounce.md.
     bool settles_crowds(const WorldState<Real>& world) const;
+    /// Whether there is nothing but discs that move, and walls: these gain too little to be solved anew.
+    static bool is_crowd_of_discs(const WorldState<Real>& world) {
+        return !world.bodies.has_shapes && world.joints.empty() && world.immovable_rows.empty();
+    }
     void share_with_joints(WorldState<Real>& world, Books& books, double before);
     bool solve_turn(WorldState<Real>& world, double settled, bool is_near, bool sweeps);
     /// Whether turns of joints and contacts sweep over contacts of shapes in place of solving them: where
@@ -243,6 +252,7 @@ class SoftSolver {
     StepView<Real> view() { return {graph, supports_, records_, settings_, terms_, loops_}; }
 
     // What holds for the present step.
+    bool takes_gains_ = false;
     StepLoops<Real> loops_;
     SubstepTerms terms_;
     ContactSettings settings_;
@@ -257,6 +267,7 @@ class SoftSolver {
     EndProjection<Real> projection_;
     HeavyLoads<Real> heavy_;
     PassiveSubsteps<Real> passive_;
+    ContactGains<Real> gains_;
     SubstepBooks<Real> books_;
 };
 

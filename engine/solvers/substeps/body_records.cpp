@@ -116,13 +116,13 @@ void BodyRecords<Real>::advance(bool is_last, const SubstepTerms& terms, const S
 }
 
 template <class Real>
-EnergyGain BodyRecords<Real>::gain(const SubstepTerms& terms, const StepLoops<Real>& loops) {
+EnergyGain BodyRecords<Real>::gain(const SubstepTerms& terms, const StepLoops<Real>& loops, GainOf of) {
     const auto real = [](double value) { return static_cast<Real>(value); };
     MeasureGain<Real> k{};
     k.velocity = velocity.data(), k.start = start_columns();
     k.gain_x = real(terms.gravity_change.x), k.gain_y = real(terms.gravity_change.y);
     k.decay = real(terms.decay), k.spin_decay = real(terms.spin_decay);
-    const auto kernel = loops.kernels->measure_gain[has_rotation_ ? 1 : 0];
+    const auto kernel = loops.kernels->measure_gain[(has_rotation_ ? 1 : 0) + (of == GainOf::work ? 2 : 0)];
     gains_.assign(padded(moving_) / kRowsToMeasure + 1, {});
     loops.executor->for_each_chunk(moving_, kRowsToMeasure, kNanosecondsToMeasure,
                                    [&](std::size_t chunk, std::size_t first, std::size_t last) {

@@ -14,6 +14,9 @@
 
 namespace carom {
 
+/// What is asked of impulses: by how much velocities have more energy, or the work done while gravity acted.
+enum class GainOf { velocities, work };
+
 /// The bodies as contacts see them over the substeps of a step: velocities and displacements, one record a
 /// body, and what free flight does to them between substeps. Rows beyond the bodies are for the padding of
 /// contact groups: they stay at rest.
@@ -30,8 +33,9 @@ class BodyRecords {
     void begin(const WorldState<Real>& world, const Column<Real>& motion, const BodyMasses<Real>& masses,
                std::size_t rows, std::size_t padding_rows, const SubstepTerms& terms,
                const StepLoops<Real>& loops);
-    /// What the impulses of this substep have added to the kinetic energy of all bodies.
-    EnergyGain gain(const SubstepTerms& terms, const StepLoops<Real>& loops);
+    /// What the impulses of this substep have added to the kinetic energy of all bodies, or the work that
+    /// they did while gravity acted with them.
+    EnergyGain gain(const SubstepTerms& terms, const StepLoops<Real>& loops, GainOf of = GainOf::velocities);
     /// Moves the bodies through the substep that was solved; foresees the next, unless it was the last.
     /// @param joined  [rows], above zero for bodies that have joints; null where there are none
     void advance(bool is_last, const SubstepTerms& terms, const StepLoops<Real>& loops, const Real* joined);

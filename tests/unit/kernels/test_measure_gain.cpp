@@ -38,12 +38,28 @@ struct Records {
             start_rim[row] = static_cast<Real>(is_fixed ? 0 : draw(-4, 4));
         }
     }
-    EnergyGain measured(const KernelTable<Real>& kernels, bool turns, std::size_t first, std::size_t last) {
+    EnergyGain measured(const KernelTable<Real>& kernels, bool turns, std::size_t first, std::size_t last,
+                        bool is_work = false) {
         const MeasureGain<Real> k{
             velocity.data(), {start_x.data(), start_y.data(), turns ? start_rim.data() : nullptr},
             Real(0.25),      Real(-0.5),
             Real(0.9375),    Real(0.875)};
-        return kernels.measure_gain[turns ? 1 : 0](k, first, last);
+        return kernels.measure_gain[(turns ? 1 : 0) + (is_work ? 2 : 0)](k, first, last);
+    }
+    /// Force times way: the change of momentum that free flight does not account for, times the mean
+    /// velocity.
+    double work() const {
+        double sum = 0;
+        for (std::size_t row = 0; row < kBodies; ++row) {
+            const auto along = [](double start, double free, double end) {
+                return (end - free) * 0.5 * (start + end);
+            };
+            const double x = start_x[row], y = start_y[row], u = start_rim[row];
+            sum += mass[row] * along(x, 0.9375 * x + 0.25, velocity[4 * row]) +
+                   mass[row] * along(y, 0.9375 * y - 0.5, velocity[4 * row + 1]) +
+                   0.5 * mass[row] * along(u, 0.875 * u, velocity[4 * row + 2]);
+        }
+        return sum;
     }
     /// m v² / 2 and I w² / 2 of each body, with I = m rim² / 2.
     EnergyGain summed() const {
@@ -82,6 +98,13 @@ TEST_SUITE("kernels/measure gain") {
                 CHECK(sum.gain == first.gain);
                 CHECK(sum.before == first.before);
             }
+            const EnergyGain work = records.measured(runnable_kernel_tables().front()->of<Real>(), turns, 0,
+                                                     padded(kBodies), true);
+            CHECK(std::abs(work.gain - records.work()) < precision * expected.before);
+            CHECK(work.before == first.before);
+            for (const KernelTables* tables : runnable_kernel_tables())
+                CHECK(records.measured(tables->of<Real>(), turns, 0, padded(kBodies), true).gain ==
+                      work.gain);
         }
     }
 }
