@@ -8,7 +8,6 @@
 #include <optional>
 #include <random>
 #include <string>
-#include <utility>
 
 #include <doctest/doctest.h>
 #include <carom/carom.hpp>
@@ -199,8 +198,13 @@ TEST_SUITE("hard cases: crowds that hang") {
     TEST_CASE("vehicles drive as their motors say, a few and as a crowd") {
         constexpr double kPi = 3.14159265358979, kWheelMass = kPi * kWheel * kWheel;
         constexpr double kAcceleration = 2 * kTorque / kWheel / (2.4 + 2 * 1.5 * kWheelMass);  // m/s²
-        for (const auto& [count, are_sprung] :
-             {std::pair{1, false}, {2, false}, {12, false}, {1, true}, {2, true}, {12, true}}) {
+        struct Kind {
+            int count;
+            bool are_sprung;
+        };
+        for (const Kind kind : {Kind{1, false}, {2, false}, {12, false}, {1, true}, {2, true}, {12, true}}) {
+            const int count = kind.count;
+            const bool are_sprung = kind.are_sprung;
             CAPTURE(count);
             CAPTURE(are_sprung);
             const Scene scene = vehicles(count, are_sprung);
