@@ -21,25 +21,18 @@ std::size_t RowNames::follow(std::size_t count, std::span<const std::int32_t> no
         is_loose_.assign(now.size(), 0);
     }
     std::size_t gone = 0;
-    old_rows_.assign(count, kNone);
     for (std::size_t old = 0; old < now.size(); ++old) {
-        if (!is_gone(now[old])) {
-            old_rows_[static_cast<std::size_t>(now[old])] = static_cast<std::int32_t>(old);
-            continue;
-        }
+        if (!is_gone(now[old])) continue;
         if (name_of_[old] >= 0) row_of_name_[static_cast<std::size_t>(name_of_[old])] = kNone;
         ++gone;
     }
-    changed_rows_.clear();  // few
-    for (std::size_t row = 0; row < count; ++row)
-        if (old_rows_[row] != static_cast<std::int32_t>(row))
-            changed_rows_.push_back(static_cast<std::int32_t>(row));
+    changed_.find(count, now, is_elsewhere);
     move(name_of_, [](std::size_t) { return kNone; });
     move(is_loose_, [](std::size_t) { return std::uint8_t{1}; });
-    for (const std::int32_t row : changed_rows_) {
+    for (const std::int32_t row : changed_.rows()) {
         const std::int32_t name = name_of_[static_cast<std::size_t>(row)];
         if (name >= 0) row_of_name_[static_cast<std::size_t>(name)] = row;
-        if (old_rows_[static_cast<std::size_t>(row)] < 0) fresh_rows_.push_back(row);
+        if (changed_.is_fresh(row)) fresh_rows_.push_back(row);
     }
     std::erase_if(loose_rows_, [&](std::int32_t& row) {
         row = now[static_cast<std::size_t>(row)];
@@ -82,9 +75,8 @@ void RowNames::sort(std::span<const std::int32_t> names, std::size_t count) {
 
 std::size_t RowNames::bytes() const {
     const std::size_t numbers = row_of_name_.capacity() + name_of_.capacity() + loose_rows_.capacity() +
-                                fresh_rows_.capacity() + sorted_rows_.capacity() + changed_rows_.capacity() +
-                                old_rows_.capacity();
-    return is_loose_.capacity() + numbers * sizeof(std::int32_t);
+                                fresh_rows_.capacity() + sorted_rows_.capacity();
+    return is_loose_.capacity() + changed_.bytes() + numbers * sizeof(std::int32_t);
 }
 
 }  // namespace carom

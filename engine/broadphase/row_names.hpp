@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <type_traits>
 #include <vector>
 
+#include "state/columns/changed_rows.hpp"
 #include "state/columns/column.hpp"
 
 namespace carom {
@@ -33,16 +33,7 @@ class RowNames {
     /// @param of_fresh  value of a row that is loose since then, of its number
     template <class ColumnOfRows, class OfFresh>
     void move(ColumnOfRows& column, const OfFresh& of_fresh) const {
-        using Value = std::remove_cvref_t<decltype(column[0])>;
-        std::vector<Value> moved(changed_rows_.size());
-        for (std::size_t k = 0; k < changed_rows_.size(); ++k) {
-            const auto row = static_cast<std::size_t>(changed_rows_[k]);
-            const std::int32_t old = old_rows_[row];
-            moved[k] = old < 0 ? of_fresh(row) : column[static_cast<std::size_t>(old)];
-        }
-        column.resize(old_rows_.size());
-        for (std::size_t k = 0; k < changed_rows_.size(); ++k)
-            column[static_cast<std::size_t>(changed_rows_[k])] = moved[k];
+        changed_.move(column, of_fresh);
     }
 
     /// The name of a row that is not loose.
@@ -74,16 +65,14 @@ class RowNames {
     std::size_t bytes() const;
 
   private:
-    static constexpr std::int32_t kNone = -1;
+    static constexpr std::int32_t kNone = ChangedRows::kNone;
 
     std::vector<std::int32_t> row_of_name_;  // kNone: the body is gone, or loose
     std::vector<std::int32_t> name_of_;      // of a row; kNone: loose
     std::vector<std::uint8_t> is_loose_;     // a row
     std::vector<std::int32_t> loose_rows_, fresh_rows_;
     std::vector<std::int32_t> sorted_rows_;
-    // The last `follow` left rows that hold another body than before, and the former row of every row, kNone
-    // if it is fresh.
-    std::vector<std::int32_t> changed_rows_, old_rows_;
+    ChangedRows changed_;  // by the last `follow`
 };
 
 }  // namespace carom

@@ -3,6 +3,7 @@
 #include "math/random.hpp"
 #include "math/vec2_math.hpp"
 #include "support/report.hpp"
+#include "support/touches.hpp"
 
 #include <carom/carom.hpp>
 
@@ -58,59 +59,22 @@ Scene touched_pile(bool with_compounds) {
     return scene;
 }
 
-/// Does something to the world: the same for the same numbers, whatever rows bodies have.
 template <class Real>
-class Touches {
-  public:
-    Touches(std::uint64_t seed, bool with_compounds) : random_(seed), with_compounds_(with_compounds) {}
-
-    void touch(BasicWorld<Real>& world) {
-        for (int i = 0; i < 3; ++i) {
-            const BodyId body = pick(world);
-            switch (random_.below(4)) {
-                case 0:
-                    world.remove(body);
-                    break;
-                case 1:
-                    world.add({.shape = shape_of(static_cast<int>(random_.below(6)), with_compounds_),
-                               .position = free_place(world),
-                               .angle = random_.uniform(-3, 3),
-                               .material = kRough});
-                    break;
-                case 2:
-                    world.set_velocity(body, {random_.uniform(-3, 3), 5});
-                    break;
-                case 3:
-                    world.set_position(body, free_place(world));
-                    break;
-            }
-        }
-    }
-
-  private:
-    /// A place above the pile where no body is.
-    Vec2 free_place(const BasicWorld<Real>& world) {
-        for (;;) {
-            const Vec2 place{random_.uniform(1, kWidth - 1), random_.uniform(40, 80)};
-            const auto bodies = world.bodies();
-            bool is_free = true;
-            for (std::size_t i = 0; i < bodies.count; ++i)
-                is_free &= std::hypot(bodies.position_x[i] - place.x, bodies.position_y[i] - place.y) > 1.5;
-            if (is_free) return place;
-        }
-    }
-    BodyId pick(const BasicWorld<Real>& world) {
-        constexpr std::uint32_t kStanding = 3;  // the first bodies
-        std::vector<BodyId> ids;
-        for (const BodyId id : world.bodies().id)
-            if (id.index >= kStanding) ids.push_back(id);
-        std::sort(ids.begin(), ids.end(), [](BodyId a, BodyId b) { return a.index < b.index; });
-        return ids[random_.below(ids.size())];
-    }
-
-    Random random_;
-    bool with_compounds_;
-};
+Touches<Real> touches_of(std::uint64_t seed, bool with_compounds) {
+    constexpr std::uint32_t kStanding = 3;  // the first bodies
+    return {seed,
+            {.make =
+                 [with_compounds](Random& random) {
+                     return Body{.shape = shape_of(static_cast<int>(random.below(6)), with_compounds),
+                                 .angle = random.uniform(-3, 3),
+                                 .material = kRough};
+                 },
+             .may_be_touched = [](std::uint32_t index) { return index >= kStanding; },
+             .width = kWidth,
+             .low = 40,
+             .high = 80,
+             .apart = 1.5}};
+}
 
 /// Chains and cars on suspensions, of which bodies are removed with their joints among others.
 Scene touched_mechanisms() {
@@ -186,7 +150,7 @@ TEST_SUITE("hard cases/touched worlds of shapes") {
                 CAPTURE(seed);
                 BasicWorld<Real> world(touched_pile(with_compounds), {.threads = 1});
                 for (int i = 0; i < 400; ++i) world.step(kStep);
-                Touches<Real> touches(seed, with_compounds);
+                auto touches = touches_of<Real>(seed, with_compounds);
                 for (int i = 0; i < 300; ++i) {
                     touches.touch(world);
                     world.step(kStep);
@@ -239,7 +203,7 @@ TEST_SUITE("hard cases/touched worlds of shapes") {
             CAPTURE(with_compounds);
             BasicWorld<Real> world(touched_pile(with_compounds), {.threads = 1});
             for (int i = 0; i < 120; ++i) world.step(kStep);
-            Touches<Real> touches(5, with_compounds);
+            auto touches = touches_of<Real>(5, with_compounds);
             for (int i = 0; i < 40; ++i) {
                 touches.touch(world);
                 world.step(kStep);
@@ -259,7 +223,7 @@ TEST_SUITE("hard cases/touched worlds of shapes") {
                        Real, float, double) {
         BasicWorld<Real> world(touched_mechanisms(), {.threads = 1});
         for (int i = 0; i < 120; ++i) world.step(kStep);
-        Touches<Real> touches(7, false);
+        auto touches = touches_of<Real>(7, false);
         for (int i = 0; i < 60; ++i) {
             touches.touch(world);
             world.step(kStep);
@@ -287,7 +251,7 @@ TEST_SUITE("hard cases/touched worlds of shapes") {
         const auto hash_of = [&](const WorldOptions& options) {
             World world(scene, options);
             for (int i = 0; i < 60; ++i) world.step(kStep);
-            Touches<float> touches(6, true);
+            auto touches = touches_of<float>(6, true);
             for (int i = 0; i < 40; ++i) {
                 touches.touch(world);
                 world.step(kStep);

@@ -3,6 +3,7 @@
 #include "math/vec2_math.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"
+#include "support/touches.hpp"
 
 #include <carom/world.hpp>
 
@@ -41,56 +42,23 @@ Scene touched_pile(double restitution) {
     return scene;
 }
 
-/// Does something to the world: the same for the same numbers, whatever rows bodies have.
 template <class Real>
-class Touches {
-  public:
-    explicit Touches(std::uint64_t seed) : random_(seed) {}
+Touches<Real> touches_of(std::uint64_t seed) {
+    return {seed,
+            {.make = [](Random&) { return Body{.shape = Disc{0.5}, .material = {.friction = 0.5}}; },
+             .may_be_touched = [](std::uint32_t index) { return index != kSegment; },
+             .width = kWidth,
+             .low = 30,
+             .high = 60,
+             .apart = 1.3}};
+}
 
-    void touch(BasicWorld<Real>& world, int step) {
-        for (int i = 0; i < 3; ++i) {
-            const BodyId body = pick(world);
-            switch (random_.below(4)) {
-                case 0:
-                    world.remove(body);
-                    break;
-                case 1:
-                    world.add(
-                        {.shape = Disc{0.5}, .position = free_place(world), .material = {.friction = 0.5}});
-                    break;
-                case 2:
-                    world.set_velocity(body, {random_.uniform(-3, 3), 5});
-                    break;
-                case 3:
-                    world.set_position(body, free_place(world));
-                    break;
-            }
-        }
-        world.set_velocity({kSegment, 0}, {0, 0.5 * std::cos(0.05 * step)});
-    }
-
-  private:
-    /// A place above the pile where no body is.
-    Vec2 free_place(const BasicWorld<Real>& world) {
-        for (;;) {
-            const Vec2 place{random_.uniform(1, kWidth - 1), random_.uniform(30, 60)};
-            const auto bodies = world.bodies();
-            bool is_free = true;
-            for (std::size_t i = 0; i < bodies.count; ++i)
-                is_free &= std::hypot(bodies.position_x[i] - place.x, bodies.position_y[i] - place.y) > 1.3;
-            if (is_free) return place;
-        }
-    }
-    BodyId pick(const BasicWorld<Real>& world) {
-        std::vector<BodyId> ids;
-        for (const BodyId id : world.bodies().id)
-            if (id.index != kSegment) ids.push_back(id);
-        std::sort(ids.begin(), ids.end(), [](BodyId a, BodyId b) { return a.index < b.index; });
-        return ids[random_.below(ids.size())];
-    }
-
-    Random random_;
-};
+/// Touches bodies, and drives the segment.
+template <class Real>
+void touch(BasicWorld<Real>& world, Touches<Real>& touches, int step) {
+    touches.touch(world);
+    world.set_velocity({kSegment, 0}, {0, 0.5 * std::cos(0.05 * step)});
+}
 
 }  // namespace
 
@@ -102,10 +70,10 @@ TEST_SUITE("hard cases/touched worlds") {
             CAPTURE(restitution);
             BasicWorld<Real> world(touched_pile(restitution), {.threads = 1});
             for (int i = 0; i < 600; ++i) world.step(kStep);
-            Touches<Real> touches(3);
+            auto touches = touches_of<Real>(3);
             double deepest = 0;
             for (int i = 0; i < 400; ++i) {
-                touches.touch(world, i);
+                touch(world, touches, i);
                 world.step(kStep);
                 if (i % 4 == 0) deepest = std::max(deepest, world.overlaps().max);
             }
@@ -123,18 +91,18 @@ TEST_SUITE("hard cases/touched worlds") {
         const Scene scene = touched_pile(0.3);
         BasicWorld<Real> world(scene, {.threads = 1});
         for (int i = 0; i < 120; ++i) world.step(kStep);
-        Touches<Real> touches(4);
+        auto touches = touches_of<Real>(4);
         for (int i = 0; i < 40; ++i) {
-            touches.touch(world, i);
+            touch(world, touches, i);
             world.step(kStep);
         }
-        touches.touch(world, 40);  // what the next step is yet to follow is in the state
+        touch(world, touches, 40);  // what the next step is yet to follow is in the state
         BasicWorld<Real> other(world);
         Touches<Real> same(touches);
         for (int i = 41; i < 80; ++i) {
             world.step(kStep), other.step(kStep);
             REQUIRE(world.state_hash() == other.state_hash());
-            touches.touch(world, i), same.touch(other, i);
+            touch(world, touches, i), touch(other, same, i);
         }
     }
 

@@ -49,8 +49,9 @@ struct Suspension {
                             .kind = WheelJoint{.frequency = frequency, .damping_ratio = ratio}});
         }
     }
-    /// Of the spring at one wheel: (2 π f)² times what it moves, which is chassis and wheel at its lever.
-    /// Both springs together act on the wheels as one body and on the chassis.
+    /// The squared frequency of the swing over that of one spring alone, no unit. A spring is as stiff as (2
+    /// π f)² times the mass that it moves, chassis and wheel at its lever; both together act on the wheels as
+    /// one body and on the chassis.
     double over_alone() const {
         const double inertia = kChassis * (3 * 3 + 1 * 1) / 12.0;
         return (2 / kChassis + 1 / kWheel) / (1 / kChassis + 1 / kWheel + kSide * kSide / inertia);
@@ -166,7 +167,7 @@ TEST_SUITE("wheels and sliders of crowds") {
             const double exact = SpinningRod::exact(kTime), spin = rod.angular_velocity,
                          momentum = SpinningRod::inertia(exact) * spin,
                          at_start = SpinningRod::inertia(SpinningRod::kStart) * SpinningRod::kSpin;
-            // Of what moves against the centre: beads go out and round.
+            // The energies [J] are those of motion against the centre: beads go out and round.
             const double apart = 0.5 * std::sqrt(length_squared(right.velocity - left.velocity)),
                          energy = SpinningRod::kBead * apart * apart +
                                   0.5 *

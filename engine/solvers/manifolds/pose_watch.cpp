@@ -63,35 +63,15 @@ void PoseWatch<Real>::look(const WorldState<Real>& world, double dt, const Conta
 template <class Real>
 void PoseWatch<Real>::follow_rows(const Bodies<Real>& bodies, std::span<const std::int32_t> now,
                                   std::span<const std::uint8_t> is_elsewhere) {
-    constexpr std::int32_t kNone = -1;
     if (path_.empty()) return;  // there was no look yet
     looks_at_others_ = kLooksAtOthers;
-    old_rows_.assign(bodies.count, kNone);
-    for (std::size_t old = 0; old < now.size(); ++old)
-        if (now[old] >= 0 && is_elsewhere[static_cast<std::size_t>(now[old])] == 0)
-            old_rows_[static_cast<std::size_t>(now[old])] = static_cast<std::int32_t>(old);
-    changed_rows_.clear();
-    for (std::size_t row = 0; row < bodies.count; ++row)
-        if (old_rows_[row] != static_cast<std::int32_t>(row))
-            changed_rows_.push_back(static_cast<std::int32_t>(row));
-    const std::size_t room = padded(std::max(bodies.count, now.size()));
-    const auto move = [&](auto& column, std::size_t width) {
-        using Value = std::remove_cvref_t<decltype(column[0])>;
-        column.resize(width * room);
-        std::vector<Value> moved(width * changed_rows_.size());
-        for (std::size_t k = 0; k < changed_rows_.size(); ++k) {
-            const std::int32_t old = old_rows_[static_cast<std::size_t>(changed_rows_[k])];
-            for (std::size_t i = 0; i < width && old != kNone; ++i)
-                moved[width * k + i] = column[width * static_cast<std::size_t>(old) + i];
-        }
-        for (std::size_t k = 0; k < changed_rows_.size(); ++k)
-            for (std::size_t i = 0; i < width; ++i)
-                column[width * static_cast<std::size_t>(changed_rows_[k]) + i] = moved[width * k + i];
-    };
-    move(pose, 4), move(base_, 4), move(angle_, 1), move(thinnest_, 1), move(path_, 1);
-    for (const std::int32_t changed : changed_rows_) {
+    changed_.find(bodies.count, now, is_elsewhere);
+    const auto zero = [](std::size_t) { return Real(0); };
+    for (Column<Real>* column : {&pose, &base_}) changed_.move(*column, zero, 4);
+    changed_.move(angle_, zero), changed_.move(thinnest_, zero), changed_.move(path_, zero);
+    for (const std::int32_t changed : changed_.rows()) {
+        if (!changed_.is_fresh(changed)) continue;
         const auto row = static_cast<std::size_t>(changed);
-        if (old_rows_[row] != kNone) continue;
         fresh_rows_.push_back(changed);  // its thickness is zero until the next look
         const Rotation turn = rotation_by(bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0);
         pose[4 * row] = bodies.position_x[row], pose[4 * row + 1] = bodies.position_y[row];

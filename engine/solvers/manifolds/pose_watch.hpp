@@ -8,6 +8,7 @@
 #include "isa/convex_kernels.hpp"
 #include "parallel/executor.hpp"
 #include "solvers/manifolds/contact_distance.hpp"
+#include "state/columns/changed_rows.hpp"
 #include "state/columns/column.hpp"
 #include "state/world_state.hpp"
 
@@ -95,7 +96,7 @@ class PoseWatch {
     Column<Real> come_, turned_, moved_, way_;
     Column<double> path_;  // m, by row: small steps must not get lost in a long way
     bool begins_paths_ = false;
-    std::vector<std::int32_t> old_rows_, changed_rows_;  // scratch of follow_rows
+    ChangedRows changed_;                   // scratch of follow_rows
     std::vector<std::int32_t> fresh_rows_;  // whose contacts are to be found, since the last look
     struct Driven {
         std::size_t row;

@@ -12,6 +12,31 @@ using namespace carom;
 
 namespace {
 
+void add_link(JointSystem& system, Vec2 at, int number) {
+    SystemBody body;
+    body.pose = {at, {1, 0}, 0};
+    body.inverse_mass = 1 + 0.1 * number;
+    body.inverse_inertia = body.seen_inverse_inertia = 12 * body.inverse_mass;
+    system.bodies.push_back(body);
+}
+
+void add_hinge(JointSystem& system, StoredJoint& joint, int a, int b, Vec2 at) {
+    joint.type = JointType::revolute;
+    joint.anchor_a = at - system.bodies[static_cast<std::size_t>(a)].pose.position;
+    joint.anchor_b = at - system.bodies[static_cast<std::size_t>(b)].pose.position;
+    JointSystem::Member member;
+    member.joint = &joint, member.a = a, member.b = b;
+    system.joints.push_back(member);
+}
+
+/// Plans the system, and prepares a substep of 1/240 s.
+void prepare(JointSystem& system) {
+    system.plan();
+    system.set_substep(1.0 / 240);
+    system.begin_step();
+    system.prepare(JointSystem::Part::whole);
+}
+
 /// Rows of a random matrix that is positive definite.
 struct Matrix {
     std::size_t count;
@@ -44,11 +69,7 @@ struct Ring {
         };
         system.bodies.emplace_back();
         for (int i = 0; i < links; ++i) {
-            SystemBody body;
-            body.pose = {0.5 * (corner(i) + corner(i + 1)), {1, 0}, 0};
-            body.inverse_mass = 1 + 0.1 * i;
-            body.inverse_inertia = body.seen_inverse_inertia = 12 * body.inverse_mass;
-            system.bodies.push_back(body);
+            add_link(system, 0.5 * (corner(i) + corner(i + 1)), i);
         }
         stored.resize(static_cast<std::size_t>(links + more));
         for (int j = 0; j < links + more; ++j) {
@@ -56,17 +77,9 @@ struct Ring {
                       b = 1 + (j < links ? (j + 1) % links : (j - links + links / 2) % links);
             const Vec2 at = corner(j < links ? j + 1 : j - links + 0.5);
             StoredJoint& joint = stored[static_cast<std::size_t>(j)];
-            joint.type = JointType::revolute;
-            joint.anchor_a = at - system.bodies[static_cast<std::size_t>(a)].pose.position;
-            joint.anchor_b = at - system.bodies[static_cast<std::size_t>(b)].pose.position;
-            JointSystem::Member member;
-            member.joint = &joint, member.a = a, member.b = b;
-            system.joints.push_back(member);
+            add_hinge(system, joint, a, b, at);
         }
-        system.plan();
-        system.set_substep(1.0 / 240);
-        system.begin_step();
-        system.prepare(JointSystem::Part::whole);
+        prepare(system);
     }
 };
 
@@ -79,29 +92,17 @@ struct TautChain {
     explicit TautChain(int links) {
         system.bodies.emplace_back();
         for (int i = 0; i < links; ++i) {
-            SystemBody body;
-            body.pose = {{i + 0.5, 0}, {1, 0}, 0};
-            body.inverse_mass = 1 + 0.1 * i;
-            body.inverse_inertia = body.seen_inverse_inertia = 12 * body.inverse_mass;
-            system.bodies.push_back(body);
+            add_link(system, Vec2{i + 0.5, 0}, i);
         }
         stored.resize(static_cast<std::size_t>(links + 1));
         for (int j = 0; j <= links; ++j) {
             const int a = j, b = j < links ? j + 1 : 0;
             const Vec2 at{static_cast<double>(j), 0};
             StoredJoint& joint = stored[static_cast<std::size_t>(j)];
-            joint.type = JointType::revolute;
-            joint.anchor_a = at - system.bodies[static_cast<std::size_t>(a)].pose.position;
-            joint.anchor_b = at - system.bodies[static_cast<std::size_t>(b)].pose.position;
+            add_hinge(system, joint, a, b, at);
             joint.has_motor = j == 1, joint.motor_speed = 3, joint.max_motor = 5;
-            JointSystem::Member member;
-            member.joint = &joint, member.a = a, member.b = b;
-            system.joints.push_back(member);
         }
-        system.plan();
-        system.set_substep(1.0 / 240);
-        system.begin_step();
-        system.prepare(JointSystem::Part::whole);
+        prepare(system);
     }
     /// Solves the chain for links that are as fast as this across it, a blow that grows along it [m/s].
     void solve(double blow) {
