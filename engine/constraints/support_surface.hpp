@@ -113,7 +113,7 @@ EdgeClearance clearance_of_edge(const WorldState<Real>& world, const EdgeCandida
 /// they meet, and so is the velocity of the surface; the separation is such that they then touch.
 ///
 /// What presses already is found in the middle of the step: a disc that rolls to and fro in a bowl of many
-/// edges would gain energy from contacts that lag behind it (solvers/manifolds/poses_ahead.hpp).
+/// edges would gain energy from contacts that lag behind it (solvers/manifolds/finders/poses_ahead.hpp).
 /// @param v  m/s, of the disc  @param hold  by this edge or another one
 template <class Real>
 SupportSurface surface_of_edge(const WorldState<Real>& world, const EdgeCandidates<Real>& edges,

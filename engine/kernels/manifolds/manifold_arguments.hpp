@@ -31,7 +31,7 @@ struct ManifoldColumns {
 /// Angles that are turned into cosines and sines at once; their arrays are 64-byte aligned.
 inline constexpr std::size_t kAnglesOfBlock = 64;
 
-/// Rows of bodies whose poses are followed: solvers/manifolds/pose_watch.hpp. All columns by row.
+/// Rows of bodies whose poses are followed: solvers/manifolds/poses/pose_watch.hpp. All columns by row.
 template <class Real>
 struct WatchPoses {
     const Real *x, *y, *angle;                     // m, m, rad; angle is null where nothing turns
@@ -64,7 +64,8 @@ struct FindApproached {
     std::int32_t* out;          // numbers of pairs
 };
 
-/// Contacts that were found, of which some have to be looked at one by one: solvers/manifolds/gaps.hpp.
+/// Contacts that were found, of which some have to be looked at one by one:
+/// solvers/manifolds/finders/gaps.hpp.
 template <class Real>
 struct QuestionGaps {
     static constexpr std::size_t kContacts = 16;  // of a block: kRowPadding

@@ -9,7 +9,7 @@
 #include "effects/friction.hpp"
 #include "effects/restitution.hpp"
 #include "narrowphase/box_box.hpp"
-#include "solvers/manifolds/gaps.hpp"
+#include "solvers/manifolds/finders/gaps.hpp"
 
 namespace carom {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "kernels/paths/path_arguments.hpp"
-#include "solvers/manifolds/manifold_list.hpp"
+#include "solvers/manifolds/list/manifold_list.hpp"
 #include "solvers/substeps/body_records.hpp"
 #include "state/bodies.hpp"
 

@@ -1,4 +1,4 @@
-#include "solvers/manifolds/distant_pairs.hpp"
+#include "solvers/manifolds/finders/distant_pairs.hpp"
 
 #include "isa/select_isa.hpp"
 #include "support/convex_oracle.hpp"

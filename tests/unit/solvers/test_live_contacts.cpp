@@ -1,5 +1,5 @@
 // The contacts that can touch, against a list that is made anew in every step.
-#include "solvers/manifolds/live_contacts.hpp"
+#include "solvers/manifolds/list/live_contacts.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "solvers/manifolds/manifold_index.hpp"
+#include "solvers/manifolds/list/manifold_index.hpp"
 
 #include <doctest/doctest.h>
 

@@ -6,7 +6,7 @@
 #include "math/vec2_math.hpp"
 #include "narrowphase/disc_edge.hpp"
 #include "narrowphase/line_crossing.hpp"
-#include "solvers/manifolds/meeting.hpp"
+#include "solvers/manifolds/meetings/meeting.hpp"
 
 namespace carom {
 namespace {

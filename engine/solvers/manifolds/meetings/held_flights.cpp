@@ -1,11 +1,11 @@
-#include "solvers/manifolds/held_flights.hpp"
+#include "solvers/manifolds/meetings/held_flights.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "constraints/partner.hpp"
 #include "math/rotation.hpp"
-#include "solvers/manifolds/meeting.hpp"
+#include "solvers/manifolds/meetings/meeting.hpp"
 
 namespace carom {
 namespace {

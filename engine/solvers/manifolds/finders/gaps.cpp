@@ -1,11 +1,11 @@
-#include "solvers/manifolds/gaps.hpp"
+#include "solvers/manifolds/finders/gaps.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
 
-#include "solvers/manifolds/meeting.hpp"
+#include "solvers/manifolds/meetings/meeting.hpp"
 
 namespace carom {
 namespace {

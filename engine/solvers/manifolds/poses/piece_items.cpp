@@ -1,4 +1,4 @@
-#include "solvers/manifolds/piece_items.hpp"
+#include "solvers/manifolds/poses/piece_items.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "solvers/manifolds/poses_ahead.hpp"
+#include "solvers/manifolds/finders/poses_ahead.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "solvers/manifolds/live_contacts.hpp"
+#include "solvers/manifolds/list/live_contacts.hpp"
 
 #include <algorithm>
 #include <numeric>

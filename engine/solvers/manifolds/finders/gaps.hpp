@@ -1,12 +1,12 @@
 #pragma once
 
 #include "isa/convex_kernels.hpp"
-#include "solvers/manifolds/contact_distance.hpp"
-#include "solvers/manifolds/held_flights.hpp"
-#include "solvers/manifolds/manifold_list.hpp"
-#include "solvers/manifolds/meeting.hpp"
-#include "solvers/manifolds/piece_items.hpp"
-#include "solvers/manifolds/pose_watch.hpp"
+#include "solvers/manifolds/list/manifold_list.hpp"
+#include "solvers/manifolds/meetings/held_flights.hpp"
+#include "solvers/manifolds/meetings/meeting.hpp"
+#include "solvers/manifolds/poses/contact_distance.hpp"
+#include "solvers/manifolds/poses/piece_items.hpp"
+#include "solvers/manifolds/poses/pose_watch.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {

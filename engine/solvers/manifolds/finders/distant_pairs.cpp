@@ -1,4 +1,4 @@
-#include "solvers/manifolds/distant_pairs.hpp"
+#include "solvers/manifolds/finders/distant_pairs.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "solvers/manifolds/meeting.hpp"
+#include "solvers/manifolds/meetings/meeting.hpp"
 
 #include <cmath>
 

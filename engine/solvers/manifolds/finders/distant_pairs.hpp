@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "parallel/executor.hpp"
-#include "solvers/manifolds/contact_distance.hpp"
-#include "solvers/manifolds/pose_watch.hpp"
+#include "solvers/manifolds/poses/contact_distance.hpp"
+#include "solvers/manifolds/poses/pose_watch.hpp"
 #include "state/columns/chunked_list.hpp"
 #include "state/shape_frames.hpp"
 #include "state/world_state.hpp"

@@ -1,4 +1,4 @@
-#include "solvers/manifolds/surface_finder.hpp"
+#include "solvers/manifolds/finders/surface_finder.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "narrowphase/convex.hpp"
 #include "narrowphase/disc_edge.hpp"
 #include "shapes/walls.hpp"
-#include "solvers/manifolds/meeting.hpp"
+#include "solvers/manifolds/meetings/meeting.hpp"
 
 namespace carom {
 namespace {

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "parallel/executor.hpp"
-#include "solvers/manifolds/held_flights.hpp"
-#include "solvers/manifolds/manifold_list.hpp"
-#include "solvers/manifolds/piece_items.hpp"
-#include "solvers/manifolds/pose_watch.hpp"
+#include "solvers/manifolds/list/manifold_list.hpp"
+#include "solvers/manifolds/meetings/held_flights.hpp"
+#include "solvers/manifolds/poses/piece_items.hpp"
+#include "solvers/manifolds/poses/pose_watch.hpp"
 #include "solvers/substeps/step_terms.hpp"
 #include "state/columns/column.hpp"
 #include "state/world_state.hpp"

@@ -1,4 +1,4 @@
-#include "solvers/manifolds/manifold_list.hpp"
+#include "solvers/manifolds/list/manifold_list.hpp"
 
 #include <algorithm>
 

@@ -5,9 +5,9 @@
 
 #include "broadphase/edge_candidates.hpp"
 #include "math/vec2_math.hpp"
-#include "solvers/manifolds/manifold_list.hpp"
-#include "solvers/manifolds/piece_items.hpp"
-#include "solvers/manifolds/pose_watch.hpp"
+#include "solvers/manifolds/list/manifold_list.hpp"
+#include "solvers/manifolds/poses/piece_items.hpp"
+#include "solvers/manifolds/poses/pose_watch.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {

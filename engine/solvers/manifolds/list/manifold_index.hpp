@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "solvers/manifolds/manifold_list.hpp"
+#include "solvers/manifolds/list/manifold_list.hpp"
 
 namespace carom {
 

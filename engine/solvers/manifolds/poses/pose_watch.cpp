@@ -1,4 +1,4 @@
-#include "solvers/manifolds/pose_watch.hpp"
+#include "solvers/manifolds/poses/pose_watch.hpp"
 
 #include <algorithm>
 #include <array>

@@ -7,7 +7,7 @@
 
 #include "isa/convex_kernels.hpp"
 #include "parallel/executor.hpp"
-#include "solvers/manifolds/contact_distance.hpp"
+#include "solvers/manifolds/poses/contact_distance.hpp"
 #include "state/columns/changed_rows.hpp"
 #include "state/columns/column.hpp"
 #include "state/world_state.hpp"
