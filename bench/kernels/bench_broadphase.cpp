@@ -1,5 +1,5 @@
-#include "broadphase/cell_numbering.hpp"
-#include "broadphase/sorted_level.hpp"
+#include "broadphase/grid/cell_numbering.hpp"
+#include "broadphase/grid/sorted_level.hpp"
 #include "kernels/gas_columns.hpp"
 #include "kernels/kernel_benchmark.hpp"
 #include "parallel/executor.hpp"

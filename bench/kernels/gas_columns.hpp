@@ -1,6 +1,6 @@
 #pragma once
 
-#include "broadphase/uniform_grid.hpp"
+#include "broadphase/grid/uniform_grid.hpp"
 #include "state/columns/column.hpp"
 
 #include <cstddef>

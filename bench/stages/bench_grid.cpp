@@ -1,4 +1,4 @@
-#include "broadphase/uniform_grid.hpp"
+#include "broadphase/grid/uniform_grid.hpp"
 #include "isa/select_isa.hpp"
 #include "kernels/gas_columns.hpp"
 

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "broadphase/grid/uniform_grid.hpp"
 #include "broadphase/moving_places.hpp"
 #include "broadphase/row_names.hpp"
 #include "broadphase/slim_bodies.hpp"
-#include "broadphase/uniform_grid.hpp"
 #include "effects/flight.hpp"
 #include "isa/kernel_table.hpp"
 #include "parallel/executor.hpp"

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "broadphase/uniform_grid.hpp"
+#include "broadphase/grid/uniform_grid.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {

@@ -2,8 +2,8 @@
 
 #include "kernels/contacts/solve_contacts.hpp"
 
-// What engine/solvers/shared/coarse_correction.hpp does to each contact. The loads of a body are two records
-// of [4]:
+// What engine/solvers/contact_sets/coarse_correction.hpp does to each contact. The loads of a body are two
+// records of [4]:
 //
 //   load    the sum of its contacts' impulses (x, y) [N s]; the sum of half of what scaling each of them by
 //           1 + s would change the kinetic energy by, for a small s, over s [J]; nothing

@@ -52,7 +52,7 @@ void for_each_column(const PathLink<Real>& from, PathLink<Real>& to, const Fn& f
     fn(from.floor1, to.floor1), fn(from.floor2, to.floor2);
 }
 
-/// What the loads of contacts are corrected by: engine/solvers/shared/coarse_correction.hpp.
+/// What the loads of contacts are corrected by: engine/solvers/contact_sets/coarse_correction.hpp.
 template <class Real>
 struct PathLoads {
     Real* load = nullptr;          // [rows][4], kernels/contacts/coarse_correction.hpp

@@ -4,7 +4,7 @@
 
 #include "kernels/paths/path_lanes.hpp"
 
-// What engine/solvers/shared/coarse_correction.hpp does to the contacts of paths: the same as
+// What engine/solvers/contact_sets/coarse_correction.hpp does to the contacts of paths: the same as
 // kernels/contacts/coarse_correction.hpp, where load and stress are explained, does to those of discs.
 
 namespace carom {

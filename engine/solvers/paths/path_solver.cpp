@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "solvers/paths/cut/path_plan.hpp"
 #include "solvers/paths/path_link.hpp"
-#include "solvers/paths/path_plan.hpp"
 
 namespace carom {
 namespace {

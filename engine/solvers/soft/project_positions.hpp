@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "solvers/shared/project_positions.hpp"
+#include "solvers/contact_sets/project_positions.hpp"
 #include "solvers/soft/step_view.hpp"
 #include "state/world_state.hpp"
 
@@ -11,7 +11,7 @@ namespace carom {
 
 /// What the sweeps of a step cannot see: bodies that are deflected within it, and then move by their own
 /// size, and many that are deep in each other. At the step's end they are looked at where they are by then
-/// and moved apart (solvers/shared/project_positions.hpp), by displacement alone.
+/// and moved apart (solvers/contact_sets/project_positions.hpp), by displacement alone.
 template <class Real>
 class EndProjection {
   public:

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/shared/local_solve.hpp"
+#include "solvers/contact_sets/local_solve.hpp"
 
 namespace carom {
 namespace {

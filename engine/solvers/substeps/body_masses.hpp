@@ -31,7 +31,7 @@ class BodyMasses {
     /// Whether some bodies do not turn.
     bool some_are_fixed() const { return some_are_fixed_; }
     /// Whether the heaviest body is so much heavier than the lightest one that sweeps do not converge soon
-    /// enough: solvers/shared/local_solve.hpp.
+    /// enough: solvers/contact_sets/local_solve.hpp.
     bool are_uneven() const { return are_uneven_; }
     /// Whether the heaviest body is more than a hundred times heavier than the lightest one.
     bool are_very_uneven() const { return are_very_uneven_; }

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "broadphase/uniform_grid.hpp"
+#include "broadphase/grid/uniform_grid.hpp"
 #include "isa/select_isa.hpp"
 #include "state/columns/column.hpp"
 

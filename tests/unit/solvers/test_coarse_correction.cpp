@@ -1,6 +1,6 @@
 // The correction of loads on a coarse grid, on its own: a triangular lattice of discs that touch, with random
 // loads that push and stick.
-#include "solvers/shared/coarse_correction.hpp"
+#include "solvers/contact_sets/coarse_correction.hpp"
 
 #include "isa/select_isa.hpp"
 #include "support/report.hpp"

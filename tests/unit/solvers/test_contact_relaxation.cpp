@@ -1,5 +1,5 @@
 // Contacts relaxed for the velocities of bodies: against statics, momentum and the energy rule.
-#include "solvers/shared/contact_relaxation.hpp"
+#include "solvers/contact_sets/contact_relaxation.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // The solve to convergence of contacts between very different masses, against the laws of all contacts.
-#include "solvers/shared/local_solve.hpp"
+#include "solvers/contact_sets/local_solve.hpp"
 
 #include "unit/solvers/contact_rows_bench.hpp"
 

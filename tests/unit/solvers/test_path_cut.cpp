@@ -1,5 +1,5 @@
-#include "solvers/paths/path_cut.hpp"
-#include "solvers/paths/turn_rows.hpp"
+#include "solvers/paths/cut/path_cut.hpp"
+#include "solvers/paths/cut/turn_rows.hpp"
 
 #include <doctest/doctest.h>
 

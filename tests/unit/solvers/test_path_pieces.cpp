@@ -1,4 +1,4 @@
-#include "solvers/paths/path_pieces.hpp"
+#include "solvers/paths/cut/path_pieces.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // Overlaps at the end of a step: what is pushed, how far, and what stays where it is.
-#include "solvers/shared/project_positions.hpp"
+#include "solvers/contact_sets/project_positions.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // Impulses around a body that was removed, against statics: of columns in closed form, of piles body by body.
-#include "solvers/shared/rebalance.hpp"
+#include "solvers/contact_sets/rebalance.hpp"
 
 #include "unit/solvers/contact_rows_bench.hpp"
 

@@ -1,5 +1,5 @@
 // Supports of one body: against a solver that tries every set of contacts that may push, and by their laws.
-#include "solvers/shared/support_normals.hpp"
+#include "solvers/contact_sets/support_normals.hpp"
 
 #include "support/complementarity.hpp"
 

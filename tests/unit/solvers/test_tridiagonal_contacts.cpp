@@ -1,5 +1,5 @@
 // Contacts in a row: against a solver that tries every set of contacts that may push, and by their laws.
-#include "solvers/shared/tridiagonal_contacts.hpp"
+#include "solvers/contact_sets/tridiagonal_contacts.hpp"
 
 #include "support/complementarity.hpp"
 

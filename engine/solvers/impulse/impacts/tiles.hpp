@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "broadphase/uniform_grid.hpp"
+#include "broadphase/grid/uniform_grid.hpp"
 #include "math/vec2_math.hpp"
 
 namespace carom {

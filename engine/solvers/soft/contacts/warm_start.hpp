@@ -2,8 +2,8 @@
 
 #include <array>
 
+#include "solvers/contact_sets/rebalance.hpp"
 #include "solvers/paths/warm_start_limit.hpp"
-#include "solvers/shared/rebalance.hpp"
 #include "solvers/soft/step_view.hpp"
 
 namespace carom {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "solvers/shared/tridiagonal_contacts.hpp"
+#include "solvers/contact_sets/tridiagonal_contacts.hpp"
 #include "solvers/soft/step_view.hpp"
 
 namespace carom {
@@ -13,8 +13,9 @@ namespace carom {
 ///
 /// A sweep carries a load one body farther, so a column of n discs takes n² sweeps, and swings for as long as
 /// that takes. Here contacts of discs that touch two others each, straight opposite each other, and nothing
-/// else, are a chain, whose normal impulses are found at once (solvers/shared/tridiagonal_contacts.hpp).
-/// Friction and what is beside the chain are left to the sweeps.
+/// else, are a chain, whose normal impulses are found at once
+/// (solvers/contact_sets/tridiagonal_contacts.hpp). Friction and what is beside the chain are left to the
+/// sweeps.
 ///
 /// Chains are listed anew every few steps, and with the pairs where there were some.
 /// Numbers: docs/decisions/0047-columns-of-discs.md.

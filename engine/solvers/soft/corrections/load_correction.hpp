@@ -1,13 +1,13 @@
 #pragma once
 
+#include "solvers/contact_sets/coarse_correction.hpp"
 #include "solvers/paths/path_solver.hpp"
-#include "solvers/shared/coarse_correction.hpp"
 #include "solvers/soft/contacts/contact_sweeps.hpp"
 
 namespace carom {
 
 /// The loads of large piles are corrected on a coarse grid, between the first sweep of a step's last substep
-/// and the next (solvers/shared/coarse_correction.hpp).
+/// and the next (solvers/contact_sets/coarse_correction.hpp).
 template <class Real>
 class LoadCorrection {
   public:

@@ -7,7 +7,7 @@
 
 #include "constraints/partner.hpp"
 #include "math/vec2_math.hpp"
-#include "solvers/shared/local_solve.hpp"
+#include "solvers/contact_sets/local_solve.hpp"
 #include "state/columns/index.hpp"
 
 namespace carom {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "solvers/shared/contact_relaxation.hpp"
-#include "solvers/shared/local_solve.hpp"
+#include "solvers/contact_sets/contact_relaxation.hpp"
+#include "solvers/contact_sets/local_solve.hpp"
 #include "solvers/soft/contacts/contact_sweeps.hpp"
 #include "solvers/soft/step_view.hpp"
 #include "solvers/substeps/body_masses.hpp"
@@ -13,13 +13,13 @@ namespace carom {
 
 /// What the sweeps of a substep leave where masses are uneven.
 ///
-/// Few contacts around light bodies are solved for their impulses (solvers/shared/local_solve.hpp). Many are
-/// swept again where masses differ by up to a hundred times: docs/decisions/0064-uneven-masses-in-sweeps.md.
-/// Where masses differ by more and the impulses are still off, since heavy and light bodies are mixed in a
-/// pile, all contacts of the world are relaxed for the velocities of bodies
-/// (solvers/shared/contact_relaxation.hpp) from then on, until the sweeps alone have left little for a while.
-/// What overlaps then is parted by equal shares whatever the masses: a light body between two heavy ones
-/// cannot make room. docs/decisions/0032-piles-of-uneven-masses.md.
+/// Few contacts around light bodies are solved for their impulses (solvers/contact_sets/local_solve.hpp).
+/// Many are swept again where masses differ by up to a hundred times:
+/// docs/decisions/0064-uneven-masses-in-sweeps.md. Where masses differ by more and the impulses are still
+/// off, since heavy and light bodies are mixed in a pile, all contacts of the world are relaxed for the
+/// velocities of bodies (solvers/contact_sets/contact_relaxation.hpp) from then on, until the sweeps alone
+/// have left little for a while. What overlaps then is parted by equal shares whatever the masses: a light
+/// body between two heavy ones cannot make room. docs/decisions/0032-piles-of-uneven-masses.md.
 template <class Real>
 class UnevenContacts {
   public:

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "solvers/shared/local_contact.hpp"
-#include "solvers/shared/support_normals.hpp"
+#include "solvers/contact_sets/local_contact.hpp"
+#include "solvers/contact_sets/support_normals.hpp"
 #include "solvers/soft/step_view.hpp"
 
 namespace carom {
@@ -15,7 +15,7 @@ namespace carom {
 /// A sweep takes from such a body first what one surface stops and then what the other one does, and leaves
 /// cos² of the angle: 0.9975 at 0.05 rad. Its impulses last, and are given again in each substep, so that a
 /// body comes back out as if the surfaces were springs. Here the normal impulses of all supports of the body
-/// are found at once (solvers/shared/support_normals.hpp), in turns with friction.
+/// are found at once (solvers/contact_sets/support_normals.hpp), in turns with friction.
 /// Numbers: docs/decisions/0054-wedges.md.
 template <class Real>
 class WedgedBodies {

@@ -1,6 +1,6 @@
-#include "broadphase/sorted_level.hpp"
+#include "broadphase/grid/sorted_level.hpp"
 
-#include "broadphase/cell_numbering.hpp"
+#include "broadphase/grid/cell_numbering.hpp"
 
 #include <algorithm>
 #include <limits>

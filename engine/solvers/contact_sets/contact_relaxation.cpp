@@ -1,4 +1,4 @@
-#include "solvers/shared/contact_relaxation.hpp"
+#include "solvers/contact_sets/contact_relaxation.hpp"
 
 #include <algorithm>
 #include <cmath>

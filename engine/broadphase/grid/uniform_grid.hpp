@@ -1,7 +1,7 @@
 #pragma once
 
-#include "broadphase/size_classes.hpp"
-#include "broadphase/sorted_level.hpp"
+#include "broadphase/grid/size_classes.hpp"
+#include "broadphase/grid/sorted_level.hpp"
 #include "isa/kernel_table.hpp"
 #include "parallel/executor.hpp"
 #include "simd/prefetch.hpp"

@@ -1,4 +1,4 @@
-#include "solvers/paths/path_choice.hpp"
+#include "solvers/paths/cut/path_choice.hpp"
 
 #include <cstdint>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "broadphase/size_classes.hpp"
+#include "broadphase/grid/size_classes.hpp"
 
 #include "state/body_flags.hpp"
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "solvers/manifolds/manifolds.hpp"
-#include "solvers/paths/path_cut.hpp"
-#include "solvers/paths/turn_rows.hpp"
+#include "solvers/paths/cut/path_cut.hpp"
+#include "solvers/paths/cut/turn_rows.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {

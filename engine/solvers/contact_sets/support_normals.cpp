@@ -1,4 +1,4 @@
-#include "solvers/shared/support_normals.hpp"
+#include "solvers/contact_sets/support_normals.hpp"
 
 #include <algorithm>
 

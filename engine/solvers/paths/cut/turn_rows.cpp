@@ -1,4 +1,4 @@
-#include "solvers/paths/turn_rows.hpp"
+#include "solvers/paths/cut/turn_rows.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "solvers/paths/path_cut.hpp"
+#include "solvers/paths/cut/path_cut.hpp"
 
 #include <algorithm>
 #include <array>

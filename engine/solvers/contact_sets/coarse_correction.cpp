@@ -1,4 +1,4 @@
-#include "solvers/shared/coarse_correction.hpp"
+#include "solvers/contact_sets/coarse_correction.hpp"
 
 #include <algorithm>
 #include <cmath>

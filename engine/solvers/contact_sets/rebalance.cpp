@@ -1,4 +1,4 @@
-#include "solvers/shared/rebalance.hpp"
+#include "solvers/contact_sets/rebalance.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "solvers/paths/path_choice.hpp"
+#include "solvers/paths/cut/path_choice.hpp"
 
 namespace carom {
 

@@ -1,4 +1,4 @@
-#include "broadphase/cell_numbering.hpp"
+#include "broadphase/grid/cell_numbering.hpp"
 
 #include <algorithm>
 #include <array>

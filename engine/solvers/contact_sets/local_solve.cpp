@@ -1,4 +1,4 @@
-#include "solvers/shared/local_solve.hpp"
+#include "solvers/contact_sets/local_solve.hpp"
 
 #include <algorithm>
 #include <cmath>

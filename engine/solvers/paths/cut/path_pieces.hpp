@@ -8,7 +8,7 @@
 
 #include "isa/convex_kernels.hpp"
 #include "kernels/paths/path_arguments.hpp"
-#include "solvers/paths/path_cut.hpp"
+#include "solvers/paths/cut/path_cut.hpp"
 #include "state/columns/column.hpp"
 
 namespace carom {

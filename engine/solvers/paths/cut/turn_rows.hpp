@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "solvers/paths/path_cut.hpp"
+#include "solvers/paths/cut/path_cut.hpp"
 #include "state/columns/index.hpp"
 
 namespace carom {

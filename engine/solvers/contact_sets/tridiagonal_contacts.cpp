@@ -1,4 +1,4 @@
-#include "solvers/shared/tridiagonal_contacts.hpp"
+#include "solvers/contact_sets/tridiagonal_contacts.hpp"
 
 namespace carom {
 

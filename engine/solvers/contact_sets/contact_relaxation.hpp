@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sleeping/islands.hpp"
-#include "solvers/shared/local_contact.hpp"
+#include "solvers/contact_sets/local_contact.hpp"
 
 namespace carom {
 

@@ -1,4 +1,4 @@
-#include "solvers/shared/project_positions.hpp"
+#include "solvers/contact_sets/project_positions.hpp"
 
 #include <cmath>
 

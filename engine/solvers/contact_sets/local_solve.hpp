@@ -6,7 +6,7 @@
 
 #include "constraints/contact_rows.hpp"
 #include "kernels/contacts/contact_arguments.hpp"
-#include "solvers/shared/local_contact.hpp"
+#include "solvers/contact_sets/local_contact.hpp"
 
 namespace carom {
 
