@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "narrowphase/disc_edge.hpp"
-#include "state/edges/edge_tracks.hpp"
+#include "state/edge_tracks.hpp"
 
 namespace carom {
 namespace {

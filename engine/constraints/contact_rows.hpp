@@ -7,8 +7,8 @@
 
 #include "constraints/partner.hpp"
 #include "kernels/contacts/contact_arguments.hpp"
+#include "shapes/edges.hpp"
 #include "state/columns/column.hpp"
-#include "state/edges/edges.hpp"
 
 namespace carom {
 

@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "kernels/manifolds/manifold_arguments.hpp"
 #include "narrowphase/manifold.hpp"
+#include "shapes/convex_shape.hpp"
 #include "simd/scalar_lanes.hpp"
 
 // Where two convex shapes touch: polygons of 1 to 8 vertices, grown by a radius. One text for numbers and for

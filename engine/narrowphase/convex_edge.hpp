@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "narrowphase/placed_convex.hpp"
-#include "state/edges/edges.hpp"
+#include "shapes/edges.hpp"
 
 // A convex shape on what supports it: a wall, or the edges of a segment or chain, which are met from both
 // sides and at their ends. In double precision; a is the body, b the support.

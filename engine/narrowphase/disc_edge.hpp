@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "narrowphase/time_of_impact.hpp"
-#include "state/edges/edges.hpp"
+#include "shapes/edges.hpp"
 
 // A disc and an edge, both in the frame of the edge's body, in double precision. An edge is met from both
 // sides and at its ends.

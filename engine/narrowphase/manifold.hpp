@@ -2,6 +2,9 @@
 
 namespace carom {
 
+/// Separation of a point that a manifold does not have [m].
+inline constexpr double kNoPoint = 1e30;
+
 /// Where two convex shapes touch, in the terms of ManifoldColumns (kernels/manifolds/manifold_arguments.hpp):
 /// a number or a batch each.
 template <class F>

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "narrowphase/disc_edge.hpp"
-#include "state/edges/edges.hpp"
+#include "shapes/edges.hpp"
 
 // Chains that stand for curves: edges that bend little from one to the next. What is held on one follows it.
 

@@ -3,7 +3,9 @@
 #include <string>
 
 #include "math/vec2_math.hpp"
-#include "scene/mass.hpp"
+#include "scene/validation/validation.hpp"
+#include "shapes/mass.hpp"
+#include "shapes/materials.hpp"
 
 namespace carom {
 namespace {
@@ -42,13 +44,6 @@ std::string number(double value) {
 }
 
 }  // namespace
-
-bool turns_bodies(const Joint& joint) {
-    if (const auto* target = std::get_if<TargetJoint>(&joint.kind)) return target->anchor != Vec2{};
-    const auto* rod = std::get_if<DistanceJoint>(&joint.kind);
-    if (!rod) return true;
-    return (joint.a && rod->anchor_a != Vec2{}) || (joint.b && rod->anchor_b != Vec2{});
-}
 
 EffectOverrides merged(const EffectOverrides& first, const EffectOverrides& second) {
     EffectOverrides effects;

@@ -17,9 +17,6 @@ struct CalledEffects {
     std::string solver_reason;  ///< why the world has its solver
 };
 
-/// Whether a joint can turn its bodies: all but those at centres.
-bool turns_bodies(const Joint& joint);
-
 /// What is forced by `first`, else by `second`.
 EffectOverrides merged(const EffectOverrides& first, const EffectOverrides& second);
 

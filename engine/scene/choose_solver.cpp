@@ -1,9 +1,10 @@
 #include "scene/choose_solver.hpp"
 
-#include "scene/mass.hpp"
 #include "scene/validation/event_limits.hpp"
 #include "scene/validation/validation.hpp"
 #include "shapes/convex_geometry.hpp"
+#include "shapes/mass.hpp"
+#include "shapes/materials.hpp"
 
 namespace carom {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <carom/scene.hpp>
 
-#include "scene/wording.hpp"
+#include "scene/validation/wording.hpp"
 
 #include <optional>
 #include <string>

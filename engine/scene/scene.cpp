@@ -1,11 +1,11 @@
 #include <carom/scene.hpp>
 
 #include "scene/choose_solver.hpp"
-#include "scene/mass.hpp"
 #include "scene/validation/limits.hpp"
 #include "scene/validation/validation.hpp"
 #include "shapes/compound.hpp"
 #include "shapes/convex_geometry.hpp"
+#include "shapes/mass.hpp"
 
 #include <utility>
 

@@ -11,9 +11,9 @@ enum BodyFlag : std::uint8_t {
     kDisabled = 2,    ///< quarantined: takes no part any more, no candidates at all
     kKinematic = 4,   ///< immovable, but moves at its velocity
     kFixedAngle = 8,  ///< impulses do not turn it
-    kEdges = 16,    ///< a segment or chain: its edges are in state/edges/edges.hpp, its radius means nothing
-    kNotDisc = 32,  ///< a box, capsule or polygon: convex, but no disc
-    kSensor = 64,   ///< tells what overlaps it, and touches nothing
+    kEdges = 16,      ///< a segment or chain: its edges are in shapes/edges.hpp, its radius means nothing
+    kNotDisc = 32,    ///< a box, capsule or polygon: convex, but no disc
+    kSensor = 64,     ///< tells what overlaps it, and touches nothing
 };
 
 /// Rows with one of these are no discs to the broadphase.

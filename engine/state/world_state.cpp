@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "math/vec2_math.hpp"
-#include "scene/mass.hpp"
 #include "shapes/convex_geometry.hpp"
+#include "shapes/mass.hpp"
 
 namespace carom {
 

@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
+#include "shapes/edges.hpp"
 #include "state/bodies.hpp"
 #include "state/books.hpp"
-#include "state/edges/edges.hpp"
 #include "state/handles.hpp"
 #include "state/joints.hpp"
 #include "state/sensing.hpp"

@@ -1,6 +1,6 @@
 #include "solvers/event/event_simulation.hpp"
+#include "stages/stage.hpp"
 #include "step/make_simulation.hpp"
-#include "step/stage.hpp"
 
 // THE STEP of solver `event`: from impact to impact, however long the step. docs/how-a-step-works.md has a
 // paragraph on its one line.

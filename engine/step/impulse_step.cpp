@@ -1,7 +1,7 @@
 #include "solvers/impulse/stages.hpp"
 #include "solvers/shared/candidate_stages.hpp"
+#include "stages/stage.hpp"
 #include "step/make_simulation.hpp"
-#include "step/stage.hpp"
 
 // THE STEP of solver `impulse`: each impact at its own time. docs/how-a-step-works.md has a paragraph on each
 // line.

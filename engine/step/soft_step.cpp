@@ -3,8 +3,8 @@
 
 #include "solvers/joints/built_in_pairs.hpp"
 #include "solvers/soft/stages.hpp"
+#include "stages/stage.hpp"
 #include "step/make_simulation.hpp"
-#include "step/stage.hpp"
 
 // THE STEP of solver `soft`: contacts are found once, then solved in substeps. docs/how-a-step-works.md has a
 // paragraph on each line.

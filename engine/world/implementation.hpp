@@ -6,8 +6,9 @@
 #include <string>
 
 #include "scene/choose_solver.hpp"
-#include "scene/mass.hpp"
 #include "scene/validation/validation.hpp"
+#include "shapes/mass.hpp"
+#include "shapes/materials.hpp"
 #include "step/make_simulation.hpp"
 #include "world/report.hpp"
 #include "world/snapshot.hpp"

@@ -4,9 +4,9 @@
 #include <limits>
 
 #include "constraints/joints/joint_laws.hpp"
-#include "scene/call_effects.hpp"
 #include "scene/validation/limits.hpp"
-#include "scene/wording.hpp"
+#include "scene/validation/validation.hpp"
+#include "scene/validation/wording.hpp"
 #include "world/implementation.hpp"
 #include "world/set_up.hpp"
 

@@ -11,7 +11,7 @@
 #include "narrowphase/disc_edge.hpp"
 #include "shapes/convex_geometry.hpp"
 #include "shapes/walls.hpp"
-#include "state/edges/edge_tracks.hpp"
+#include "state/edge_tracks.hpp"
 #include "world/shape_separations.hpp"
 
 namespace carom {

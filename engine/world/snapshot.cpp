@@ -7,7 +7,7 @@
 #include <cstring>
 #include <string>
 
-#include "scene/wording.hpp"
+#include "scene/validation/wording.hpp"
 #include "state/columns/archive.hpp"
 
 namespace carom {

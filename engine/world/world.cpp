@@ -6,11 +6,11 @@
 #include <string>
 
 #include "scene/choose_solver.hpp"
-#include "scene/mass.hpp"
 #include "scene/validation/validation.hpp"
-#include "scene/wording.hpp"
+#include "scene/validation/wording.hpp"
 #include "shapes/compound.hpp"
 #include "shapes/convex_geometry.hpp"
+#include "shapes/mass.hpp"
 #include "state/body_faults.hpp"
 #include "state/state_hash.hpp"
 #include "step/make_simulation.hpp"

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Folders of engine/ are layers: a file includes only lower layers or its own folder. Also keeps OpenMP and xsimd
-in their places, and everything outside of engine/ but tests and benchmarks on the public headers.
+"""Folders of engine/ are layers: a file includes only lower layers or its own folder, and of folders within a layer
+none includes another that includes it, in turn or by way of others. Also keeps OpenMP and xsimd in their places, and everything outside of engine/ but tests and benchmarks on the public headers.
 
 usage: check_layers.py [ROOT]
 """
@@ -14,7 +14,7 @@ from sources import ROOT, project_files, report, without_comments
 LAYER_OF_FOLDER = {
     "include": -1,  # the public headers: everybody may include them, they include only each other
     "math": 0,
-    "simd": 1, "parallel": 1, "shapes": 1,
+    "simd": 1, "parallel": 1, "shapes": 1, "stages": 1,
     "effects": 2,
     "narrowphase": 2.5,  # geometry of two shapes: no columns, no physics
     "kernels": 3,
@@ -37,12 +37,7 @@ LAYER_OF_FOLDER = {
 }
 LAYER_OF_FILE = {  # patterns of paths without suffix: files that differ from their folder or have none
     r"version": 0,
-    r"step/stage(_times|_observer)?": 1,
-    r"state/edges/edges": 1,
-    r"state/edges/edge_index": 1,
-    r"kernels/(\w+/)?(\w+_)?arguments": 2,
-    r"scene/mass": 2,
-    r"constraints/contact_law": 2,
+    r"kernels/(\w+/)?(\w+_)?arguments": 2.9,
 }
 TOP_LAYER = 11  # other files directly in engine/
 SHARES_NOTHING = "reference"  # the yardstick: includes the public headers and itself, nobody in engine/ includes it
@@ -119,9 +114,41 @@ def findings_in(root, file):
             yield finding(match.start(), "uses OpenMP outside of engine/" + ", ".join(MAY_USE_OPENMP))
 
 
+def folders_included(root, files):
+    """{folder: {folder that one of its files includes: the first such file}}, each the innermost one."""
+    included = {}
+    for file in files:
+        folder = file.parent.relative_to(root / "engine").as_posix()
+        for bracket, name in INCLUDE.findall(without_comments(file.read_text())):
+            target = resolve(root, file, bracket, name)
+            theirs = pathlib.PurePosixPath(target).parent.as_posix() if target else folder
+            if theirs != folder:
+                included.setdefault(folder, {}).setdefault(theirs, file.relative_to(root).as_posix())
+    return included
+
+
+def circles_of(included):
+    """One finding for each pair of folders of which one includes the other and is reached from it."""
+    def reached_from(start):
+        found, open_ends = set(), [start]
+        while open_ends:
+            new = set(included.get(open_ends.pop(), ())) - found
+            found |= new
+            open_ends += new
+        return found
+
+    reached = {folder: reached_from(folder) for folder in included}
+    for folder in sorted(included):
+        if folder in reached[folder]:
+            for theirs, file in sorted(included[folder].items()):
+                if folder in reached.get(theirs, ()):
+                    yield f"{file}: includes {theirs}/, from which its folder is included"
+
+
 def check(root):
-    files = project_files(root, {".cpp", ".hpp"}, "engine") + project_files(root, {".cpp", ".hpp"}, "tools")
-    return [finding for file in files for finding in findings_in(root, file)]
+    engine = project_files(root, {".cpp", ".hpp"}, "engine")
+    files = engine + project_files(root, {".cpp", ".hpp"}, "tools")
+    return [finding for file in files for finding in findings_in(root, file)] + list(circles_of(folders_included(root, engine)))
 
 
 if __name__ == "__main__":

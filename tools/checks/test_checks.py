@@ -70,7 +70,16 @@ class CheckLayers(WithFolder):
         self.assert_fails("engine/sleeping/rod.cpp", '#include "../solvers/impulse/impulse.hpp"\n', "layer 7 includes layer 8.5")
 
     def test_a_file_above_its_folder(self):
-        self.assert_fails("engine/kernels/arguments.hpp", '#include "kernels/drag.hpp"\n', "layer 2 includes layer 3")
+        self.assert_fails("engine/kernels/arguments.hpp", '#include "kernels/drag.hpp"\n', "layer 2.9 includes layer 3")
+
+    def test_folders_of_a_layer_that_include_each_other(self):
+        self.write("engine/solvers/soft/joints/held.hpp", '#include "solvers/soft/impacts/blow.hpp"\n')
+        self.write("engine/solvers/soft/impacts/blow.hpp", "")
+        self.assertEqual(check_layers.check(self.root), [])
+        self.write("engine/solvers/soft/step_view.hpp", '#include "solvers/soft/joints/held.hpp"\n')
+        findings = self.findings("engine/solvers/soft/impacts/impacts.hpp", '#include "solvers/soft/step_view.hpp"\n')
+        self.assertEqual(len(findings), 3, findings)
+        self.assertIn("engine/solvers/soft/impacts/impacts.hpp: includes solvers/soft/, from which", "\n".join(findings))
 
     def test_a_stage_that_includes_the_step(self):
         self.assert_fails("engine/solvers/soft/soft_solver.cpp", '#include "step/step.hpp"\n', "layer 8.5 includes layer 9")

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "constraints/coupled_impulses.hpp"
-#include "constraints/free_rows.hpp"
+#include "constraints/joints/free_rows.hpp"
 #include "constraints/joints/joint_rows.hpp"
 #include "constraints/joints/spring_law.hpp"
 #include "math/cycle_finder.hpp"

@@ -10,7 +10,7 @@
 //
 // A body's velocity record is [4]: vx, vy [m/s], rim speed u = spin * radius [m/s], inverse mass [1/kg]. The
 // inverse mass is zero for what nothing moves, and negative for a disc that has a fixed angle.
-// constraints/contact_law.hpp says why the rim speed stands in place of the spin, and what contacts do.
+// effects/contact_law.hpp says why the rim speed stands in place of the spin, and what contacts do.
 // A body's displacement record is [2]: how far it moved since the start of the step [m].
 
 namespace carom {

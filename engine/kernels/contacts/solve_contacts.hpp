@@ -1,6 +1,6 @@
 #pragma once
 
-#include "constraints/contact_law.hpp"
+#include "effects/contact_law.hpp"
 #include "kernels/contacts/contact_arguments.hpp"
 #include "simd/forget_loads.hpp"
 #include "simd/lanes.hpp"

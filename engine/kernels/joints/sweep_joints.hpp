@@ -10,7 +10,7 @@
 #include "simd/ordered_lanes.hpp"
 
 // Rods and hinges by lanes. An impulse j at an arm r turns a body by r × j / I; with the rim = sqrt(2 I / m)
-// and the rim speed u = spin * rim that is a change of u by 2 w (r / rim) × j: constraints/contact_law.hpp.
+// and the rim speed u = spin * rim that is a change of u by 2 w (r / rim) × j: effects/contact_law.hpp.
 //
 // The rows are curved, as those of constraints/joints/joint_system.hpp: a rod of length d whose ends pass
 // each other at v_t would grow to sqrt(d² + h² v_t²) in a substep along the tangent, so it asks for v_n = -h

@@ -3,15 +3,13 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "narrowphase/manifold.hpp"
 #include "shapes/convex_shape.hpp"
 
 // Plain arguments of the kernels that find the contacts of convex shapes. Columns are padded and 64-byte
 // aligned; `first` and `last` are multiples of kRowPadding, so there is no tail.
 
 namespace carom {
-
-/// Separation of a point that a manifold does not have [m].
-inline constexpr double kNoPoint = 1e30;
 
 /// Where two convex shapes touch: two points on one line, or one point. The normal leads from body a to body
 /// b, the tangent is the normal turned by a quarter counter-clockwise; points are ordered along it.

@@ -20,7 +20,7 @@ inline constexpr double kUnsettled = 1e30;  // m/s
 /// (the far one), where it goes on. The normal leads from the near body to the far one, the tangent is the
 /// normal turned by a quarter counter-clockwise; impulses act on the far body, minus on the near one.
 ///
-/// Levers are in rims of their body, as in constraints/contact_law.hpp: r x n / rim of the contact's points,
+/// Levers are in rims of their body, as in effects/contact_law.hpp: r x n / rim of the contact's points,
 /// r . n / rim of both. Lanes of paths that are shorter have levers and friction zero, no points, and a row
 /// at rest.
 template <class Real>

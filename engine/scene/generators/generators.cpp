@@ -2,11 +2,11 @@
 
 #include "scene/generators/place_discs.hpp"
 #include "scene/generators/random_velocities.hpp"
-#include "scene/mass.hpp"
 #include "scene/validation/limits.hpp"
 #include "scene/validation/validation.hpp"
 #include "shapes/compound.hpp"
 #include "shapes/convex_geometry.hpp"
+#include "shapes/mass.hpp"
 
 #include <algorithm>
 #include <cmath>

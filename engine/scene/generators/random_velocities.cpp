@@ -1,6 +1,6 @@
 #include "scene/generators/random_velocities.hpp"
 
-#include "scene/mass.hpp"
+#include "shapes/mass.hpp"
 
 #include <cmath>
 #include <vector>

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "scene/wording.hpp"
+#include "scene/validation/wording.hpp"
 
 namespace carom {
 namespace {

@@ -1,8 +1,8 @@
-#include "scene/mass.hpp"
 #include "scene/validation/limits.hpp"
 #include "scene/validation/validation.hpp"
 #include "shapes/compound.hpp"
 #include "shapes/convex_geometry.hpp"
+#include "shapes/mass.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "scene/call_effects.hpp"
-#include "scene/mass.hpp"
 #include "scene/validation/validation.hpp"
+#include "shapes/mass.hpp"
+#include "shapes/materials.hpp"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 #include "math/rotation.hpp"
-#include "scene/mass.hpp"
 #include "scene/validation/limits.hpp"
 #include "scene/validation/validation.hpp"
+#include "shapes/mass.hpp"
 
 #include <cmath>
 #include <limits>
@@ -226,6 +226,13 @@ std::optional<Problem> find_gear_problem(const Item& item, const GearJoint& gear
             ", which it cannot couple; expected a revolute, prismatic or wheel joint with a body b.");
     }
     return std::nullopt;
+}
+
+bool turns_bodies(const Joint& joint) {
+    if (const auto* target = std::get_if<TargetJoint>(&joint.kind)) return target->anchor != Vec2{};
+    const auto* rod = std::get_if<DistanceJoint>(&joint.kind);
+    if (!rod) return true;
+    return (joint.a && rod->anchor_a != Vec2{}) || (joint.b && rod->anchor_b != Vec2{});
 }
 
 std::optional<Problem> find_joint_bodies_problem(const Item& item, const Joint& joint, const Scene& scene) {

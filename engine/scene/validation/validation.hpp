@@ -2,7 +2,7 @@
 
 #include <carom/scene.hpp>
 
-#include "scene/wording.hpp"
+#include "scene/validation/wording.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -44,6 +44,8 @@ std::optional<Problem> find_angular_velocity_problem(const Item& item, Mobility 
 std::optional<Problem> find_inside_problem(const Item& item, const Body& body, const Walls& walls);
 /// Everything of a joint but which bodies there are.
 std::optional<Problem> find_joint_problem(const Item& item, const Joint& joint);
+/// Whether a joint can turn its bodies: all but those at centres.
+bool turns_bodies(const Joint& joint);
 /// The bodies of a scene's joint, and where they stand.
 std::optional<Problem> find_joint_bodies_problem(const Item& item, const Joint& joint, const Scene& scene);
 /// The same of two bodies in numbers. @param moves_a, moves_b  whether they are bodies that move freely

@@ -143,7 +143,7 @@ void ContactRelaxation<kSize>::describe(std::span<const LocalContact> contacts, 
 }
 
 /// What a velocity of one of its bodies is of those of a contact: of v_n, v_t and v_r as
-/// constraints/contact_law.hpp has them.
+/// effects/contact_law.hpp has them.
 template <int kSize>
 auto ContactRelaxation<kSize>::part_of_velocity(const Law& law, bool is_b, const Velocity& velocity) -> Rows {
     const double sign = is_b ? 1 : -1, nx = sign * law.nx, ny = sign * law.ny;

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "constraints/contact_law.hpp"
+#include "effects/contact_law.hpp"
 #include "kernels/contacts/contact_arguments.hpp"
 
 namespace carom {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "effects/touching.hpp"
-#include "scene/wording.hpp"
+#include "scene/validation/wording.hpp"
 #include "shapes/walls.hpp"
 
 // Between the columns of a world and solver `event`, which keeps discs in an order and a precision of its

@@ -6,7 +6,7 @@
 
 #include "broadphase/candidates.hpp"
 #include "parallel/executor.hpp"
-#include "solvers/impulse/flights.hpp"
+#include "solvers/impulse/impacts/flights.hpp"
 #include "solvers/impulse/impacts/impact_lists.hpp"
 #include "solvers/impulse/impacts/impact_resolver.hpp"
 #include "solvers/impulse/impacts/resolver_pool.hpp"
@@ -69,7 +69,7 @@ struct FoundMeetings {
 /// same time. Across the border of two tiles an impact can so be carried out after one that it would have
 /// changed. docs/decisions/0002-impulse-solver.md and 0044-impacts-on-threads.md have the measurements.
 ///
-/// Friction: each impact's surfaces stick, or slide within Coulomb's limit (constraints/contact_law.hpp).
+/// Friction: each impact's surfaces stick, or slide within Coulomb's limit (effects/contact_law.hpp).
 /// Contacts at rest have none, so that a world with friction must have nothing that rests: no gravity.
 ///
 /// Energy: an impact changes it by -m_eff (1 - e²) vn² / 2, by what friction takes and by nothing else;

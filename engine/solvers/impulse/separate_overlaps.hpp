@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "effects/touching.hpp"
-#include "solvers/impulse/flights.hpp"
+#include "solvers/impulse/impacts/flights.hpp"
 
 namespace carom {
 

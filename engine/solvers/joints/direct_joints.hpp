@@ -15,7 +15,7 @@ namespace carom {
 struct JointBlow {
     std::int32_t row;
     Vec2 impulse;   // N s
-    double at_rim;  // N s, what its rim is given: constraints/contact_law.hpp
+    double at_rim;  // N s, what its rim is given: effects/contact_law.hpp
 };
 
 /// A group of bodies and joints that is solved exactly: a system in double precision between the records of

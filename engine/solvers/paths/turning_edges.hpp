@@ -7,11 +7,11 @@
 #include "math/rotation.hpp"
 #include "math/vec2_math.hpp"
 #include "shapes/convex_shape.hpp"
+#include "shapes/edges.hpp"
 #include "solvers/manifolds/list/manifold_list.hpp"
 #include "solvers/substeps/body_records.hpp"
 #include "solvers/substeps/step_terms.hpp"
 #include "state/bodies.hpp"
-#include "state/edges/edges.hpp"
 
 namespace carom {
 

@@ -13,11 +13,11 @@
 #include "isa/kernel_table.hpp"
 #include "parallel/executor.hpp"
 #include "parallel/interruption.hpp"
+#include "stages/stage.hpp"
+#include "stages/stage_observer.hpp"
 #include "state/columns/archive.hpp"
 #include "state/columns/chunked_list.hpp"
 #include "state/world_state.hpp"
-#include "step/stage.hpp"
-#include "step/stage_observer.hpp"
 
 namespace carom {
 

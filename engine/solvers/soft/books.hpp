@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "solvers/paths/path_books.hpp"
-#include "solvers/soft/step_view.hpp"
+#include "solvers/soft/contacts/step_view.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {

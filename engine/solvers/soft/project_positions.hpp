@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "solvers/contact_sets/project_positions.hpp"
-#include "solvers/soft/step_view.hpp"
+#include "solvers/soft/contacts/step_view.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {

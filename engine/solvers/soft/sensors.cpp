@@ -6,7 +6,7 @@
 #include "narrowphase/disc_edge.hpp"
 #include "shapes/convex_geometry.hpp"
 #include "solvers/soft/stages.hpp"
-#include "state/edges/edge_tracks.hpp"
+#include "state/edge_tracks.hpp"
 
 namespace carom {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "solvers/paths/path_solver.hpp"
+#include "solvers/soft/contacts/step_view.hpp"
 #include "solvers/soft/joints/soft_joints.hpp"
-#include "solvers/soft/step_view.hpp"
 
 namespace carom {
 

@@ -5,7 +5,7 @@
 
 #include "constraints/contact_faults.hpp"
 #include "solvers/shared/candidate_stages.hpp"
-#include "state/edges/edge_tracks.hpp"
+#include "state/edge_tracks.hpp"
 
 namespace carom {
 

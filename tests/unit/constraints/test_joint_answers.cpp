@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "constraints/free_rows.hpp"
+#include "constraints/joints/free_rows.hpp"
 #include "constraints/joints/joint_system.hpp"
 
 using namespace carom;

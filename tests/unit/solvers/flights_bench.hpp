@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solvers/impulse/flights.hpp"
+#include "solvers/impulse/impacts/flights.hpp"
 
 #include <cmath>
 #include <utility>

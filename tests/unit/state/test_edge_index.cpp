@@ -1,5 +1,5 @@
 // Boxes that come and go one by one, against a look at all of them.
-#include "state/edges/edge_index.hpp"
+#include "shapes/edge_index.hpp"
 
 #include <doctest/doctest.h>
 

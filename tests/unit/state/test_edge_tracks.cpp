@@ -1,6 +1,6 @@
 // Segments that are joined as they come, go and are put elsewhere, against joining all of them by the
 // definition of docs/decisions/0081-turns-and-segments.md.
-#include "state/edges/edge_tracks.hpp"
+#include "state/edge_tracks.hpp"
 
 #include <doctest/doctest.h>
 

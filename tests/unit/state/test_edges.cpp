@@ -1,5 +1,5 @@
 // The tree of boxes over the edges of a body, against all edges one by one.
-#include "state/edges/edges.hpp"
+#include "shapes/edges.hpp"
 
 #include <doctest/doctest.h>
 

@@ -6,7 +6,7 @@
 
 #include "broadphase/candidates.hpp"
 #include "narrowphase/impact_time.hpp"
-#include "solvers/impulse/flights.hpp"
+#include "solvers/impulse/impacts/flights.hpp"
 #include "solvers/impulse/impacts/impact_lists.hpp"
 #include "solvers/impulse/impacts/resting_contacts.hpp"
 #include "solvers/impulse/impacts/simultaneous_impacts.hpp"

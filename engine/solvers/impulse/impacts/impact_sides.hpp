@@ -1,7 +1,7 @@
 #pragma once
 
-#include "constraints/contact_law.hpp"
-#include "solvers/impulse/flights.hpp"
+#include "effects/contact_law.hpp"
+#include "solvers/impulse/impacts/flights.hpp"
 
 // The two sides of an impact as the contact law takes them. For source files only: the law has internal
 // linkage.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constraints/contact_law.hpp"
+#include "effects/contact_law.hpp"
 
 namespace carom {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "solvers/impulse/flights.hpp"
+#include "solvers/impulse/impacts/flights.hpp"
 #include "solvers/impulse/impacts/simultaneous_impacts.hpp"
 
 namespace carom {

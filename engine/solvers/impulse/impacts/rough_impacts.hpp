@@ -1,8 +1,8 @@
 #pragma once
 
-#include "solvers/impulse/flights.hpp"
+#include "solvers/impulse/impacts/flights.hpp"
 
-// Impacts with friction. The contact law comes from constraints/contact_law.hpp; in files of their own, so
+// Impacts with friction. The contact law comes from effects/contact_law.hpp; in files of their own, so
 // that impacts without friction need none of this.
 
 namespace carom {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "parallel/phases.hpp"
-#include "solvers/soft/step_view.hpp"
+#include "solvers/soft/contacts/step_view.hpp"
 
 namespace carom {
 

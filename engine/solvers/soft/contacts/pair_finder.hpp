@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "solvers/soft/contacts/flight_frames.hpp"
-#include "solvers/soft/step_view.hpp"
+#include "solvers/soft/contacts/step_view.hpp"
 #include "solvers/substeps/body_masses.hpp"
 
 namespace carom {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "constraints/contact_law.hpp"
 #include "constraints/contact_rows.hpp"
+#include "effects/contact_law.hpp"
 
 namespace carom {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "constraints/contact_law.hpp"
 #include "constraints/support_surface.hpp"
+#include "effects/contact_law.hpp"
 #include "effects/friction.hpp"
 #include "effects/rolling_resistance.hpp"
 #include "narrowphase/smooth_track.hpp"

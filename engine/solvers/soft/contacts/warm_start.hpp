@@ -4,7 +4,7 @@
 
 #include "solvers/contact_sets/rebalance.hpp"
 #include "solvers/paths/warm_start_limit.hpp"
-#include "solvers/soft/step_view.hpp"
+#include "solvers/soft/contacts/step_view.hpp"
 
 namespace carom {
 

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "constraints/contact_law.hpp"
+#include "effects/contact_law.hpp"
 #include "state/columns/index.hpp"
 
 namespace carom {

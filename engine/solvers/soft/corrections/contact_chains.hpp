@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "solvers/contact_sets/tridiagonal_contacts.hpp"
-#include "solvers/soft/step_view.hpp"
+#include "solvers/soft/contacts/step_view.hpp"
 
 namespace carom {
 

@@ -6,7 +6,7 @@
 
 #include "solvers/paths/path_solver.hpp"
 #include "solvers/soft/contacts/contact_sweeps.hpp"
-#include "solvers/soft/step_view.hpp"
+#include "solvers/soft/contacts/step_view.hpp"
 #include "solvers/substeps/body_masses.hpp"
 #include "state/world_state.hpp"
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "solvers/soft/contacts/contact_sweeps.hpp"
-#include "solvers/soft/step_view.hpp"
+#include "solvers/soft/contacts/step_view.hpp"
 #include "state/books.hpp"
 #include "state/world_state.hpp"
 

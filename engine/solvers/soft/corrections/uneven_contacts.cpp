@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "constraints/contact_law.hpp"
+#include "effects/contact_law.hpp"
 #include "state/columns/index.hpp"
 
 namespace carom {

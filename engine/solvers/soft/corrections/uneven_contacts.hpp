@@ -5,7 +5,7 @@
 #include "solvers/contact_sets/contact_relaxation.hpp"
 #include "solvers/contact_sets/local_solve.hpp"
 #include "solvers/soft/contacts/contact_sweeps.hpp"
-#include "solvers/soft/step_view.hpp"
+#include "solvers/soft/contacts/step_view.hpp"
 #include "solvers/substeps/body_masses.hpp"
 #include "state/world_state.hpp"
 

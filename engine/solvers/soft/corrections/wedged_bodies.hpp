@@ -5,7 +5,7 @@
 
 #include "solvers/contact_sets/local_contact.hpp"
 #include "solvers/contact_sets/support_normals.hpp"
-#include "solvers/soft/step_view.hpp"
+#include "solvers/soft/contacts/step_view.hpp"
 
 namespace carom {
 

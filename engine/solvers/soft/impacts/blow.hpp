@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "constraints/contact_law.hpp"
+#include "effects/contact_law.hpp"
 #include "effects/restitution.hpp"
 #include "math/vec2_math.hpp"
 #include "solvers/soft/impacts/held_impacts.hpp"

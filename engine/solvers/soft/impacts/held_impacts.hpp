@@ -51,7 +51,7 @@ class HeldImpacts {
     struct Direction {
         Law law;
         Vec2 impulse;         // on b, and minus that on a
-        double rim_a, rim_b;  // what their rims are given: constraints/contact_law.hpp
+        double rim_a, rim_b;  // what their rims are given: effects/contact_law.hpp
         double surface;       // m/s, velocity along it of what nothing moves; 0 where both can be moved
     };
     /// Two bodies by their rows; one of them may be kNothing.

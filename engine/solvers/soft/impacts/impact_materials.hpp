@@ -1,7 +1,7 @@
 #pragma once
 
-#include "constraints/contact_law.hpp"
 #include "constraints/contact_rows.hpp"
+#include "effects/contact_law.hpp"
 #include "effects/friction.hpp"
 #include "effects/rolling_resistance.hpp"
 #include "solvers/soft/contacts/contact_settings.hpp"

@@ -4,18 +4,18 @@
 #include <limits>
 #include <vector>
 
-#include "constraints/contact_law.hpp"
 #include "constraints/contact_rows.hpp"
 #include "constraints/contacts_of_bodies.hpp"
+#include "effects/contact_law.hpp"
 #include "effects/flight.hpp"
 #include "parallel/interruption.hpp"
 #include "solvers/soft/contacts/contact_settings.hpp"
+#include "solvers/soft/contacts/step_view.hpp"
 #include "solvers/soft/impacts/closing_chunks.hpp"
 #include "solvers/soft/impacts/held_impacts.hpp"
 #include "solvers/soft/impacts/impact_budget.hpp"
 #include "solvers/soft/impacts/impact_paths.hpp"
 #include "solvers/soft/impacts/shape_impacts.hpp"
-#include "solvers/soft/step_view.hpp"
 #include "state/world_state.hpp"
 
 namespace carom {

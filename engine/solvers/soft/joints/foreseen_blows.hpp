@@ -5,8 +5,8 @@
 
 #include "solvers/joints/joint_step.hpp"
 #include "solvers/paths/path_solver.hpp"
+#include "solvers/soft/contacts/step_view.hpp"
 #include "solvers/soft/joints/joined_contacts.hpp"
-#include "solvers/soft/step_view.hpp"
 
 namespace carom {
 

@@ -5,8 +5,8 @@
 
 #include "math/vec2_math.hpp"
 #include "solvers/paths/path_solver.hpp"
+#include "solvers/soft/contacts/step_view.hpp"
 #include "solvers/soft/joints/joined_contacts.hpp"
-#include "solvers/soft/step_view.hpp"
 
 namespace carom {
 
@@ -23,7 +23,7 @@ struct HeldContact {
     std::array<std::int32_t, 2> row;      // of its bodies; kNothing: no impulse moves it
     std::array<std::int32_t, 2> record;   // likewise; of a path also where the velocity of nothing is
     std::array<Vec2, kDirections> along;  // N s, on the second body, minus that on the first
-    std::array<Values, 2> at_rim;         // N s, what both rims are given: constraints/contact_law.hpp
+    std::array<Values, 2> at_rim;         // N s, what both rims are given: effects/contact_law.hpp
     std::array<bool, kDirections> acts;   // whether there is such a direction
     double friction;                      // Coulomb coefficient
 

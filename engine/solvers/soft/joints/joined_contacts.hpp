@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "solvers/paths/path_solver.hpp"
-#include "solvers/soft/step_view.hpp"
+#include "solvers/soft/contacts/step_view.hpp"
 
 namespace carom {
 

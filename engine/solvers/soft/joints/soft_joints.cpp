@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scene/wording.hpp"
+#include "scene/validation/wording.hpp"
 #include "sleeping/islands.hpp"
 
 namespace carom {

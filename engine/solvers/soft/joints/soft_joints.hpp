@@ -8,9 +8,9 @@
 #include "solvers/joints/direct_joints.hpp"
 #include "solvers/joints/swept_joints.hpp"
 #include "solvers/paths/path_solver.hpp"
+#include "solvers/soft/contacts/step_view.hpp"
 #include "solvers/soft/joints/foreseen_blows.hpp"
 #include "solvers/soft/joints/joined_contacts.hpp"
-#include "solvers/soft/step_view.hpp"
 
 namespace carom {
 

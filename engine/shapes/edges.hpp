@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "math/vec2_math.hpp"
-#include "state/edges/edge_index.hpp"
+#include "shapes/edge_index.hpp"
 
 // The edges of segments and chains: usually few beside the discs, so they have no columns. A long chain has a
 // tree of boxes, so that what looks for edges near a place pays for those alone.

@@ -1,4 +1,4 @@
-#include "state/edges/edge_tracks.hpp"
+#include "state/edge_tracks.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "state/edges/edge_index.hpp"
+#include "shapes/edge_index.hpp"
 
 #include <cmath>
 

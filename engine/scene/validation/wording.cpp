@@ -1,4 +1,4 @@
-#include "scene/wording.hpp"
+#include "scene/validation/wording.hpp"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "step/stage_times.hpp"
+#include "stages/stage_times.hpp"
 
 namespace carom {
 

@@ -1,4 +1,4 @@
-#include "state/edges/edges.hpp"
+#include "shapes/edges.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -40,7 +40,7 @@ struct Encounter {
     Vec2 tangent() const { return {-normal.y, normal.x}; }
 };
 
-/// A body as the contact law wants it (constraints/contact_law.hpp), in plain numbers.
+/// A body as the contact law wants it (effects/contact_law.hpp), in plain numbers.
 struct ContactRecord {
     double velocity_x, velocity_y;  ///< m/s
     double rim_speed;               ///< m/s

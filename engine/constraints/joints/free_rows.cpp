@@ -1,4 +1,4 @@
-#include "constraints/free_rows.hpp"
+#include "constraints/joints/free_rows.hpp"
 
 #include <algorithm>
 

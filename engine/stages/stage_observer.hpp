@@ -13,7 +13,7 @@ class StageObserver {
     virtual void before(std::size_t stage) = 0;
     virtual void after(std::size_t stage) = 0;
 
-    // What the loops over stages call: step/stage.hpp.
+    // What the loops over stages call: stages/stage.hpp.
     void start() {}
     void begin(std::size_t stage) { before(stage); }
     void lap(std::size_t stage) { after(stage); }
