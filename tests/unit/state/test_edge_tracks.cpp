@@ -153,7 +153,7 @@ int differences(const WorldState<Real>& world, const Ends<Real>& ends) {
 
 }  // namespace
 
-TEST_SUITE("state/edges/edge_tracks") {
+TEST_SUITE("state/edge_tracks") {
     TEST_CASE_TEMPLATE("joining what has changed makes what joining all anew does, bit by bit", Real, float,
                        double) {
         int most = 0, joined = 0;

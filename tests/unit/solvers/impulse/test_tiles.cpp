@@ -41,7 +41,7 @@ constexpr std::int64_t kBeside = 2;
 
 }  // namespace
 
-TEST_SUITE("solvers/tiles") {
+TEST_SUITE("solvers/impulse/tiles") {
     TEST_CASE("what a tile may look at, no other of its phase may move") {
         struct Plane {
             std::size_t discs;

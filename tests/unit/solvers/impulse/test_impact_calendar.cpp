@@ -39,7 +39,7 @@ struct Draw {
 
 }  // namespace
 
-TEST_SUITE("solvers/impact calendar") {
+TEST_SUITE("solvers/impulse/impact_calendar") {
     TEST_CASE("impacts come in the order of time, ties by row, also those that are foreseen on the way") {
         ImpactCalendar calendar;
         for (const double clustered : {0.0, 0.5, 1.0})

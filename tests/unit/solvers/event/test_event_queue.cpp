@@ -8,7 +8,7 @@
 
 using namespace carom;
 
-TEST_SUITE("solvers/event queue") {
+TEST_SUITE("solvers/event/event_queue") {
     TEST_CASE("the first of many changing times is the least of them, and of equal ones the lowest number") {
         std::mt19937 random(5);
         for (const std::size_t count : {1u, 2u, 7u, 8u, 9u, 63u, 64u, 65u, 500u, 4097u}) {

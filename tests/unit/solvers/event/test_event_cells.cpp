@@ -9,7 +9,7 @@
 
 using namespace carom;
 
-TEST_SUITE("solvers/event cells") {
+TEST_SUITE("solvers/event/event_cells") {
     TEST_CASE("discs that touch are around each other, wherever they have gone, in boxes of any shape") {
         constexpr double kRadius = 0.5;
         constexpr std::size_t kDiscs = 300;

@@ -56,7 +56,7 @@ struct Crowd {
 
 }  // namespace
 
-TEST_SUITE("solvers/project positions") {
+TEST_SUITE("solvers/contact_sets/project_positions") {
     TEST_CASE("two discs part along their line to what they may overlap, each by its inverse mass") {
         Crowd crowd;
         crowd.add({1, 1}, 1), crowd.add({1.3, 1.4}, 3);  // 0.5 m apart

@@ -56,7 +56,7 @@ Asked ask(const EdgeStore& store, std::mt19937& random, double reach) {
 
 }  // namespace
 
-TEST_SUITE("state/edges/edges") {
+TEST_SUITE("shapes/edges") {
     TEST_CASE("all edges near a place are found, in their order, and few others") {
         std::mt19937 random(5);
         EdgeStore store;

@@ -49,7 +49,7 @@ double kinetic_energy(const EventDynamics& dynamics, const std::vector<EventBody
 
 }  // namespace
 
-TEST_SUITE("solvers/event dynamics") {
+TEST_SUITE("solvers/event/event_dynamics") {
     TEST_CASE("a gas follows the oracle, of one size and of many, with gravity and without") {
         for (const double smallest : {0.5, 0.1})
             for (const double restitution : {1.0, 0.9})

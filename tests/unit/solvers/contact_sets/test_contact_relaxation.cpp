@@ -56,7 +56,7 @@ struct System {
 
 }  // namespace
 
-TEST_SUITE("solvers/contact_relaxation") {
+TEST_SUITE("solvers/contact_sets/contact_relaxation") {
     TEST_CASE_TEMPLATE("a column of light and heavy bodies comes to carry its weight", Size,
                        std::integral_constant<int, 2>, std::integral_constant<int, 3>) {
         for (const double ratio : {1.0, 1e3, 1e6}) {

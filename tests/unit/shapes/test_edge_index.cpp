@@ -10,7 +10,7 @@
 
 using namespace carom;
 
-TEST_SUITE("state/edges/edge_index") {
+TEST_SUITE("shapes/edge_index") {
     TEST_CASE(
         "all boxes that touch one are found, in order, whatever their sizes, while others come and go") {
         std::mt19937 random(11);

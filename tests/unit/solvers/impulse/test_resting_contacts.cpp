@@ -2,7 +2,7 @@
 #include "solvers/impulse/impacts/resting_contacts.hpp"
 
 #include "support/complementarity.hpp"
-#include "unit/solvers/flights_bench.hpp"
+#include "unit/solvers/impulse/flights_bench.hpp"
 
 #include <doctest/doctest.h>
 
@@ -25,7 +25,7 @@ double normal_acceleration(const FlightsBench<Real>& bench, Meeting m) {
 
 }  // namespace
 
-TEST_SUITE("solvers/resting contacts") {
+TEST_SUITE("solvers/impulse/resting_contacts") {
     TEST_CASE_TEMPLATE("each contact of a column carries the weight above it, from any first guess", Real,
                        float, double) {
         for (const double guess : {0.0, 1.0, 1e4})

@@ -29,7 +29,7 @@ std::vector<std::size_t> like(const ManifoldIndex& index, const ManifoldName& na
 
 }  // namespace
 
-TEST_SUITE("manifold index") {
+TEST_SUITE("solvers/manifolds/manifold_index") {
     TEST_CASE("a contact is found by its name and by the reverse of it, pieces and sides included") {
         const std::vector<ManifoldName> names{{body(3), body(7), 0},
                                               {body(3), body(7), ManifoldName::place_of_pieces(2, 5)},

@@ -135,7 +135,7 @@ const KernelTable<Real>& scalar_kernels() {
 
 }  // namespace
 
-TEST_SUITE("solvers/coarse correction") {
+TEST_SUITE("solvers/contact_sets/coarse_correction") {
     TEST_CASE_TEMPLATE("momentum and angular momentum are kept, kinetic energy does not grow", Real, float,
                        double) {
         const double allowed = sizeof(Real) == 4 ? 3e-6 : 1e-14;

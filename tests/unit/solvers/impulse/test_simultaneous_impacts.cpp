@@ -2,7 +2,7 @@
 #include "solvers/impulse/impacts/simultaneous_impacts.hpp"
 
 #include "support/complementarity.hpp"
-#include "unit/solvers/flights_bench.hpp"
+#include "unit/solvers/impulse/flights_bench.hpp"
 
 #include <doctest/doctest.h>
 
@@ -54,7 +54,7 @@ struct Meetings : FlightsBench<Real> {
 
 }  // namespace
 
-TEST_SUITE("solvers/simultaneous impacts") {
+TEST_SUITE("solvers/impulse/simultaneous_impacts") {
     TEST_CASE_TEMPLATE("impulses solve all impacts at once, and momentum and work are in the books", Real,
                        float, double) {
         constexpr double kRounding = 100 * std::numeric_limits<Real>::epsilon();

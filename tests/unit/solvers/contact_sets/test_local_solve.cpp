@@ -1,7 +1,7 @@
 // The solve to convergence of contacts between very different masses, against the laws of all contacts.
 #include "solvers/contact_sets/local_solve.hpp"
 
-#include "unit/solvers/contact_rows_bench.hpp"
+#include "unit/solvers/contact_sets/contact_rows_bench.hpp"
 
 #include <doctest/doctest.h>
 
@@ -77,7 +77,7 @@ void check_solved(ContactRowsBench<Real>& bench, int calls) {
 
 }  // namespace
 
-TEST_SUITE("solvers/local solve") {
+TEST_SUITE("solvers/contact_sets/local_solve") {
     TEST_CASE_TEMPLATE("a light disc under a heavy one carries its weight", Real, float, double) {
         for (const double ratio : {11.0, 1e3, 1e6}) {
             CAPTURE(ratio);

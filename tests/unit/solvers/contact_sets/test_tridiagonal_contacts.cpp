@@ -41,7 +41,7 @@ double velocity_of(const TridiagonalContacts& line, std::size_t n) {
 
 }  // namespace
 
-TEST_SUITE("solvers/tridiagonal contacts") {
+TEST_SUITE("solvers/contact_sets/tridiagonal_contacts") {
     TEST_CASE("contacts in a row are solved as one that tries all sets of them does") {
         std::mt19937 random(11);
         for (int trial = 0; trial < 300; ++trial) {

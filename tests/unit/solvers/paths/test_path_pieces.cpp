@@ -137,7 +137,7 @@ struct SharedNet {
 
 }  // namespace
 
-TEST_SUITE("solvers/path pieces") {
+TEST_SUITE("solvers/paths/path_pieces") {
     TEST_CASE_TEMPLATE("a sweep around some bodies is the sweep of a world without the other contacts", Real,
                        float, double) {
         const PathKernels<Real>& kernels = runnable_kernel_tables().front()->of<Real>().convex->paths;

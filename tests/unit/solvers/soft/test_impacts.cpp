@@ -224,7 +224,7 @@ double check_hit(const Hit& hit) {
 
 }  // namespace
 
-TEST_SUITE("solvers/impacts") {
+TEST_SUITE("solvers/soft/impacts") {
     TEST_CASE_TEMPLATE(
         "A13: paths broken by an impact are exact under gravity, whatever is hit, with friction and spin",
         Real, float, double) {

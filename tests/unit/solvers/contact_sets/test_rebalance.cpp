@@ -1,7 +1,7 @@
 // Impulses around a body that was removed, against statics: of columns in closed form, of piles body by body.
 #include "solvers/contact_sets/rebalance.hpp"
 
-#include "unit/solvers/contact_rows_bench.hpp"
+#include "unit/solvers/contact_sets/contact_rows_bench.hpp"
 
 #include <doctest/doctest.h>
 
@@ -138,7 +138,7 @@ std::vector<Touch<Real>> converted(const std::vector<Touch<double>>& touches) {
 
 }  // namespace
 
-TEST_SUITE("solvers/rebalance") {
+TEST_SUITE("solvers/contact_sets/rebalance") {
     TEST_CASE_TEMPLATE("where the top of a column is gone, each contact carries what is left above it", Real,
                        float, double) {
         constexpr std::int32_t kLeft = 6;

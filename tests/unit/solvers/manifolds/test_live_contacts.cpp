@@ -10,7 +10,7 @@
 
 using namespace carom;
 
-TEST_SUITE("solvers/manifolds/live contacts") {
+TEST_SUITE("solvers/manifolds/live_contacts") {
     TEST_CASE("are those of the masks, and what was found among them, whatever comes and goes") {
         std::mt19937 random(4);
         LiveContacts live;

@@ -33,7 +33,7 @@ std::vector<SupportNormal> random_supports(std::size_t count, std::mt19937& rand
 
 }  // namespace
 
-TEST_SUITE("solvers/support normals") {
+TEST_SUITE("solvers/contact_sets/support_normals") {
     TEST_CASE("supports of a body are solved as one that tries all sets of them does") {
         std::mt19937 random(17);
         int solved = 0;
