@@ -9,7 +9,7 @@
 #include <exception>
 #include <string>
 
-#include "scene_reader.hpp"
+#include "scene_file/scene_reader.hpp"
 
 // Steps a scene with callgrind counting in the steps alone: what reading, building and the first steps take
 // is left out. tools/count_instructions runs it.

@@ -2,7 +2,7 @@
 // be read and why, in a line. The first byte says which file of a run the others stand for; the rest of the
 // run is whole, in corpus/result_files as it was written.
 
-#include "report/kinds.hpp"
+#include "report/kinds/kinds.hpp"
 
 #include <unistd.h>
 

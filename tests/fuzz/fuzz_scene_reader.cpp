@@ -1,7 +1,7 @@
 // Whatever the bytes: the reader either gives a scene that is sound, or throws SceneFileError with a message
 // that is short, printable and names the file. Nothing else may happen.
 
-#include "scene_reader.hpp"
+#include "scene_file/scene_reader.hpp"
 
 #include <cstdint>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-#include "scene_reader.hpp"
+#include "scene_file/scene_reader.hpp"
 
 #include <doctest/doctest.h>
 

@@ -3,7 +3,7 @@
 
 #include "accuracy/analysis.hpp"
 #include "accuracy/solvers.hpp"
-#include "format.hpp"
+#include "terminal/format.hpp"
 
 namespace carom::accuracy {
 namespace {

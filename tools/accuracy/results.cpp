@@ -11,8 +11,8 @@
 #include "accuracy/analysis.hpp"
 #include "accuracy/engines.hpp"
 #include "accuracy/solvers.hpp"
-#include "format.hpp"
 #include "results/text_file.hpp"
+#include "terminal/format.hpp"
 
 namespace carom::accuracy {
 namespace {

@@ -13,8 +13,8 @@
 #include "accuracy/engines.hpp"
 #include "accuracy/measure.hpp"
 #include "accuracy/solvers.hpp"
-#include "exit_codes.hpp"
-#include "format.hpp"
+#include "terminal/exit_codes.hpp"
+#include "terminal/format.hpp"
 
 namespace carom::accuracy {
 namespace {

@@ -5,8 +5,8 @@
 #include <ctime>
 
 #include "accuracy/engines.hpp"
-#include "format.hpp"
 #include "simulation/body_mass.hpp"
+#include "terminal/format.hpp"
 
 namespace carom::accuracy {
 namespace {

@@ -4,10 +4,10 @@
 #include <exception>
 #include <new>
 
-#include "commands.hpp"
-#include "exit_codes.hpp"
-#include "format.hpp"
-#include "standard_output.hpp"
+#include "commands/commands.hpp"
+#include "terminal/exit_codes.hpp"
+#include "terminal/format.hpp"
+#include "terminal/standard_output.hpp"
 
 namespace carom::tool {
 namespace {

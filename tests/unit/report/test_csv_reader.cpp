@@ -4,7 +4,7 @@
 #include <fstream>
 #include <string>
 
-#include "report/csv_reader.hpp"
+#include "report/readers/csv_reader.hpp"
 
 using namespace carom::report;
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "report/base64.hpp"
-#include "report/frame_choice.hpp"
-#include "report/quantised_frame.hpp"
+#include "report/frames/frame_choice.hpp"
+#include "report/frames/quantised_frame.hpp"
+#include "report/page/base64.hpp"
 
 using namespace carom::report;
 

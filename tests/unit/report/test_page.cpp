@@ -4,8 +4,8 @@
 #include <fstream>
 #include <string>
 
-#include "report/kinds.hpp"
-#include "report/page.hpp"
+#include "report/kinds/kinds.hpp"
+#include "report/page/page.hpp"
 
 using carom::report::Chart;
 using carom::report::Json;

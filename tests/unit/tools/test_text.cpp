@@ -1,9 +1,9 @@
 // The small texts of the command line program: CSV fields, numbers, progress, names of folders.
-#include "format.hpp"
-#include "option_values.hpp"
-#include "progress_bar.hpp"
 #include "results/text_file.hpp"
-#include "run_scene.hpp"
+#include "run/run_scene.hpp"
+#include "terminal/format.hpp"
+#include "terminal/option_values.hpp"
+#include "terminal/progress_bar.hpp"
 
 #include <doctest/doctest.h>
 

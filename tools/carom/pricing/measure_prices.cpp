@@ -4,14 +4,14 @@
 
 #include <algorithm>
 
-#include "exit_codes.hpp"
-#include "format.hpp"
-#include "interrupt.hpp"
 #include "measure/clocks.hpp"
 #include "measure/machine.hpp"
 #include "measure/statistics.hpp"
 #include "pricing/priced_effects.hpp"
-#include "progress_bar.hpp"
+#include "terminal/exit_codes.hpp"
+#include "terminal/format.hpp"
+#include "terminal/interrupt.hpp"
+#include "terminal/progress_bar.hpp"
 
 namespace carom::tool {
 namespace {

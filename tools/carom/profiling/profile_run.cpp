@@ -2,16 +2,16 @@
 
 #include <algorithm>
 
-#include "exit_codes.hpp"
-#include "format.hpp"
-#include "interrupt.hpp"
 #include "measure/ceilings.hpp"
 #include "measure/clocks.hpp"
 #include "measure/limits.hpp"
 #include "measure/machine.hpp"
 #include "measure/stage_work.hpp"
 #include "profiling/shared_loops.hpp"
-#include "progress_bar.hpp"
+#include "terminal/exit_codes.hpp"
+#include "terminal/format.hpp"
+#include "terminal/interrupt.hpp"
+#include "terminal/progress_bar.hpp"
 
 namespace carom::tool {
 namespace {

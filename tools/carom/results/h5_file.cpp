@@ -4,8 +4,8 @@
 #include <cstring>
 #include <string_view>
 
-#include "exit_codes.hpp"
-#include "format.hpp"
+#include "terminal/exit_codes.hpp"
+#include "terminal/format.hpp"
 
 namespace carom::tool {
 namespace {

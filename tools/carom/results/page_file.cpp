@@ -4,9 +4,9 @@
 #include <cstring>
 #include <fstream>
 
-#include "exit_codes.hpp"
-#include "format.hpp"
 #include "results/whole_file.hpp"
+#include "terminal/exit_codes.hpp"
+#include "terminal/format.hpp"
 
 namespace carom::tool {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "report/page.hpp"
+#include "report/page/page.hpp"
 
 namespace carom::tool {
 

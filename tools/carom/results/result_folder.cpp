@@ -10,8 +10,8 @@
 #include <cstring>
 #include <system_error>
 
-#include "exit_codes.hpp"
-#include "format.hpp"
+#include "terminal/exit_codes.hpp"
+#include "terminal/format.hpp"
 
 namespace carom::tool {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "run_outcome.hpp"
+#include "results/run_outcome.hpp"
 
 namespace carom::tool {
 

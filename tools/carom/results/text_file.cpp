@@ -5,8 +5,8 @@
 #include <charconv>
 #include <cstring>
 
-#include "exit_codes.hpp"
-#include "format.hpp"
+#include "terminal/exit_codes.hpp"
+#include "terminal/format.hpp"
 
 namespace carom::tool {
 

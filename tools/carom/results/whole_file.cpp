@@ -1,8 +1,8 @@
 #include "results/whole_file.hpp"
 
-#include "exit_codes.hpp"
-#include "format.hpp"
 #include "results/text_file.hpp"
+#include "terminal/exit_codes.hpp"
+#include "terminal/format.hpp"
 
 namespace carom::tool {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene_reader.hpp"
+#include "scene_file/scene_reader.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <carom/carom.hpp>
-#include "scene_reader.hpp"
+#include "scene_file/scene_reader.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -6,8 +6,8 @@
 #include <sstream>
 #include <string>
 
-#include "format.hpp"
 #include "simulation/body_mass.hpp"
+#include "terminal/format.hpp"
 
 namespace carom::tool {
 namespace {

@@ -6,9 +6,9 @@
 #include <chrono>
 #include <cmath>
 
-#include "format.hpp"
 #include "simulation/pairwise_scene.hpp"
 #include "simulation/simulation.hpp"
+#include "terminal/format.hpp"
 
 namespace carom::tool {
 namespace {
