@@ -91,7 +91,7 @@ TEST_SUITE("tools/engines") {
                 CHECK(stepper.state(0).velocity.y == doctest::Approx(3 * restitution).epsilon(0.02));
                 const double impulse = stepper.simulation().ledger().wall_impulse;
                 if (engine.family == "Box2D 3")
-                    CHECK(std::isnan(impulse));  // it does not tell: bench/peers/box2d_3.cpp
+                    CHECK(std::isnan(impulse));  // it does not tell: tools/peers/box2d_3.cpp
                 else
                     CHECK(impulse == doctest::Approx(2 * 3 * (1 + restitution)).epsilon(0.02));
             }

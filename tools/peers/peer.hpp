@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "scenes/scenes.hpp"
+#include "peers/bench_scene.hpp"
 
 // Other engines beside ours, behind one interface. An adapter makes the scene in its engine, steps it and
 // says where the bodies are; everything that is measured of them is measured by the same code
