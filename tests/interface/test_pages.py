@@ -77,26 +77,58 @@ class LinksTest(unittest.TestCase):
                     self.assertIn(heading, anchors, f"{page}: {target}")
 
 
-class NamesTest(unittest.TestCase):
-    """What pages name exists, but for what the worked example adds."""
+class SolversTest(unittest.TestCase):
+    """What pages say of solvers that are built and of those that are not, against what a scene's check lets pass."""
 
-    PAGES = ("how-a-step-works.md", "life-of-a-contact.md", "architecture.md", "add-an-effect.md")
+    def setUp(self):
+        named = dict(re.findall(r'\{Solver::(\w+), "(\w+)"\}', text_of("engine/scene/names.cpp")))
+        check = re.search(r"bool is_built\(.*?\{(.*?)\}", text_of("engine/scene/validation/validate_settings.cpp"), re.DOTALL)
+        built = set(re.findall(r"Solver::(\w+)", check.group(1)))
+        self.built = {named[name] for name in built}
+        self.missing = set(named.values()) - self.built
+        self.assertGreater(len(self.built), 3)
+
+    def test_the_table_of_solvers_has_all_and_says_which_are_not_built(self):
+        section = re.search(r"^## Solvers\n(.*?)^## ", text_of("docs/how-a-step-works.md"), re.DOTALL | re.MULTILINE).group(1)
+        shown = {name: meaning for names, meaning in re.findall(r"^\| (`[^|]*) \| (.*) \|$", section, re.MULTILINE)
+                 for name in re.findall(r"`(\w+)`", names)}
+        self.assertEqual(shown.keys(), self.built | self.missing)
+        self.assertEqual({name for name, meaning in shown.items() if meaning == "not built yet"}, self.missing)
+
+    def test_no_page_says_of_a_solver_that_is_built_that_it_is_not(self):
+        for page in ("README.md", *("docs/" + page for page in pages() if "/" not in page)):
+            for sentence in re.findall(r"[^.;|\n]*not built yet[^.;|\n]*", text_of(page)):
+                self.assertLessEqual(set(re.findall(r"`(\w+)`", sentence)) & self.built, set(), f"{page}: {sentence}")
+        marked = re.search(r"^\| `accuracy.solver` \|.*$", text_of("docs/scene-format.md"), re.MULTILINE).group(0)
+        self.assertEqual(set(re.findall(r'`"(\w+)"` †', marked)), self.missing)
+        self.assertEqual(set(re.findall(r'`"(\w+)"`', marked)), self.built | self.missing)
+
+
+class NamesTest(unittest.TestCase):
+    """What pages name exists, but for what the worked examples add."""
+
+    ADDED = ("wind", "trapezoid")  # by docs/add-an-effect.md and docs/add-a-shape.md
+    STYLES = {"PascalCase", "snake_case", "kPascalCase"}  # ways to write names
 
     def names(self, pattern):
-        for page in self.PAGES:
+        for page in pages():
+            if page.startswith("decisions/"):  # records of their day
+                continue
             text = re.sub(r"^```.*?^```", "", text_of("docs/" + page), flags=re.DOTALL | re.MULTILINE)
-            yield from ((page, name) for name in re.findall(pattern, text) if "wind" not in name.lower())
+            yield from ((page, name) for name in re.findall(pattern, text)
+                        if not any(word in name.lower() for word in self.ADDED) and name not in self.STYLES)
 
     def test_files(self):
         for page, name in self.names(r"`((?:engine|bench|tests|docs|tools)/[\w./-]+)`"):
             self.assertTrue((SOURCE / name).exists(), f"{page}: {name}")
-        for page, name in self.names(r"`((?:constraints|solvers|sleeping|step|shapes|world|isa|effects|state)/[\w./-]+\.\w+)`"):
+        for page, name in self.names(r"`((?:broadphase|constraints|solvers|sleeping|stages|step|shapes|world|isa|effects|state)/[\w./-]+\.\w+)`"):
             self.assertTrue((SOURCE / "engine" / name).exists(), f"{page}: {name}")
 
     def test_functions_types_and_keys(self):
-        roots = (SOURCE / "engine", SOURCE / "tools", SOURCE / "tests")
-        sources = "".join(path.read_text() for root in roots for path in root.rglob("*.[ch]pp"))
-        known = set(re.findall(r"\w+", sources))
+        roots = [SOURCE / folder for folder in ("engine", "tools", "tests", "bench")]
+        files = [path for root in roots for ending in ("*.[ch]pp", "*.py", "*.js", "CMakeLists.txt") for path in root.rglob(ending)]
+        files += [*SOURCE.glob("CMake*"), *DOCS.glob("*.json"), *DOCS.glob("scenes/*.json")]
+        known = set(re.findall(r"\w+", "".join(path.read_text() for path in files)))
         found = list(self.names(r"`(?:\w+::)*([a-z]+(?:_[a-z]+)+|[A-Z]\w+[a-z]\w*)`"))
         self.assertGreater(len(found), 20)
         for page, name in found:
@@ -169,6 +201,14 @@ class CasesTest(unittest.TestCase):
         self.assertGreater(len(measured), 15)
         shown = [name for _, row in self.rows.values() for name in re.findall(r"`(A\d+(?:-\w+)?)`", row.split(" | ")[-1])]
         self.assertEqual(sorted(shown), sorted(measured))
+
+    def test_ranges_of_codes_end_with_the_last_one(self):
+        last = {letter: max(int(code[1:]) for code in self.rows if code[0] == letter) for letter in "AB"}
+        found = [(page, code) for page in ("README.md", "docs/README.md", *("docs/" + page for page in pages() if "/" not in page))
+                 for code in re.findall(r"\b[AB]1 to ([AB]\d+)", text_of(page))]
+        self.assertGreater(len(found), 3)
+        for page, code in found:
+            self.assertEqual(int(code[1:]), last[code[0]], f"{page}: {code}")
 
 
 class LayersTest(unittest.TestCase):
