@@ -8,7 +8,7 @@ import unittest
 
 import numpy
 
-from program import ALL_FILES, PROGRAM, SEED, ProgramTest, gas
+from program import ALL_FILES, PROGRAM, SEED, SOURCE, ProgramTest, gas
 
 
 class WrongInputTest(ProgramTest):
@@ -186,6 +186,19 @@ class OtherCommandsTest(ProgramTest):
         for option in ("--out", "--steps", "--dt", "--solver", "--substeps", "--iterations", "--precision", "--threads",
                        "--isa", "--effects", "--no-report", "--no-trajectory", "--quiet"):
             self.assertIn(option, text)
+
+    def test_help_and_messages_name_every_solver_that_takes_an_empty_scene_and_no_other(self):
+        scene = self.folder / "empty.json"
+        scene.write_text('{"carom": 1}')
+        known = json.loads((SOURCE / "docs/scene.schema.json").read_text())["properties"]["accuracy"]["properties"]["solver"]["enum"]
+        taken = {solver for solver in known
+                 if self.carom("explain", scene, "--solver", solver, expect=None).returncode == 0}
+        self.assertLess(taken, set(known))  # some are not built yet
+        described = re.search(r"--solver NAME +(.*)", self.carom("run", "--help").stdout).group(1)
+        self.assertEqual(set(re.findall(r"\w+", described)) - {"or"}, taken)
+        (missing,) = set(known) - taken
+        refused = self.carom("explain", scene, "--solver", missing, expect=2).stderr
+        self.assertEqual(set(re.findall(r'"(\w+)"', refused)) - {missing}, taken)
 
     def test_explain_says_what_a_scene_calls_for_and_why(self):
         for solver in ("auto", "pairwise"):

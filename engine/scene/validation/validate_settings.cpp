@@ -21,8 +21,8 @@ std::optional<Problem> find_accuracy_problem(const Accuracy& accuracy) {
     if (!is_built(accuracy.solver))
         return problem(
             ErrorCode::not_built_yet, kAccuracyItem, "/solver", "solver ", quoted(name_of(accuracy.solver)),
-            ", which is not built yet. Use \"auto\", \"impulse\", \"soft\", \"event\", or \"pairwise\" for "
-            "small scenes.");
+            ", which is not built yet. Use \"auto\", \"impulse\", \"soft\", \"event\", \"rattle\", or "
+            "\"pairwise\" for small scenes.");
     if (accuracy.substeps)
         if (auto found = check(kAccuracyItem, "/substeps", *accuracy.substeps, kSubsteps)) return found;
     if (accuracy.iterations) return check(kAccuracyItem, "/iterations", *accuracy.iterations, kIterations);

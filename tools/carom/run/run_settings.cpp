@@ -61,7 +61,7 @@ void add(CLI::App& command, const char* option, const char* value, const char* h
 }
 
 void add_accuracy_options(CLI::App& command, RunSettings& settings) {
-    add(command, "--solver", "NAME", "auto, impulse, soft, event or pairwise",
+    add(command, "--solver", "NAME", "auto, impulse, soft, event, rattle or pairwise",
         [&settings](const std::string& text) {
             known_value("--solver", text,
                         {"auto", "pairwise", "impulse", "soft", "rigid", "event", "rattle"});
