@@ -99,7 +99,7 @@ class DocumentsTest(ProgramTest):
     @unittest.skipUnless(IS_RELEASE, "the example is linked against the release build")
     def test_embedding_examples_print_what_their_pages_show(self):
         compiler = shutil.which("g++") or self.skipTest("no g++")
-        for document in ("README.md", "docs/joints.md"):
+        for document in ("README.md", "docs/joints.md", "docs/embedding.md"):
             blocks = blocks_of(document)
             index = next(i for i, block in enumerate(blocks) if block[1] == "cpp")
             (self.folder / "example.cpp").write_text(blocks[index][2])

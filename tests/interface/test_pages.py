@@ -135,6 +135,51 @@ class NamesTest(unittest.TestCase):
             self.assertTrue(name in known, f"{page}: {name}")
 
 
+def functions_of(header, opening):
+    """Names of the functions that a public header declares behind the line `opening {` and, of a class, before what is private."""
+    text = re.sub(r"//[^\n]*", "", text_of(f"engine/include/carom/{header}"))
+    body = text[re.search(rf"^{opening} \{{\n", text, re.MULTILINE).end():]
+    indent = ""
+    if not opening.startswith("namespace"):
+        body, indent = re.split(r"^(?:};|  private:)", body, maxsplit=1, flags=re.MULTILINE)[0], "    "
+    return set(re.findall(rf"^{indent}(?=\w)[\w:<>, &*]+ ([a-z]\w*)\(", body, re.MULTILINE))
+
+
+class InterfaceTest(unittest.TestCase):
+    """docs/embedding.md has every call of the C++ interface, and no page names one that there is not."""
+
+    CLASSES = {"World": ("world.hpp", "class BasicWorld"), "Scene": ("scene.hpp", "struct Scene")}
+
+    def setUp(self):
+        self.functions = {name: functions_of(*place) for name, place in self.CLASSES.items()}
+        options = re.search(r"^struct WorldOptions \{\n(.*?)^};", text_of("engine/include/carom/world.hpp"), re.DOTALL | re.MULTILINE)
+        options = re.sub(r"//[^\n]*", "", options.group(1))
+        self.options = set(re.findall(r"\b(\w+)\s*(?:=[^;]*|\{\});", options))
+        self.assertGreater(len(self.functions["World"]), 35)
+        self.assertGreater(len(self.options), 7)
+
+    def test_the_page_has_every_function_of_worlds_and_scenes_and_every_option(self):
+        page = text_of("docs/embedding.md")
+        for name, functions in {**self.functions, "WorldOptions": self.options}.items():
+            shown = set(re.findall(rf"`{name}::(\w+)`", page))
+            self.assertEqual(functions - shown, set(), name)
+
+    def test_the_page_has_every_other_function(self):
+        page = set(re.findall(r"`(\w+)`", text_of("docs/embedding.md")))
+        headers = [path for path in (SOURCE / "engine/include/carom").glob("*.hpp") if path.name != "pairwise.hpp"]
+        found = {name for path in headers if "\nnamespace carom {\n" in path.read_text()
+                 for name in functions_of(path.name, "namespace carom")}
+        self.assertLess({"add_net", "recentred", "build_info"}, found)
+        self.assertEqual(found - page - {"find_problem"}, set())  # which Scene has, too
+
+    def test_pages_name_no_function_that_there_is_not(self):
+        fields = {name: set(re.findall(r"\b(\w+)\s*(?:=[^;(]*|\{\}|\{[^;(]*\})?;", text_of(f"engine/include/carom/{place[0]}")))
+                  for name, place in self.CLASSES.items()}
+        for page in ("README.md", *("docs/" + page for page in pages() if "/" not in page)):
+            for name, function in re.findall(r"`(World|Scene)::(\w+)", text_of(page)):
+                self.assertIn(function, self.functions[name] | fields[name], f"{page}: {name}::{function}")
+
+
 CODE = re.compile(r"\b[AB]\d{1,2}\b")
 LISTS_OF_CASES = ("hard-cases.md", "exact-cases.md")
 
