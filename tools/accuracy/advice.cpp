@@ -33,7 +33,8 @@ bool has_points_of(const CaseResult& result, const std::string& name) {
                        [&](const Point& point) { return name_of(point.setting) == name; });
 }
 
-/// "impulse (3 of 3 cases)", "event (2 of 4 cases) or pairwise (2 of 4 cases)", "nobody"
+/// "impulse (cheapest in 3 of 3)", "event (cheapest in 2 of 4) or pairwise (cheapest in 2 of 4)", "none gets
+/// there"
 std::string winners(const std::vector<const CaseResult*>& cases, double target) {
     std::map<std::string, int> wins;
     for (const CaseResult* result : cases)

@@ -9,7 +9,7 @@
 namespace carom::accuracy {
 namespace {
 
-/// States are read when somebody asks for one, so that looking costs no step anything.
+/// States are read when they are asked for, so that looking costs no step anything.
 class EngineSimulation final : public tool::Simulation {
   public:
     EngineSimulation(const Scene& scene, std::unique_ptr<bench::Peer> peer, Precision precision)

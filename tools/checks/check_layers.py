@@ -12,7 +12,7 @@ from sources import ROOT, project_files, report, without_comments
 
 # docs/architecture.md has the same table with what each folder is for.
 LAYER_OF_FOLDER = {
-    "include": -1,  # the public headers: everybody may include them, they include only each other
+    "include": -1,  # the public headers: every file may include them, they include only each other
     "math": 0,
     "simd": 1, "parallel": 1, "shapes": 1, "stages": 1,
     "effects": 2,

@@ -122,7 +122,7 @@ nlohmann::ordered_json shapes_json(const std::vector<ShapeOutline>& outlines) {
     return shapes;
 }
 
-/// What the run does with the scene, for whoever opens the trajectory alone.
+/// What the run does with the scene, for readers that open the trajectory alone.
 std::string settings_text(const Scene& scene, const Plan& plan, const Outlines& outlines) {
     nlohmann::ordered_json json{{"version", kVersion},
                                 {"dt", scene.step.dt},

@@ -68,13 +68,19 @@ Segment read_segment(const Node& shape) {
     return {shape.at("a").vec2(), shape.at("b").vec2()};
 }
 
+std::vector<Vec2> read_points(const Node& shape, std::string_view key) {
+    const Node list = shape.at(key);
+    list.expect_array(key);
+    std::vector<Vec2> points;
+    for (std::size_t i = 0; i < list.size(); ++i) points.push_back(list[i].vec2());
+    return points;
+}
+
 Chain read_chain(const Node& shape) {
     static constexpr std::array<std::string_view, 2> kKeys{"points", "loop"};
     shape.expect_keys(kKeys);
     Chain chain;
-    const Node points = shape.at("points");
-    points.expect_array("points");
-    for (std::size_t i = 0; i < points.size(); ++i) chain.points.push_back(points[i].vec2());
+    chain.points = read_points(shape, "points");
     shape.read("loop", chain.loop);
     return chain;
 }
@@ -95,9 +101,7 @@ Polygon read_polygon(const Node& shape) {
     static constexpr std::array<std::string_view, 2> kKeys{"vertices", "radius"};
     shape.expect_keys(kKeys);
     Polygon polygon;
-    const Node vertices = shape.at("vertices");
-    vertices.expect_array("vertices");
-    for (std::size_t i = 0; i < vertices.size(); ++i) polygon.vertices.push_back(vertices[i].vec2());
+    polygon.vertices = read_points(shape, "vertices");
     shape.read("radius", polygon.radius);
     return polygon;
 }
