@@ -113,26 +113,26 @@ void ContactGraph<Real>::for_each_piece(const Candidates<Real>& candidates, cons
 template <class Real>
 void ContactGraph<Real>::group_pairs(const Candidates<Real>& candidates, const Bodies<Real>& bodies,
                                      const Executor& executor) {
-    const std::size_t buckets = groups.count() + 1;
-    piece_counts_.assign(kPieces * buckets, 0);
+    const std::size_t lists = groups.count() + 1;  // one a group, and behind them that of supports
+    piece_counts_.assign(kPieces * lists, 0);
     for_each_piece(candidates, bodies, executor,
                    [&](std::size_t piece, std::size_t group, std::int32_t, std::int32_t) {
-                       ++piece_counts_[piece * buckets + group];
+                       ++piece_counts_[piece * lists + group];
                    });
     std::uint32_t place = 0;
-    found_pairs_.begin.resize(buckets + 1);
-    for (std::size_t group = 0; group < buckets; ++group) {
+    found_pairs_.begin.resize(lists + 1);
+    for (std::size_t group = 0; group < lists; ++group) {
         found_pairs_.begin[group] = place;
         for (std::size_t piece = 0; piece < kPieces; ++piece) {
-            std::uint32_t& of_piece = piece_counts_[piece * buckets + group];
+            std::uint32_t& of_piece = piece_counts_[piece * lists + group];
             place += std::exchange(of_piece, place);
         }
     }
-    found_pairs_.begin[buckets] = place;
+    found_pairs_.begin[lists] = place;
     found_pairs_.resize(place);
     for_each_piece(candidates, bodies, executor,
                    [&](std::size_t piece, std::size_t group, std::int32_t a, std::int32_t b) {
-                       const std::uint32_t i = piece_counts_[piece * buckets + group]++;
+                       const std::uint32_t i = piece_counts_[piece * lists + group]++;
                        found_pairs_.a[i] = a, found_pairs_.b[i] = b;
                    });
     listed_a_.assign(found_pairs_.a.data() + found_pairs_.begin[groups.count()],

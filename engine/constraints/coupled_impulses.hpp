@@ -48,7 +48,7 @@ class CoupledImpulses {
     /// @param motors  of the last rows, in their order  @param bound  asked for the rows before them
     template <class Bound>
     void solve(std::span<const Ends> motors, const Bound& bound, double least) {
-        constexpr int kMostRounds = 8;
+        constexpr int kMostRounds = 8;  // motors that change sides in turns are left as they are
         if (motors.empty()) return solve(bound, least);
         const std::size_t first = count() - motors.size();
         const auto clamped = [&](std::size_t i, double wanted) {
@@ -124,7 +124,7 @@ class CoupledImpulses {
     /// few press, so sweeps go over those that do, and all others are looked at now and then.
     template <class Bound>
     void settle(std::size_t rows, const Bound& bound, double least) {
-        constexpr int kMostSweeps = 100, kBetweenLooks = 25;
+        constexpr int kMostSweeps = 100, kBetweenLooks = 25;  // docs/decisions/0082-what-presses-of-many.md
         working_.clear(), works_.assign(rows, 0);
         for (std::size_t i = 0; i < rows; ++i)
             if (given[i] != 0 && inverse_mass(i, i) > least_inverse_mass[i])

@@ -21,7 +21,7 @@ struct ConvexImpact {
     double distance;  // m, at that time
 };
 
-inline constexpr int kMostAdvances = 64;
+inline constexpr int kMostAdvances = 64;  // of one look: a few suffice unless both turn fast
 
 /// The first time at which two convex shapes are no farther apart than `target`; 0 if they are not to begin
 /// with. By conservative advancement (Mirtich 1996): each step is as long as it is safe by the present

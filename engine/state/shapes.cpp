@@ -12,7 +12,7 @@
 namespace carom {
 namespace {
 
-constexpr std::size_t kFewestSlots = 16;
+constexpr std::size_t kFewestSlots = 16;  // of the table that finds equal shapes; a power of two
 
 std::uint64_t mix(std::uint64_t sum, double value) {
     constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15u;  // 2^64 over the golden ratio (Knuth)

@@ -38,7 +38,7 @@ void check_options(const Scene& scene, const WorldOptions& options) {
     raise_if("World: option effects", find_solver_problem(options.effects, accuracy.solver));
     validate_effects(scene, scene.effects, "World");
     validate_effects(scene, merged(options.effects, scene.effects), "World: option effects");
-    constexpr int kMostThreads = 1024;
+    constexpr int kMostThreads = 1024;  // more are a mistake: OpenMP would try to start them
     if (options.threads < 0 || options.threads > kMostThreads)
         throw Error(ErrorCode::out_of_range, "World: option threads is " + std::to_string(options.threads) +
                                                  "; expected 0 (as many as there are) to " +

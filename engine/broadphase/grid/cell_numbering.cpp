@@ -18,7 +18,7 @@ constexpr double kMostFoldedCells = (1 << 26) - 1;  // keeps the numbering's pro
 // the cells.
 constexpr double kGoldenSection = 0.38196601125010515;
 
-constexpr std::size_t kSamples = 256;
+constexpr std::size_t kSamples = 256;  // bodies that tell how far most of them are spread
 
 /// Whole cell coordinates of the lower and the upper end of the bodies; both are one cell's if no number
 /// lies between.

@@ -45,7 +45,7 @@ class SizeClasses {
     }
 
   private:
-    static constexpr std::size_t kClasses = 512;
+    static constexpr std::size_t kClasses = 512;  // signs and exponents of a float
 
     struct Members {
         std::size_t bodies = 0;

@@ -182,7 +182,7 @@ void JointSystem::part_motors_from_limits() {
 /// Rows that are not independent may be at an end and not in turns for ever, since what is filtered is not
 /// what was solved. Whole turns of such a cycle are left out: docs/decisions/0086-steps-that-stall.md.
 void JointSystem::solve_bounded(Use use) {
-    constexpr int kMostRounds = 64, kBlockRounds = 12;
+    constexpr int kMostRounds = 64, kBlockRounds = 12;  // of all, and of whole blocks before them
     const std::size_t count = extras_.size();
     solution_.assign(count, 0);
     cycle_.begin();

@@ -58,11 +58,11 @@ struct JointRow {
     std::uint8_t slot;  // of StoredJoint::impulse; of a stop: none, kNoSlot
     double rate = 0;    // m/s or rad/s, of `value` while the bodies rest: of a stop whose limit moves
 };
-inline constexpr std::uint8_t kNoSlot = 3;
+inline constexpr std::uint8_t kNoSlot = 3;  // behind the three of StoredJoint::impulse
 
 /// Rows that hold or spring come first.
 struct JointRows {
-    static constexpr int kMost = 6;
+    static constexpr int kMost = 6;  // two that hold, a spring, a motor, two stops
     int count = 0;
     int firm = 0;  // rows that hold or spring
     std::array<JointRow, kMost> row;

@@ -73,7 +73,7 @@ void JointSystem::add_to_parent(const Link& link) {
 }
 
 void JointSystem::factor_tree() {
-    constexpr double kNeverTurns = 1e30;
+    constexpr double kNeverTurns = 1e30;  // m², inertia over mass of a body of fixed rotation
     for (const Link& link : links_) {
         const SystemBody& body = bodies[static_cast<std::size_t>(link.body)];
         const double mass = 1 / body.inverse_mass, inertia = body.seen_inverse_inertia > 0

@@ -94,7 +94,7 @@ struct CellBox {
 };
 template <class Real>
 CellBox cells_around(const GridLevel<Real>& level, const FindNear<Real>& k) {
-    constexpr double kRoundingMargin = 1 + 1e-5;
+    constexpr double kRoundingMargin = 1 + 1e-5;  // more than sums of a few floats are off by
     const double reach =
         (static_cast<double>(k.reach) + static_cast<double>(level.largest_reach)) * kRoundingMargin;
     const CellNumbering& n = level.numbering;
@@ -120,7 +120,7 @@ std::size_t pick_in_cells(const GridLevel<Real>& level, std::size_t first, std::
 /// once, or the whole level where that is hardly more.
 template <class L, class Real, class Pick>
 std::size_t pick_in_folded_box(const GridLevel<Real>& level, const FindNear<Real>& k, const Pick& pick) {
-    constexpr std::size_t kMostLines = 32;
+    constexpr std::size_t kMostLines = 32;  // with more the sorted list of runs would take long
     using One = simd::Lanes<double, simd::Scalar>;
     const CellNumbering& n = level.numbering;
     const CellBox box = cells_around(level, k);

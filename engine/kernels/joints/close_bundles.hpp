@@ -49,7 +49,7 @@ template <class Lanes>
 struct BundleTree {
     using Number = typename Lanes::Number;
     using F = typename Lanes::Batch;
-    static constexpr std::size_t kOfLimb = 9, kOfBranch = 11, kOfMove = 4;
+    static constexpr std::size_t kOfLimb = 9, kOfBranch = 11, kOfMove = 4;  // numbers of each
     static constexpr std::size_t kBatches = kMostBodiesOfBundle * Lanes::size;
     alignas(64) Number limbs[kOfLimb * kBatches];       // by body
     alignas(64) Number branches[kOfBranch * kBatches];  // by number

@@ -102,7 +102,7 @@ template <bool kRounded, class Pair, class Real, class Lanes, class Load>
 [[gnu::always_inline]] inline std::size_t find_by_faces(const FindManifolds<Real>& k, std::size_t first,
                                                         std::size_t last, const Load& load) {
     using F = typename Lanes::Batch;
-    constexpr std::size_t kPairs = 64;
+    constexpr std::size_t kPairs = 64;  // their faces stay in the first cache
     FacedPair<F> faced[kPairs / Lanes::size];
     std::size_t live = 0;
     for (std::size_t begin = first; begin < last; begin += kPairs) {

@@ -7,7 +7,7 @@
 namespace carom {
 namespace {
 
-constexpr int kSweeps = 32;
+constexpr int kSweeps = 32;  // what is left is pushed apart in the next step
 /// A push of less than this share of what a pair may overlap is not worth another sweep.
 constexpr double kCloseEnough = 0.1;
 

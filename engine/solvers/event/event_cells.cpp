@@ -8,8 +8,8 @@ namespace {
 
 /// A disc goes on by this share of a cell's size beyond it before it is registered anew.
 constexpr double kMargin = 0.01;
-constexpr std::size_t kFewestCells = 4;     // cells along a side, so that three neighbours are three buckets
-constexpr std::size_t kBucketsADisc = 4;    // buckets a disc at most: memory is O(discs) wherever they are
+constexpr std::size_t kFewestCells = 4;     // cells along a side, so that three neighbours are three lists
+constexpr std::size_t kListsADisc = 4;      // lists a disc at most: memory is O(discs) wherever they are
 constexpr double kOutermostCell = 1 << 30;  // the cells there have no outer edge, so numbers stay 32-bit
 
 }  // namespace
@@ -18,7 +18,7 @@ void EventCells::reset(double largest_radius, double least_size, Vec2 box, std::
     // Two discs that are not neighbours are a whole cell apart, less the margin of both.
     size_ = std::max(2 * largest_radius / (1 - 2 * kMargin), least_size) * (1 + 1e-9);
     margin_ = kMargin * size_;
-    const std::size_t most = std::max<std::size_t>(64, kBucketsADisc * discs);
+    const std::size_t most = std::max<std::size_t>(64, kListsADisc * discs);
     const auto cells_along = [&](double length) {
         const double cells = std::min(length / size_ + 1, static_cast<double>(most));
         return std::max(kFewestCells, std::bit_ceil(static_cast<std::size_t>(cells)));
@@ -51,7 +51,7 @@ void EventCells::move(std::span<EventMover> movers, std::int32_t disc, std::uint
 
 void EventCells::link(std::span<EventMover> movers, std::int32_t disc) {
     EventMover& mover = movers[static_cast<std::size_t>(disc)];
-    std::int32_t& first = first_[bucket(mover.cell_x, mover.cell_y)];
+    std::int32_t& first = first_[list_of(mover.cell_x, mover.cell_y)];
     mover.next = first, mover.previous = -1;
     if (first >= 0) movers[static_cast<std::size_t>(first)].previous = disc;
     first = disc;
@@ -61,7 +61,7 @@ void EventCells::unlink(std::span<EventMover> movers, std::int32_t disc) {
     const EventMover& mover = movers[static_cast<std::size_t>(disc)];
     if (mover.next >= 0) movers[static_cast<std::size_t>(mover.next)].previous = mover.previous;
     (mover.previous >= 0 ? movers[static_cast<std::size_t>(mover.previous)].next
-                         : first_[bucket(mover.cell_x, mover.cell_y)]) = mover.next;
+                         : first_[list_of(mover.cell_x, mover.cell_y)]) = mover.next;
 }
 
 EventCells::Exit EventCells::find_exit(const EventMover& disc, Vec2 position, Vec2 velocity,

@@ -10,7 +10,7 @@
 namespace carom {
 
 /// Lists of the discs in each square cell of a grid without edges: the plane is folded onto a bounded number
-/// of buckets. Discs of far cells that share a bucket are looked at in vain, never missed.
+/// of lists. Discs of far cells that share a list are looked at in vain, never missed.
 ///
 /// A disc is registered in a cell until it has left that by kMargin of the cell's size; so it never goes to
 /// and fro between two cells at one instant, and round-off in its position does not matter. Discs whose
@@ -31,7 +31,7 @@ class EventCells {
     void for_each_around(std::span<const EventMover> movers, std::int32_t x, std::int32_t y,
                          const Visit& visit) const {
         for (std::int32_t dy = -1; dy <= 1; ++dy)
-            for (std::int32_t dx = -1; dx <= 1; ++dx) visit_bucket(movers, x + dx, y + dy, visit);
+            for (std::int32_t dx = -1; dx <= 1; ++dx) visit_list(movers, x + dx, y + dy, visit);
     }
 
     /// The same for the three cells that come into reach when a disc has moved to a cell from the opposite of
@@ -41,8 +41,8 @@ class EventCells {
                         const Visit& visit) const {
         const Step step = step_to(side);
         for (std::int32_t i = -1; i <= 1; ++i)
-            visit_bucket(movers, disc.cell_x + (step.x != 0 ? step.x : i),
-                         disc.cell_y + (step.y != 0 ? step.y : i), visit);
+            visit_list(movers, disc.cell_x + (step.x != 0 ? step.x : i),
+                       disc.cell_y + (step.y != 0 ? step.y : i), visit);
     }
 
     /// When a disc at `position` with `velocity` leaves its cell: time from now [s], and on which side.
@@ -52,7 +52,7 @@ class EventCells {
     };
     Exit find_exit(const EventMover& disc, Vec2 position, Vec2 velocity, Vec2 gravity) const;
 
-    std::size_t bucket_at(Vec2 position) const { return bucket(cell_at(position.x), cell_at(position.y)); }
+    std::size_t list_at(Vec2 position) const { return list_of(cell_at(position.x), cell_at(position.y)); }
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
         archive(self.size_, self.margin_, self.mask_x_, self.mask_y_, self.shift_x_, self.first_);
@@ -67,7 +67,7 @@ class EventCells {
     static Step step_to(std::uint8_t side) {
         return side < 2 ? Step{side == 0 ? -1 : 1, 0} : Step{0, side == 2 ? -1 : 1};
     }
-    std::size_t bucket(std::int32_t x, std::int32_t y) const {
+    std::size_t list_of(std::int32_t x, std::int32_t y) const {
         return (static_cast<std::size_t>(y) & mask_y_) << shift_x_ | (static_cast<std::size_t>(x) & mask_x_);
     }
     std::int32_t cell_at(double coordinate) const;
@@ -75,9 +75,9 @@ class EventCells {
     void unlink(std::span<EventMover> movers, std::int32_t disc);
 
     template <class Visit>
-    void visit_bucket(std::span<const EventMover> movers, std::int32_t x, std::int32_t y,
-                      const Visit& visit) const {
-        for (std::int32_t disc = first_[bucket(x, y)]; disc >= 0;
+    void visit_list(std::span<const EventMover> movers, std::int32_t x, std::int32_t y,
+                    const Visit& visit) const {
+        for (std::int32_t disc = first_[list_of(x, y)]; disc >= 0;
              disc = movers[static_cast<std::size_t>(disc)].next)
             visit(disc);
     }
@@ -86,7 +86,7 @@ class EventCells {
     double margin_ = 0;  // m
     std::size_t mask_x_ = 0, mask_y_ = 0;
     unsigned shift_x_ = 0;
-    std::vector<std::int32_t> first_;  // disc of each bucket, or -1
+    std::vector<std::int32_t> first_;  // disc of each list, or -1
 };
 
 /// First time from now at which c + v t + a t²/2 falls to zero; 0 if it is there and falling. c below zero is

@@ -18,17 +18,17 @@ struct alignas(64) EventMover {
     double time = 0;                        ///< s, on the solver's clock: its last impact
     double radius = 0;                      ///< m
     std::int32_t cell_x = 0, cell_y = 0;    ///< where it is registered
-    std::int32_t next = -1, previous = -1;  ///< in the list of its bucket
+    std::int32_t next = -1, previous = -1;  ///< in the list of its cell
 };
 static_assert(sizeof(EventMover) == 64);
 
-inline constexpr std::int32_t kNobody = INT32_MIN;
+inline constexpr std::int32_t kNoPartner = INT32_MIN;
 
 /// A disc's next event. Two of these a cache line.
 struct EventForecast {
     double impact_time = kNever;        ///< s
     double exit_time = kNever;          ///< s, when it leaves its cell
-    std::int32_t partner = kNobody;     ///< a disc, or -1 - side of the walls
+    std::int32_t partner = kNoPartner;  ///< a disc, or -1 - side of the walls
     std::uint32_t partner_impacts = 0;  ///< the partner's when this was foreseen: if more now, it is void
     std::uint32_t impacts = 0;          ///< of this disc so far
     std::uint8_t exit_side = 0;         ///< as the walls' sides

@@ -27,7 +27,7 @@ constexpr std::int64_t kTallied = 10000;
 /// The first impact a disc is offered, and when the second would be.
 struct EventDynamics::Earliest {
     double time = kNever, second = kNever;
-    std::int32_t partner = kNobody;
+    std::int32_t partner = kNoPartner;
 
     void offer(double when, std::int32_t with) {
         if (when < time)

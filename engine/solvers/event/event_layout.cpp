@@ -128,17 +128,17 @@ void EventDynamics::sort_discs(std::span<const Vec2> positions) {
     const std::size_t count = store_.count();
     struct Place {
         int kind;
-        std::size_t bucket;
+        std::size_t list;
         std::int32_t disc;
         bool operator<(const Place& o) const {
-            return kind != o.kind ? kind < o.kind : bucket != o.bucket ? bucket < o.bucket : disc < o.disc;
+            return kind != o.kind ? kind < o.kind : list != o.list ? list < o.list : disc < o.disc;
         }
     };
     std::vector<Place> places(count);
     for (std::size_t i = 0; i < count; ++i) {
         const bool is_movable = store_.surfaces[i].inverse_mass > 0;
         const bool is_large = store_.movers[i].radius > cell_radius_;
-        places[i] = {is_movable ? int{is_large} : 3 - int{is_large}, cells_.bucket_at(positions[i]),
+        places[i] = {is_movable ? int{is_large} : 3 - int{is_large}, cells_.list_at(positions[i]),
                      static_cast<std::int32_t>(i)};
     }
     std::sort(places.begin(), places.end());

@@ -155,7 +155,7 @@ void ImpulseSolver<Real>::sort_out(Meeting m) {
 /// farther apart, at the top of a small bounce, is going to bounce again.
 template <class Real>
 double ImpulseSolver<Real>::rest_height(Meeting m) const {
-    constexpr double kUnits = 8;
+    constexpr double kUnits = 8;  // in the last place, of the places that are subtracted
     const Vec2 x = flights.flight(m.a).position;
     const double noise =
         kUnits * std::numeric_limits<Real>::epsilon() * (std::fabs(x.x) + std::fabs(x.y) + flights.reach(m));

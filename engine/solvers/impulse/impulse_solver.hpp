@@ -49,7 +49,7 @@ struct FoundMeetings {
     /// the order of the plane, which memory follows if told a little ahead.
     template <class Fn>
     void for_each(const Fn& fn) const {
-        constexpr std::size_t kAhead = 8;
+        constexpr std::size_t kAhead = 8;  // meetings: about as long as a line of memory is under way
         for (std::size_t list = 0; list < count; ++list) {
             const std::vector<FoundMeeting>& found = lists[list];
             for (std::size_t i = 0; i < found.size(); ++i)

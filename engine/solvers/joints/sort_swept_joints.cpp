@@ -9,7 +9,7 @@
 namespace carom {
 namespace {
 
-constexpr std::size_t kColours = 64;
+constexpr std::size_t kColours = 64;             // bits of the word a body has for those it is in
 constexpr std::size_t kFewestChunks = 8;         // or one: four tasks for the threads to share
 constexpr std::size_t kFewestRowsOfChunk = 512;  // fewer: too many short colours
 

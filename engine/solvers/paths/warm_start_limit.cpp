@@ -21,8 +21,8 @@ constexpr double kNoWay = 1e-3;
 /// bodies behind each other are looked at.
 constexpr int kRounds = 16;
 
-constexpr std::size_t kRowsPerTask = 2048;
-constexpr double kNanosecondsToLook = 1;  // a row, on one thread, for the executor
+constexpr std::size_t kRowsPerTask = 2048;  // some microseconds of work
+constexpr double kNanosecondsToLook = 1;    // a row, on one thread, for the executor
 
 /// How many layers of bodies push on each other, about: how far the contacts that push spread along gravity,
 /// over how thick bodies are. Evenly spread ones reach sqrt(3) of their root mean square to either side.

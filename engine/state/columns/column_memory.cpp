@@ -38,9 +38,9 @@ void release_small(void* column) noexcept {
 
 #if CAROM_HAS_SLABS
 
-constexpr std::size_t kHugePage = std::size_t{2} << 20;
-constexpr std::size_t kUnit = std::size_t{64} << 10;
-constexpr std::size_t kUnitsOfSlab = 512;
+constexpr std::size_t kHugePage = std::size_t{2} << 20;  // bytes, of x86-64
+constexpr std::size_t kUnit = std::size_t{64} << 10;     // bytes: blocks are whole numbers of these
+constexpr std::size_t kUnitsOfSlab = 512;                // 32 MiB: sixteen huge pages
 constexpr std::size_t kSlab = kUnitsOfSlab * kUnit;
 constexpr std::size_t kSmallestLarge = kUnit;      // below, blocks come from the heap
 constexpr std::size_t kLargestShared = kSlab / 2;  // above, a block has pages of its own

@@ -110,7 +110,7 @@ void ImpactResolver<Real>::foresee_walls(std::int32_t row, double from) {
 /// Whether the kernel that looks for what is near may look in all cells that it will.
 template <class Real>
 bool ImpactResolver<Real>::may_look_near(double y, Real reach) const {
-    constexpr double kRoundingMargin = 1 + 1e-5;
+    constexpr double kRoundingMargin = 1 + 1e-5;  // that of kernels/broadphase/find_near.hpp
     const GridLevel<Real>& level = terms_.candidates->grid().level(0);
     const Tiles& tiles = *terms_.tiles;
     if (reach <= level.largest_reach) {  // the cells around its own

@@ -86,7 +86,7 @@ void ImpactResolver<Real>::prefetch_margins(Meeting m) const {
 /// Speed below which the approach of two touching surfaces is round-off [m/s].
 template <class Real>
 double ImpactResolver<Real>::approach_noise(Meeting m) const {
-    constexpr double kUnits = 8;
+    constexpr double kUnits = 8;  // in the last place, of the speeds that are subtracted
     const auto speed = [&](std::int32_t row) {
         const Vec2 v = flights_.flight(row).velocity;
         return std::fabs(v.x) + std::fabs(v.y);

@@ -33,7 +33,7 @@ class ResolverPool {
     }
 
   private:
-    static constexpr std::size_t kResolvers = 64;
+    static constexpr std::size_t kResolvers = 64;  // more tasks at a time wait for each other
     std::array<std::unique_ptr<ImpactResolver<Real>>, kResolvers> resolvers_;
     std::array<std::atomic<bool>, kResolvers> is_used_{};
 };

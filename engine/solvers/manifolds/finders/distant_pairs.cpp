@@ -8,7 +8,7 @@
 namespace carom {
 namespace {
 
-constexpr std::size_t kPairsPerTask = 4096, kRowsPerTask = 1024;
+constexpr std::size_t kPairsPerTask = 4096, kRowsPerTask = 1024;  // some microseconds of work a task
 // For the executor, on one thread: ns a pair; ns a row or a new pair.
 constexpr double kNanosecondsToScan = 2, kNanosecondsToDescribe = 2;
 

@@ -19,8 +19,8 @@ constexpr double kLargestWayOfLoad = 0.25;
 
 constexpr std::array kLeads{Lead::none, Lead::half, Lead::whole};
 
-constexpr std::size_t kRowsPerTask = 1024;
-constexpr double kNanosecondsToLook = 3;  // a row, on one thread, for the executor
+constexpr std::size_t kRowsPerTask = 1024;  // some microseconds of work
+constexpr double kNanosecondsToLook = 3;    // a row, on one thread, for the executor
 
 /// Whether some contact may have no friction. Pieces have materials of their own, which are not looked at.
 template <class Real>

@@ -23,8 +23,8 @@ constexpr double kCarriedArc = 1e-6;
 /// and comes by less than this share of the distance up to which contacts are found in the step.
 constexpr double kCarriedWay = 0.25;
 
-constexpr std::size_t kRowsPerTask = 512;
-constexpr double kNanosecondsToLook = 5;  // a row, on one thread, for the executor
+constexpr std::size_t kRowsPerTask = 512;  // some microseconds of work
+constexpr double kNanosecondsToLook = 5;   // a row, on one thread, for the executor
 
 }  // namespace
 

@@ -42,8 +42,8 @@ class ImpactBudget {
     std::size_t bytes() const { return tallies_.capacity() * sizeof(Tally); }
 
   private:
-    static constexpr float kBudget = 2;
-    static constexpr float kCollapsing = 1;
+    static constexpr float kBudget = 2;      // costs that a body may have and still bounce
+    static constexpr float kCollapsing = 1;  // half of it: an impact that takes all of its energy
     /// Spent beyond the budget, on impacts without restitution.
     static constexpr float kOverdraft = 8;
     /// Likewise on those that would be deep, and the least that each of these costs of free bodies, however

@@ -40,7 +40,7 @@ struct alignas(64) Mover {
 /// Speed below which the approach of two surfaces is round-off [m/s].
 template <class Real>
 double noise_of(Vec2 a, Vec2 b) {
-    constexpr double kUnits = 8;
+    constexpr double kUnits = 8;  // in the last place, of the speeds that are subtracted
     return kUnits * std::numeric_limits<Real>::epsilon() *
            (std::fabs(a.x) + std::fabs(a.y) + std::fabs(b.x) + std::fabs(b.y));
 }

@@ -12,8 +12,8 @@ namespace {
 /// flight leaves it, and that of so many times the speed that gravity adds in a substep.
 constexpr double kLeastShare = 1e-3, kFalls = 2;
 
-constexpr double kNanosecondsToLook = 3;  // a body, on one thread, for the executor
-constexpr std::size_t kGroupsPerTask = 16;
+constexpr double kNanosecondsToLook = 3;    // a body, on one thread, for the executor
+constexpr std::size_t kGroupsPerTask = 16;  // some microseconds of work
 
 /// A body's velocity after a substep of free flight.
 template <class Real>

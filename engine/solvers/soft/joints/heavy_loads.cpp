@@ -55,7 +55,7 @@ void HeavyLoads<Real>::weigh_groups(const HeldContacts<Real>& contacts, const Bo
     weight_.resize(joints.exact_groups());
     for (std::size_t group = 0; group < weight_.size(); ++group)
         weight_[group] = joints.exact_group(static_cast<std::int32_t>(group)).heaviest();
-    constexpr int kRounds = 2;
+    constexpr int kRounds = 2;  // a load on a group, and that group as a load on another one
     for (int round = 0; round < kRounds; ++round)
         contacts.for_each(joints.contacts(), bodies, [&](const HeldContact& contact) {
             for (std::size_t side = 0; side < 2; ++side) {
