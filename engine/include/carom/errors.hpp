@@ -13,7 +13,7 @@ enum class ErrorCode : std::uint8_t {
     inconsistent,     ///< two settings that exclude each other
     duplicate_name,   ///< a name that is taken
     unknown_name,     ///< a name that nothing has
-    stale_handle,     ///< a `BodyId` whose body was removed, or that never existed
+    stale_handle,     ///< a `BodyId` or `JointId` of what was removed, or never existed
     too_large,        ///< more bodies or memory than the stated limit
     unsupported_isa,  ///< an instruction set that this build or this machine does not have
     not_built_yet,    ///< part of the format, but not of this version

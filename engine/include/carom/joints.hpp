@@ -89,7 +89,7 @@ struct GearJoint {
 using JointKind =
     std::variant<DistanceJoint, RevoluteJoint, PrismaticJoint, WeldJoint, WheelJoint, TargetJoint, GearJoint>;
 
-/// What holds two bodies together, or a body to the world. Needs solver `soft`.
+/// What holds two bodies together, or a body to the world. Needs solver `soft` or `rattle`.
 struct Joint {
     std::optional<BodyId> a{};  ///< left out: the world
     std::optional<BodyId> b{};  ///< left out: the world; one of the two is a body that moves

@@ -127,7 +127,7 @@ std::optional<Problem> find_problem(const Material& material);
 /// What a person describes: bodies, walls, laws, accuracy. Plain data; `World` makes columns of it.
 struct Scene {
     std::string name{};
-    Vec2 gravity{};  ///< m/s²
+    Vec2 gravity{};  ///< m/s², each component within ±kLargestAcceleration
     Drag drag{};
     std::optional<Walls> walls{};
     std::vector<Body> bodies{};

@@ -15,16 +15,16 @@ struct Disc {
     double radius = 0.5;  ///< m, > 0
 };
 
-/// A line between two points of the body's frame, without thickness; discs touch it from both sides and at
+/// A line between two points of the body's frame, without thickness; bodies touch it from both sides and at
 /// its ends. For static and kinematic bodies. Static ones that lie end to end are felt as one chain.
 struct Segment {
     Vec2 a{-0.5, 0};  ///< m
     Vec2 b{0.5, 0};   ///< m, not a
 };
 
-/// Lines from point to point of the body's frame. A disc that rolls over a point where two of them meet feels
-/// one surface, not two edges. For static and kinematic bodies. A chain that comes back to its first point is
-/// a loop as well: its last point and the first are one.
+/// Lines from point to point of the body's frame. What slides or rolls over a point where two of them meet
+/// feels one surface, not two edges. For static and kinematic bodies. A chain that comes back to its first
+/// point is a loop as well: its last point and the first are one.
 struct Chain {
     std::vector<Vec2> points{};  ///< m; 2 (of a loop 3) ... kLargestChainPoints, each unlike the one before
     bool loop = false;           ///< a last line leads back to the first point

@@ -123,13 +123,18 @@ class BasicWorld {
     bool is_asleep(BodyId body) const;
 
     /// Adds a body between steps. @throws Error as `Scene::validate`; names need not be unique here.
+    /// Cost: O(1) and what wakes; the next step takes O(bodies + contacts) more, as after `remove` and
+    /// `set_position`, however many bodies have changed.
     BodyId add(const Body& body);
-    /// Removes a body; its handle goes stale. @throws Error (stale_handle)
+    /// Removes a body, and its joints; their handles go stale. @throws Error (stale_handle)
     void remove(BodyId body);
-    /// @throws Error (stale_handle, not_finite, out_of_range); the world is then unchanged.
+    /// Puts a body elsewhere: its centre of mass [m], each component within ±kLargestPosition. Velocity and
+    /// angle stay. @throws Error (stale_handle, not_finite, out_of_range); the world is then unchanged.
     void set_position(BodyId body, Vec2 position);
-    /// Kinematic bodies go on at what is set. @throws Error as set_position; (inconsistent) for anything but
-    /// zero where nothing can move the body: it is static, was quarantined, or its rotation is fixed.
+    /// Sets a velocity, as an impulse does: m/s, speed at most kLargestSpeed; rad/s, within
+    /// ±kLargestAngularVelocity. Kinematic bodies go on at it. @throws Error as set_position; (inconsistent)
+    /// for anything but zero where nothing can move the body: it is static, was quarantined, or its rotation
+    /// is fixed. Cost: O(1) and what wakes.
     void set_velocity(BodyId body, Vec2 velocity);
     void set_angular_velocity(BodyId body, double angular_velocity);
     /// Changes what a body touches, from the next step on: joints, velocities and all else stay. It wakes,
@@ -180,6 +185,7 @@ class BasicWorld {
     /// How far joints are from what they hold, from positions. Cost: O(joints).
     JointErrors joint_errors() const;
     /// The joints that broke in the last step, by the handles they had; `events` says more of them.
+    /// Cost: O(joints that broke).
     std::vector<JointId> broken_joints() const;
     /// Where a joint holds a and b now [m], for pictures. @throws Error (stale_handle)
     std::array<Vec2, 2> joint_anchors(JointId joint) const;
@@ -198,7 +204,7 @@ class BasicWorld {
     /// Seconds by stage and counters since the world was made. Cost: O(contacts of the last
     /// step) for their residual; steps themselves do not pay for it.
     Profile profile() const;
-    /// What runs and why.
+    /// What runs and why. Cost: O(bodies), for Plan::limits.
     Plan plan() const;
     /// Overlaps measured from positions; changes nothing in the world. Cost: as finding all pairs anew, which
     /// steps seldom do: O(bodies + pairs close to each other), and memory for them.
@@ -221,7 +227,8 @@ class BasicWorld {
     /// @throws Error (malformed, inconsistent) if the bytes are no such state or are damaged; the world is
     /// then unchanged Cost: O(state); no allocation once the world has been as large.
     void restore_state(std::span<const std::byte> state);
-    /// Hash over the bit patterns of position, velocity, angle and spin of all bodies in handle order.
+    /// Hash over the bit patterns of position, velocity, angle and spin of all bodies in handle order: equal
+    /// where two worlds are, for every instruction set and number of threads. Cost: O(bodies).
     std::uint64_t state_hash() const;
 
     struct Implementation;
