@@ -13,6 +13,7 @@
 #include "measure/text.hpp"
 #include "peers/body_measures.hpp"
 #include "peers/peer.hpp"
+#include "scenes/scenes.hpp"
 
 namespace carom::bench {
 namespace {
