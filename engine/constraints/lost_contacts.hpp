@@ -17,6 +17,7 @@ struct LostContact {
     std::int32_t gone, row;         // a number for what is not there any more; of what is
     bool is_impulse_known = false;  // not where edges were removed
     Vec2 impulse = {};              // N s, that `row` had from the other one in a substep
+    double mass = 0;  // kg, of what is not there any more, infinite if nothing moved it; if known
 
     friend bool operator<(const LostContact& left, const LostContact& right) {
         return std::tie(left.gone, left.row) < std::tie(right.gone, right.row);
@@ -27,6 +28,7 @@ struct LostContact {
 struct FormerPlace {
     std::int32_t row;  // that it had when the pairs were renewed
     Vec2 place;        // m
+    double mass;       // kg, infinite if nothing moved it
 };
 
 /// What a body had from one that is gone.
@@ -37,7 +39,7 @@ template <class Real>
 LostContact lost_contact(const ContactRows<Real>& contacts, std::size_t i, std::int32_t gone,
                          std::int32_t row, std::span<const FormerPlace> former_places,
                          const Bodies<Real>& bodies) {
-    LostContact contact{gone, row, false, {}};
+    LostContact contact{gone, row};
     const auto former =
         std::lower_bound(former_places.begin(), former_places.end(), gone,
                          [](const FormerPlace& place, std::int32_t wanted) { return place.row < wanted; });
@@ -53,6 +55,7 @@ LostContact lost_contact(const ContactRows<Real>& contacts, std::size_t i, std::
     const Vec2 n = distance > 0 ? (1 / distance) * way : Vec2{};
     contact.impulse = normal_impulse * n + friction * Vec2{-n.y, n.x};
     contact.is_impulse_known = distance > 0;
+    contact.mass = former->mass;
     return contact;
 }
 

@@ -36,7 +36,7 @@ constexpr Golden kGolden[] = {
     {"stack at rest", 0xa436021f760768ad, 0xfd75b447dc578a50},
     {"rough sizes", 0xcb05146c8d4b5645, 0xa0ecdf267f8990b7},
     {"rolling sizes", 0x423f94221bccfc7a, 0x8c50dfc5f6f4e985},
-    {"turning chain", 0x45034e6e10dfd867, 0x92390d37a67382be},
+    {"turning chain", 0x16d10d072d6adae5, 0x303795a810ad5b94},
     {"woken sleepers", 0x4a097a5e5e860e93, 0xe6b0cf2e09ab2674},
     {"falling compounds", 0x3fba9fac5562a5f8, 0xbbafc864b2858d77},
 };

@@ -86,6 +86,31 @@ TEST_SUITE("hard cases/touched worlds") {
         }
     }
 
+    // What is swept behind impacts, eight times in a substep, is most of the time of a pile that sinks.
+    TEST_CASE_TEMPLATE("B39: a pile that sinks as it loses bodies is swept behind few of its impacts", Real,
+                       float, double) {
+        BasicWorld<Real> world(touched_pile(0.3), {.threads = 1});
+        for (int i = 0; i < 600; ++i) world.step(kStep);
+        const auto swept = [&] {
+            std::int64_t calls = 0;
+            for (const StageTime& stage : world.profile().stages)
+                if (stage.name == "settle_struck_contacts") calls = stage.calls;
+            return calls;
+        };
+        const std::int64_t before = swept();
+        constexpr int kSteps = 100;
+        Random random(9);
+        for (int i = 0; i < kSteps; ++i) {
+            const auto bodies = world.bodies();
+            const BodyId gone = bodies.id[random.below(bodies.count)];
+            if (gone.index != kSegment) world.remove(gone);
+            world.step(kStep);
+        }
+        const std::int64_t calls = swept() - before, substeps = kSteps * world.plan().substeps;
+        report("swept behind the impacts of ", calls, " of ", substeps, " substeps");
+        CHECK(calls < substeps / 2);  // 0.7 of them where what is left closing counts from .002 radii on
+    }
+
     TEST_CASE_TEMPLATE("B39: a touched world goes on bit for bit from a state saved among the touches", Real,
                        float, double) {
         const Scene scene = touched_pile(0.3);

@@ -28,6 +28,8 @@ constexpr std::size_t kMostLooks = 20000;
 /// loosen what holds together around a hole.
 constexpr std::size_t kLooksOfLight = 200;
 constexpr double kHeavy = 4;
+/// And for each further one that goes in the same step: where many go the rest falls anyway.
+constexpr std::size_t kLooksOfNext = 60;
 /// Bodies around holes are looked at alone if no more contacts were lost; around is within so many radii.
 constexpr std::size_t kFewLost = 16;
 constexpr double kNearRadii = 24;
@@ -44,18 +46,16 @@ void Rebalance<Real>::mark_near(std::span<const LostContact> lost) {
     const Bodies<Real>& bodies = *bodies_;
     is_near_.assign(bodies.count, lost.size() > kFewLost);
     if (lost.size() > kFewLost) return;
-    // What a body gave all others together was its weight, or what it rested on: then the load may go far.
+    // The load of a heavy body may go far, and so may that of an edge, whatever it was.
     for (std::size_t first = 0, last = 0; first < lost.size(); first = last) {
         double heaviest = 0;  // kg
-        Vec2 sum;             // N s
         bool is_known = true;
         for (; last < lost.size() && lost[last].gone == lost[first].gone; ++last) {
             heaviest = std::fmax(heaviest,
                                  static_cast<double>(bodies.mass[static_cast<std::size_t>(lost[last].row)]));
-            sum += lost[last].impulse, is_known = is_known && lost[last].is_impulse_known;
+            is_known = is_known && lost[last].is_impulse_known;
         }
-        const double most = kHeavy * heaviest * std::sqrt(length_squared(gain_));
-        if (!is_known || length_squared(sum) > most * most) return is_near_.assign(bodies.count, 1);
+        if (!is_known || lost[first].mass > kHeavy * heaviest) return is_near_.assign(bodies.count, 1);
     }
     for (const LostContact& contact : lost) {
         const auto row = static_cast<std::size_t>(contact.row);
@@ -181,18 +181,22 @@ template <class Real>
 void Rebalance<Real>::begin_flows(std::span<const LostContact> lost) {
     for (std::size_t first = 0, last = 0; first < lost.size(); first = last) {
         double up = 0, down = 0;  // N s, along the weight of the bodies that were pressed
-        double heaviest = 0;      // N s, weight of those
+        double heaviest = 0;      // kg, of those
         for (; last < lost.size() && lost[last].gone == lost[first].gone; ++last) {
             const Load& load = load_of(lost[last].row);
             const double weight = std::sqrt(length_squared(load.weight));
             if (!(weight > 0)) continue;  // nothing moves it: what it bore or bore down with ends there
-            heaviest = std::fmax(heaviest, weight);
+            heaviest = std::fmax(
+                heaviest, static_cast<double>(bodies_->mass[static_cast<std::size_t>(lost[last].row)]));
             const double along = dot(load.excess, load.weight) / weight;
             (along < 0 ? up : down) += std::fabs(along);
         }
-        most_looks_ += kLooksOfLight;
+        most_looks_ += most_looks_ == 0 ? kLooksOfLight : kLooksOfNext;
         if (!(up > down)) continue;
-        if (up - down > kHeavy * heaviest) most_looks_ = kMostLooks;
+        // What is known by its impulses alone bore that; in a heap that moves these are those of blows, too.
+        const double borne = (up - down) / std::sqrt(length_squared(gain_)),
+                     mass = lost[first].is_impulse_known ? lost[first].mass : borne;
+        if (mass > kHeavy * heaviest) most_looks_ = kMostLooks;
         for (std::size_t i = first; i < last; ++i) {
             Load& load = load_of(lost[i].row);
             if (dot(load.excess, load.weight) < 0) flow_to(lost[i].row, (1 - down / up) * load.excess);

@@ -1,5 +1,7 @@
 #include "solvers/soft/soft_simulation.hpp"
 
+#include <limits>
+
 #include "solvers/soft/stages.hpp"
 
 namespace carom {
@@ -24,8 +26,9 @@ void SoftSimulation<Real>::note_leaving(std::size_t row) {
     const std::int32_t former = soft.graph.trail.old_row(row);
     const Bodies<Real>& bodies = this->world.bodies;
     if (bodies.has_shapes && !bodies.is_immovable(row)) soft.note_lost(bodies.mass[row]);
+    const double mass = bodies.is_immovable(row) ? std::numeric_limits<double>::infinity() : bodies.mass[row];
     if (former >= 0)
-        soft.graph.former_places.push_back({former, {bodies.position_x[row], bodies.position_y[row]}});
+        soft.graph.former_places.push_back({former, {bodies.position_x[row], bodies.position_y[row]}, mass});
 }
 
 /// Whatever the pairs, their contacts or the length of substeps cannot follow makes all of it void.

@@ -208,6 +208,24 @@ TEST_SUITE("solvers/contact_sets/rebalance") {
         }
     }
 
+    TEST_CASE_TEMPLATE("a load goes far where a heavy body is gone, and not where a light one was struck",
+                       Real, float, double) {
+        constexpr std::int32_t kLeft = 6;
+        constexpr double kBlow =
+            12;  // impulse on the column's top, in what gravity gives to 1 kg in a substep
+        for (const double mass : {1.0, kBlow}) {
+            CAPTURE(mass);
+            std::vector<RigidDisc> discs(kLeft, RigidDisc::of_mass(1, 0.5));
+            std::vector<Touch<Real>> touches;
+            for (std::int32_t row = 0; row < kLeft; ++row)
+                touches.push_back({row, row - 1, kDown, 0, 0, (kLeft - row + kBlow) * kFall});
+            ContactRowsBench<Real> bench(discs, touches);
+            const LostContact lost[] = {{1000, kLeft - 1, true, {0, -kBlow * kFall}, mass}};
+            CHECK(Rebalance<Real>().balance(lost, bench.pairs, bench.supports, bench.bodies, 0, 0, kGain) ==
+                  (mass > 4));
+        }
+    }
+
     TEST_CASE_TEMPLATE("where nothing was lost nothing changes", Real, float, double) {
         const Pile pile(4, 5, 0.5);
         ContactRowsBench<Real> bench(pile.discs, converted<Real>(pile.touches));
