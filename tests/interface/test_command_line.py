@@ -200,6 +200,14 @@ class OtherCommandsTest(ProgramTest):
         refused = self.carom("explain", scene, "--solver", missing, expect=2).stderr
         self.assertEqual(set(re.findall(r'"(\w+)"', refused)) - {missing}, taken)
 
+    def test_the_page_on_scenes_has_the_limit_of_bodies_that_messages_name(self):
+        many = self.write_scene({"carom": 1, "generate": [{"gas": {"count": 67108864, "radius": 1e-5}}],
+                                 "walls": {"min": [0, 0], "max": [1, 1]}})
+        most = int(re.search(r"expected at most (\d+) bodies", self.carom("check", many, expect=2).stderr).group(1))
+        size, millions = re.search(r"4 GiB of bodies while reading \((\d+) bytes each, so about (\d+) million\)",
+                                   (SOURCE / "docs/scene-format.md").read_text()).groups()
+        self.assertEqual((most, int(millions)), ((4 << 30) // int(size), most // 1_000_000))
+
     def test_explain_says_what_a_scene_calls_for_and_why(self):
         for solver in ("auto", "pairwise"):
             text = self.carom("explain", SEED, "--solver", solver).stdout
