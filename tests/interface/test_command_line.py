@@ -218,6 +218,9 @@ class OtherCommandsTest(ProgramTest):
             self.assertEqual(plan["bytes_per_body"], sum(column["bytes_per_body"] for column in plan["columns"]))
             for part in (*plan["effects"], *plan["stages"], *plan["columns"]):
                 self.assertIn(part["name"], text)
+            stages = re.findall(r"^(  \w+ +)\S.* -> .*$", text, re.MULTILINE)
+            self.assertEqual(len(stages), len(plan["stages"]))
+            self.assertEqual(len({len(stage) for stage in stages}), 1, text)  # one column, however long a name is
             for effect in plan["effects"]:
                 self.assertGreater(len(effect["reason"]), 3)
                 self.assertIn(effect["reason"], text)

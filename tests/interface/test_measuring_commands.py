@@ -1,8 +1,9 @@
 """carom profile and carom scaling: what they print and write, and that carom report draws it."""
 import json
+import re
 import unittest
 
-from program import ProgramTest, gas
+from program import SEED, ProgramTest, gas
 
 
 class ProfileTest(ProgramTest):
@@ -61,6 +62,12 @@ class ProfileTest(ProgramTest):
             share = loops["share_on_one_thread"]
             self.assertLessEqual(row["times_at_most"], 1.0001 / (share + (1 - share) / row["cores"]))
             before = row["times_at_most"]
+
+    def test_columns_of_the_table_stand_below_each_other_however_long_the_name_of_a_stage_is(self):
+        text = self.carom("profile", SEED, "--steps", "50", "--threads", "1").stdout  # solve_uneven_contacts has 21 letters
+        rows = re.findall(r"^  (?:stage|[a-z]+(?:_[a-z]+)+) .*$", text, re.MULTILINE)
+        self.assertGreater(len(rows), 10)
+        self.assertEqual(len({len(re.match(r"  \w+ +(?:us a step|[\d.e+-]+)", row).group()) for row in rows}), 1, text)
 
     def test_a_few_bodies_are_on_one_thread(self):
         path = self.write_scene(gas(3, steps=20))

@@ -1,6 +1,7 @@
 #include <carom/version.hpp>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -44,9 +45,13 @@ std::string to_text(const Plan& plan, const std::string& scene, std::size_t bodi
         text += format("  %-3s  %-20s  %s\n", effect.on ? "on" : "off", effect.name.c_str(),
                        effect.reason.c_str());
     text += "\nstages: what each reads -> writes\n";
+    std::size_t longest = 0;
+    for (const StageReport& stage : plan.stages) longest = std::max(longest, stage.name.size());
+    const auto width = static_cast<int>(longest);
     for (const StageReport& stage : plan.stages) {
-        text += format("  %-20s  %s -> %s\n", stage.name.c_str(), stage.reads.c_str(), stage.writes.c_str());
-        if (!stage.kernel.empty()) text += format("  %-20s  kernel: %s\n", "", stage.kernel.c_str());
+        text += format("  %-*s  %s -> %s\n", width, stage.name.c_str(), stage.reads.c_str(),
+                       stage.writes.c_str());
+        if (!stage.kernel.empty()) text += format("  %-*s  kernel: %s\n", width, "", stage.kernel.c_str());
     }
     text += format("\ncolumns: %zu bytes a body\n", plan.bytes_per_body);
     for (const ColumnReport& column : plan.columns)

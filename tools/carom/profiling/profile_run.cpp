@@ -218,8 +218,12 @@ std::string profile_text(const Json& profile) {
         1e6 * profile.at("seconds_per_step").get<double>(), word("solver").c_str(), whole("substeps"),
         whole("substeps") == 1 ? "" : "s", word("precision").c_str(), word("isa").c_str(), whole("threads"),
         whole("threads") == 1 ? "" : "s", 100 * profile.at("measuring_share").get<double>());
-    text += format("  %-18s %10s %6s %10s %9s %8s %8s %9s  %s\n", "stage", "us a step", "share", "items",
-                   "ns/item", "KB", "roof", "x scalar", "limited by");
+    std::size_t longest = 0;
+    for (const Json& stage : profile.at("stages"))
+        longest = std::max(longest, stage.at("name").get_ref<const std::string&>().size());
+    const auto width = static_cast<int>(longest);
+    text += format("  %-*s %10s %6s %10s %9s %8s %8s %9s  %s\n", width, "stage", "us a step", "share",
+                   "items", "ns/item", "KB", "roof", "x scalar", "limited by");
     for (const Json& stage : profile.at("stages")) {
         const auto number = [&](const char* pattern_free_key, double scale, int significant) {
             return stage.contains(pattern_free_key)
@@ -229,7 +233,7 @@ std::string profile_text(const Json& profile) {
         const std::string roof =
             stage.contains("roof_share") ? joined(number("roof_share", 100, 2), " %") : "-";
         text +=
-            format("  %-18s %10s %4.0f %% %10s %9s %8s %8s %9s  %s\n",
+            format("  %-*s %10s %4.0f %% %10s %9s %8s %8s %9s  %s\n", width,
                    stage.at("name").get<std::string>().c_str(), number("seconds_per_step", 1e6, 4).c_str(),
                    100 * stage.at("share").get<double>(), number("items", 1, 6).c_str(),
                    number("ns_per_item", 1, 3).c_str(), number("bytes", 1e-3, 4).c_str(), roof.c_str(),
