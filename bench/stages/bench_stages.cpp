@@ -5,6 +5,7 @@
 
 #include "measure/clocks.hpp"
 #include "measure/gas.hpp"
+#include "measure/stage_times.hpp"
 #include "measure/text.hpp"
 #include "scenes/scenes.hpp"
 
@@ -28,12 +29,10 @@ void stages(benchmark::State& state, const std::string& scene) {
         const Profile after = world.profile();
         const auto steps = static_cast<double>(after.steps - before.steps);
         double all = 0, readings = 0;
-        for (std::size_t i = 0; i < after.stages.size(); ++i) {
-            const double seconds = (after.stages[i].seconds - before.stages[i].seconds) / steps;
-            if (after.stages[i].calls == 0) continue;
-            all += seconds;
-            readings += static_cast<double>(after.stages[i].calls - before.stages[i].calls) / steps;
-            state.counters[measure::joined("stage:", after.stages[i].name)] = seconds;
+        for (const StageTime& stage : measure::stage_times_between(before, after)) {
+            all += stage.seconds / steps;
+            readings += static_cast<double>(stage.calls) / steps;
+            state.counters[measure::joined("stage:", stage.name)] = stage.seconds / steps;
         }
         state.counters["measuring"] = (readings + 1) * measure::seconds_of_a_clock_reading() / all;
         state.counters["bytes_per_body"] =

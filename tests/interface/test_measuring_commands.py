@@ -24,6 +24,22 @@ class ProfileTest(ProgramTest):
         for stage in profile["stages"]:
             self.assertRegex(stage["limit"], "^(memory|arithmetic|branching|too )", stage["name"])
 
+    def test_stages_that_first_run_while_it_measures_are_told_as_all_others_are(self):
+        # The discs meet the floor and each other after half a second: before that nothing holds that could gain energy.
+        scene = {"carom": 1, "gravity": [0, -10], "walls": {"min": [0, 0], "max": [9, 60]},
+                 "default_material": {"restitution": 0.5, "friction": 0.3}, "step": {"dt": 1 / 60, "count": 120},
+                 "bodies": [{"position": [1 + 0.9 * (i % 6) + 0.01 * i, 3 + 0.9 * (i // 6)], "shape": {"disc": {"radius": 0.4}}} for i in range(12)]}
+        profile = self.profile(scene)
+        stages = {stage["name"]: stage for stage in profile["stages"]}
+        self.assertIn("bound_energy", stages)
+        self.assertLess(stages["bound_energy"]["calls_per_step"], 4)  # of four substeps
+        self.assertEqual(stages["advance_bodies"]["calls_per_step"], 4)
+        self.assertEqual(stages["end_substeps"]["calls_per_step"], 1)
+        shares = [stage["share"] for stage in profile["stages"]]
+        self.assertAlmostEqual(sum(shares), 1, places=6)
+        self.assertTrue(all(0 <= share < 1 for share in shares), shares)
+        self.assertTrue(0 <= profile["measuring_share"] < 1, profile["measuring_share"])
+
     def test_items_are_what_the_stage_works_through(self):
         stages = {stage["name"]: stage for stage in self.profile(gas(30, steps=60))["stages"]}
         self.assertEqual(stages["begin_flight"]["items"], 900)

@@ -16,7 +16,8 @@ struct StageTime {
 
 /// What a world has done since it was made. Counting costs below 1 % of a step.
 struct Profile {
-    std::vector<StageTime> stages;  ///< in the order of the step
+    /// Those that have run so far, in the order of the step: one may stand elsewhere in a later profile.
+    std::vector<StageTime> stages;
     std::int64_t steps = 0;
     std::int64_t rebuilds = 0;         ///< steps that built the candidate pairs anew
     std::int64_t candidate_pairs = 0;  ///< now

@@ -6,6 +6,7 @@
 #include "measure/clocks.hpp"
 #include "measure/limits.hpp"
 #include "measure/machine.hpp"
+#include "measure/stage_times.hpp"
 #include "measure/stage_work.hpp"
 #include "profiling/shared_loops.hpp"
 #include "terminal/exit_codes.hpp"
@@ -90,22 +91,23 @@ std::string kernel_of(const Plan& plan, std::string_view stage) {
 }
 
 /// One stage: its time, its work, and what limits it.
-Json stage_json(std::size_t index, const Turns& turns, const measure::ProfiledSteps& steps,
-                double all_seconds, const measure::Ceilings& ceilings, double clock_reading) {
-    const StageTime &before = turns.before.stages[index], &after = turns.after.stages[index];
-    const double seconds = (after.seconds - before.seconds) / steps.steps();
-    const double calls = static_cast<double>(after.calls - before.calls) / steps.steps();
-    Json json{{"name", after.name},
-              {"kernel", kernel_of(turns.plan, after.name)},
+/// @param stage, scalar  what it took in all steps, as asked and with scalar kernels, if it did
+Json stage_json(const StageTime& stage, const StageTime& scalar, const Plan& plan,
+                const measure::ProfiledSteps& steps, double all_seconds, const measure::Ceilings& ceilings,
+                double clock_reading) {
+    const double seconds = stage.seconds / steps.steps();
+    const double calls = static_cast<double>(stage.calls) / steps.steps();
+    Json json{{"name", stage.name},
+              {"kernel", kernel_of(plan, stage.name)},
               {"calls_per_step", calls},
               {"seconds_per_step", seconds},
               {"share", seconds / all_seconds}};
     measure::StageFacts facts{
         .bodies = steps.bodies, .seconds_per_call = seconds / calls, .seconds_of_a_reading = clock_reading};
-    if (const auto work = measure::work_of_stage(after.name, steps, calls); work && work->items > 0) {
+    if (const auto work = measure::work_of_stage(stage.name, steps, calls); work && work->items > 0) {
         const measure::CopyBandwidth& level =
             ceilings.copy_of(static_cast<std::size_t>(work->items * work->work.bytes));
-        const measure::ArithmeticPeak& peak = ceilings.peak_of(turns.plan.isa);
+        const measure::ArithmeticPeak& peak = ceilings.peak_of(plan.isa);
         const double rate = work->items / seconds;
         const measure::RoofShare share =
             measure::roof_share(work->work, rate, level.bytes_per_second,
@@ -121,10 +123,8 @@ Json stage_json(std::size_t index, const Turns& turns, const measure::ProfiledSt
         json["roof_share"] = share.share;
         json["roof"] = share.is_memory ? level.level : "arithmetic";
     }
-    if (!turns.scalar_after.stages.empty() && seconds > 0) {
-        const double scalar =
-            turns.scalar_after.stages[index].seconds - turns.scalar_before.stages[index].seconds;
-        facts.times_scalar = scalar / steps.steps() / seconds;
+    if (scalar.calls > 0 && seconds > 0) {
+        facts.times_scalar = scalar.seconds / stage.seconds;
         json["times_scalar"] = *facts.times_scalar;
     }
     json["limit"] = measure::limit_of(facts);
@@ -178,11 +178,13 @@ Json profile_scene(const Scene& scene, const MachineSettings& machine, Trace* tr
     json["isa"] = turns.plan.isa;
     json["threads"] = turns.plan.threads;
     json["ceilings"] = measure::ceilings_json(ceilings);
+    const std::vector<StageTime> stages = measure::stage_times_between(turns.before, turns.after),
+                                 scalar =
+                                     measure::stage_times_between(turns.scalar_before, turns.scalar_after);
     double all = 0, readings = 0;
-    for (std::size_t i = 0; i < turns.after.stages.size(); ++i) {
-        all += (turns.after.stages[i].seconds - turns.before.stages[i].seconds) / steps.steps();
-        readings +=
-            static_cast<double>(turns.after.stages[i].calls - turns.before.stages[i].calls) / steps.steps();
+    for (const StageTime& stage : stages) {
+        all += stage.seconds / steps.steps();
+        readings += static_cast<double>(stage.calls) / steps.steps();
     }
     json["seconds_per_step"] = turns.seconds / steps.steps();
     json["measuring_share"] = (readings + 1) * clock_reading / all;
@@ -200,9 +202,9 @@ Json profile_scene(const Scene& scene, const MachineSettings& machine, Trace* tr
                         {"bytes", last.bytes}};
     json["shared_loops"] = shared_loops_json(turns);
     json["stages"] = Json::array();
-    for (std::size_t i = 0; i < turns.after.stages.size(); ++i)
-        if (turns.after.stages[i].calls > turns.before.stages[i].calls)
-            json["stages"].push_back(stage_json(i, turns, steps, all, ceilings, clock_reading));
+    for (const StageTime& stage : stages)
+        json["stages"].push_back(stage_json(stage, measure::time_of_stage(scalar, stage.name), turns.plan,
+                                            steps, all, ceilings, clock_reading));
     return json;
 }
 

@@ -1,5 +1,7 @@
 #include "profiling/trace.hpp"
 
+#include "measure/stage_times.hpp"
+
 namespace carom::tool {
 namespace {
 
@@ -27,12 +29,9 @@ void Trace::add_step(const Profile& before, const Profile& after) {
                {"impacts", after.impacts - before.impacts},
                {"candidate_pairs", after.candidate_pairs},
                {"rebuilt", after.rebuilds > before.rebuilds}});
-    for (std::size_t i = 0; i < after.stages.size(); ++i) {
-        const double seconds = after.stages[i].seconds - before.stages[i].seconds;
-        const std::int64_t calls = after.stages[i].calls - before.stages[i].calls;
-        if (calls == 0) continue;
-        add_event(after.stages[i].name, time_, seconds, {{"calls", calls}});
-        time_ += seconds;
+    for (const StageTime& stage : measure::stage_times_between(before, after)) {
+        add_event(stage.name, time_, stage.seconds, {{"calls", stage.calls}});
+        time_ += stage.seconds;
     }
     events_[step_event]["dur"] = kMicro * (time_ - start);
 }
