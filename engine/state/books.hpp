@@ -10,15 +10,17 @@ namespace carom {
 /// comes from formulas (docs/how-a-step-works.md), never from differences of the state, so that the remainder
 /// means something.
 struct Books {
-    bool is_open = false;    ///< the ledger effect; nothing is written while closed, but wall_impulse
-    double drag = 0;         // J
-    double restitution = 0;  // J
-    double friction = 0;     // J
-    double correction = 0;   // J
-    double joints = 0;       // J
-    double drive = 0;        // J
-    double sleep = 0;        // J
-    Vec2 gravity_momentum;   // kg m/s, and below
+    bool is_open =
+        false;  ///< the ledger effect, or a debug build; nothing is written while closed, but wall_impulse
+    double drag = 0;           // J
+    double restitution = 0;    // J
+    double friction = 0;       // J
+    double correction = 0;     // J
+    double joints = 0;         // J
+    double drive = 0;          // J
+    double sleep = 0;          // J
+    double overlap_worth = 0;  // J, of this step, what overlaps are worth: solvers/shared/check_energy.hpp
+    Vec2 gravity_momentum;     // kg m/s, and below
     Vec2 drag_momentum;
     Vec2 wall_momentum;
     Vec2 immovable_momentum;

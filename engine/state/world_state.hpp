@@ -12,6 +12,7 @@
 #include "shapes/edges.hpp"
 #include "state/bodies.hpp"
 #include "state/books.hpp"
+#include "state/energy_watch.hpp"
 #include "state/handles.hpp"
 #include "state/joints.hpp"
 #include "state/sensing.hpp"
@@ -66,6 +67,7 @@ struct WorldState {
     double dynamic_mass = 0;                   ///< kg, of the dynamic bodies that are awake
     std::vector<std::int32_t> immovable_rows;  ///< static, kinematic and disabled ones, ascending
     std::int64_t quarantined_count = 0;
+    EnergyWatch energy_watch;
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
@@ -73,6 +75,7 @@ struct WorldState {
         archive(self.effects);
         archive(self.time, self.falls, self.books, self.initial, self.outside, self.dynamic_mass);
         archive(self.immovable_rows, self.quarantined_count, self.joints, self.sensing);
+        archive(self.energy_watch);
     }
 
     std::size_t bytes() const;

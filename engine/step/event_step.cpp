@@ -1,9 +1,10 @@
 #include "solvers/event/event_simulation.hpp"
+#include "solvers/shared/check_energy.hpp"
 #include "stages/stage.hpp"
 #include "step/make_simulation.hpp"
 
 // THE STEP of solver `event`: from impact to impact, however long the step. docs/how-a-step-works.md has a
-// paragraph on its one line.
+// paragraph on each line.
 
 namespace carom {
 namespace {
@@ -15,6 +16,9 @@ class EventStep final : public EventSimulation<Real> {
     static constexpr Stage<Sim> kStep[] = {
         {"run_events", [](Sim& sim) { run_events(sim); }, [](const Sim&) { return true; },
          KernelChoice::scalar_f64, "all columns", "position, velocity, angle, angular velocity, books"},
+        {"check_energy", [](Sim& sim) { check_energy(sim.world, 1, {.correction = true, .passive = true}); },
+         [](const Sim& sim) { return sim.world.books.is_open; }, KernelChoice::scalar_f64,
+         "position, velocity, angular velocity, joints, books", "books"},
     };
 
     template <class Watch>

@@ -1,5 +1,6 @@
 #include "solvers/impulse/stages.hpp"
 #include "solvers/shared/candidate_stages.hpp"
+#include "solvers/shared/check_energy.hpp"
 #include "stages/stage.hpp"
 #include "step/make_simulation.hpp"
 
@@ -14,7 +15,7 @@ class ImpulseStep final : public ImpulseSimulation<Real> {
     using Sim = ImpulseSimulation<Real>;
     static constexpr auto always = [](const Sim&) { return true; };
     static constexpr auto can_meet = [](const Sim& sim) { return sim.can_meet(); };
-    static constexpr auto has_ledger = [](const Sim& sim) { return sim.world.effects.ledger; };
+    static constexpr auto has_ledger = [](const Sim& sim) { return sim.world.books.is_open; };
     static constexpr auto has_rotation = [](const Sim& sim) { return sim.world.effects.rotation; };
 
     static constexpr Stage<Sim> kSubstep[] = {
@@ -42,6 +43,14 @@ class ImpulseStep final : public ImpulseSimulation<Real> {
          "angular velocity", "angle, angular velocity"},
         {"end_flight", [](Sim& sim) { end_flight(sim); }, always, KernelChoice::isa, "motion, accelerations",
          "position, velocity"},
+        {"check_energy",
+         [](Sim& sim) {
+             // Forces of contacts at rest are iterated, and end slow separations.
+             check_energy(sim.world, 1,
+                          {.restitution = !sim.world.effects.gravity, .correction = true, .passive = true});
+         },
+         has_ledger, KernelChoice::scalar_f64, "position, velocity, angular velocity, joints, books",
+         "books"},
     };
 
     template <class Watch>

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "solvers/joints/built_in_pairs.hpp"
+#include "solvers/shared/check_energy.hpp"
 #include "solvers/soft/stages.hpp"
 #include "stages/stage.hpp"
 #include "step/make_simulation.hpp"
@@ -36,9 +37,12 @@ class SoftStep final : public SoftSimulation<Real> {
     };
     static constexpr auto has_changes = [](const Sim& sim) { return sim.has_changes(); };
     static constexpr auto has_walls = [](const Sim& sim) { return sim.world.effects.walls; };
-    static constexpr auto has_ledger = [](const Sim& sim) { return sim.world.effects.ledger; };
+    static constexpr auto has_discs_alone = [](const Sim& sim) {
+        return !sim.world.bodies.has_shapes && sim.world.joints.empty();
+    };
+    static constexpr auto has_ledger = [](const Sim& sim) { return sim.world.books.is_open; };
     static constexpr auto has_books = [](const Sim& sim) {
-        return sim.world.effects.ledger || sim.world.effects.walls;
+        return sim.world.books.is_open || sim.world.effects.walls;
     };
     static constexpr auto has_lost_loads = [](const Sim& sim) { return sim.soft.has_lost_loads(); };
     static constexpr auto may_heave = [](const Sim& sim) {
@@ -204,13 +208,17 @@ class SoftStep final : public SoftSimulation<Real> {
          "rows out of the limits", "velocity, angular velocity, flags"},
         {"book_displacements",
          [](Sim& sim) { sim.soft.book_displacements(sim.world, sim.motion, sim.world.books); }, has_ledger,
-         KernelChoice::none, "motion, position", "books"},
+         KernelChoice::none, "motion, position, contacts, paths of contacts, impulses", "books"},
         {"sense", [](Sim& sim) { sense(sim); }, has_sensors, KernelChoice::scalar_f64,
          "position, angle, velocity, angular velocity, candidate pairs, bodies in sensors",
          "bodies in sensors, events"},
         {"put_to_sleep", [](Sim& sim) { put_to_sleep(sim); }, sleeps, KernelChoice::none,
          "velocity, angular velocity, coloured candidates, impulses",
          "rows of all columns, velocity, angular velocity, books"},
+        {"check_energy",
+         [](Sim& sim) { check_energy(sim.world, sim.substep_count, {.passive = has_discs_alone(sim)}); },
+         has_ledger, KernelChoice::scalar_f64, "position, velocity, angular velocity, joints, books",
+         "books"},
     };
     static constexpr std::size_t kFirstOfSubstep = std::size(kBegin),
                                  kFirstOfEnd = kFirstOfSubstep + std::size(kSubstep);

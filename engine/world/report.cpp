@@ -14,7 +14,7 @@ Ledger ledger_of(const WorldState<Real>& world) {
     ledger.initial_momentum = start.momentum, ledger.momentum = now.momentum;
     ledger.initial_angular_momentum = start.angular_momentum, ledger.angular_momentum = now.angular_momentum;
     ledger.wall_impulse = books.wall_impulse;
-    if (!books.is_open) return ledger;
+    if (!world.effects.ledger) return ledger;
 
     EnergyByCause& energy = ledger.energy_by_cause;
     energy.gravity = start.energy.potential - now.energy.potential;
@@ -24,6 +24,7 @@ Ledger ledger_of(const WorldState<Real>& world) {
     energy.outside = outside.energy.total();
     energy.unexplained = (now.energy.kinetic + now.energy.rotational) -
                          (start.energy.kinetic + start.energy.rotational) - energy.sum();
+    ledger.energy_excess = world.energy_watch.largest;
     MomentumByCause& momentum = ledger.momentum_by_cause;
     momentum.gravity = books.gravity_momentum, momentum.drag = books.drag_momentum;
     momentum.walls = books.wall_momentum, momentum.immovable = books.immovable_momentum;

@@ -32,6 +32,9 @@ void set_up(Simulation<Real>& sim, const Scene& scene, const WorldOptions& optio
     world.drag = {effects.drag ? scene.drag.linear : 0, effects.rotation ? scene.drag.angular : 0};
     world.walls = scene.walls;
     world.books.is_open = effects.ledger;
+#ifndef NDEBUG
+    world.books.is_open = true;  // debug builds check energies in every step
+#endif
     world.bodies.has_rotation = effects.rotation;
     world.bodies.has_sleep = effects.sleeping;
     world.sensing.is_on = scene.events.sensor.value_or(true);
@@ -39,6 +42,7 @@ void set_up(Simulation<Real>& sim, const Scene& scene, const WorldOptions& optio
     for (const Body& body : scene.bodies) world.append(body);
     for (const Joint& joint : scene.joints) world.joints.add(joint_of(world, joint));
     world.initial = world.sums();
+    world.energy_watch.energy = world.initial.energy.total();
 }
 
 template <class Real>

@@ -189,6 +189,22 @@ class LedgerTest(ProgramTest):
         for cause in CAUSES:
             self.assertEqual(ledger[cause][-1], summary["energy_by_cause"][cause])
 
+    def test_energy_that_no_law_gives_is_told(self):
+        # A rod of 1 m that begins 1.5 m long draws 2 kg up by .5 m, by displacement alone, where nothing overlaps: 10 J.
+        scene = {"carom": 1, "gravity": [0, -10], "step": {"dt": 1 / 60, "count": 120},
+                 "bodies": [{"name": "bob", "shape": {"disc": {"radius": 0.1}}, "mass": 2, "position": [0, -1.5]}],
+                 "joints": [{"distance": {"b": "bob", "anchor_a": [0, 0], "anchor_b": [0, 0], "length": 1}}]}
+        excess = self.run_scene(scene).summary["energy_excess"]
+        self.assertAlmostEqual(excess["correction"], 10, delta=0.01)
+        self.assertAlmostEqual(excess["passive"], 10, delta=0.01)
+        self.assertEqual(excess["restitution"], 0)
+        line = "energy beyond its laws and rounding, at most: 10 J by correction in a step, 10 J above what nothing drives began with"
+        self.assertIn(line, self.carom("run", self.write_scene(scene), "--out", "again").stdout)
+        scene["bodies"][0]["position"] = [0, -1]
+        self.assertEqual(set(self.run_scene(scene).summary["energy_excess"].values()), {0})
+        self.assertNotIn("beyond", self.carom("run", self.write_scene(scene), "--out", "again").stdout)
+        self.assertNotIn("energy_excess", self.run_scene(SEED, "--solver", "pairwise").summary)
+
     def test_energy_and_momentum_are_those_of_the_final_state(self):
         for solver in ("impulse", "pairwise"):
             results = self.run_scene(SEED, "--solver", solver)

@@ -166,13 +166,14 @@ double EnergyBooks::given(const EnergyByCause& cause) {
 
 void EnergyBooks::look(const Watch& watch) {
     const bool has_causes = watch.simulation().keeps_ledger();
-    const EnergyByCause cause = has_causes ? watch.simulation().ledger().energy_by_cause : EnergyByCause{};
+    const Ledger ledger = has_causes ? watch.simulation().ledger() : Ledger{};
+    const EnergyByCause& cause = ledger.energy_by_cause;
     const double more = energy(watch) - start_ - given(cause);
     const double rise = more == 0 ? 0 : more / std::fmax(least_, start_ + turnover_);
     if (!(rise <= rise_)) rise_ = rise;  // not a number stays
     if (!has_causes) return;
     restitution_gain_ += std::fmax(0, cause.restitution - last_restitution_) / start_;
-    last_restitution_ = cause.restitution;
+    last_restitution_ = cause.restitution, excess_ = ledger.energy_excess;
     correction_gain_ = std::fmax(correction_gain_, cause.correction / start_);
 }
 

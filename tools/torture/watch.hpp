@@ -89,6 +89,10 @@ class EnergyBooks {
     double restitution_gain() const { return restitution_gain_; }
     /// The most that displacement had lifted bodies by, over E0; 0 without a ledger.
     double correction_gain() const { return correction_gain_; }
+    /// The world's own check of each step, over E0; zeros without a ledger.
+    EnergyExcess excess() const {
+        return {excess_.restitution / start_, excess_.correction / start_, excess_.passive / start_};
+    }
 
   private:
     double energy(const Watch& watch) const;
@@ -99,6 +103,7 @@ class EnergyBooks {
     double least_ = 0, turnover_ = 0;  // J
     double start_ = 0, rise_ = -1, restitution_gain_ = 0, correction_gain_ = 0;
     double last_restitution_ = 0;  // J
+    EnergyExcess excess_;          // J
 };
 
 /// What a step took: median, longest, and one over the other. None has a mark: times are told.

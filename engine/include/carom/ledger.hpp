@@ -45,6 +45,15 @@ struct MomentumByCause {
     Vec2 unexplained;
 };
 
+/// Energy that neither a law nor rounding explains [J]: the most that a step has had of it so far. All three
+/// are zero where what holds by construction holds, as it should; each is above what rounding explains.
+/// docs/how-a-step-works.md has the rules and their bounds.
+struct EnergyExcess {
+    double restitution = 0;  ///< given in a step where bodies or walls meet
+    double correction = 0;   ///< by pushing bodies apart in a step, beyond what the overlap was worth
+    double passive = 0;      ///< that a world which nothing drives had above that at its start
+};
+
 /// The books of a world: sums over its dynamic bodies, in double precision whatever the world's own.
 struct Ledger {
     double time = 0;  ///< s
@@ -56,6 +65,7 @@ struct Ledger {
     double angular_momentum = 0;
     EnergyByCause energy_by_cause;      ///< zero unless the ledger effect is on
     MomentumByCause momentum_by_cause;  ///< zero unless the ledger effect is on
+    EnergyExcess energy_excess;         ///< zero unless the ledger effect is on
     double wall_impulse = 0;  ///< N s, sum of |impulse| on all walls; pressure = this / (perimeter · time)
 };
 

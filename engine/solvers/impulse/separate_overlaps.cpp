@@ -24,11 +24,19 @@ template <class Real>
 int separate_overlaps(Flights<Real>& flights, const std::vector<Meeting>& overlaps, double dt,
                       std::vector<double>& targets) {
     targets.clear();
+    double depth = 0, mass = 0;  // m, kg: of all overlaps, of all that can be pushed
     for (const Meeting& m : overlaps) {
         const double radius = flights.smaller_radius(m);
-        const double apart = flights.encounter(m, 0).separation + kPushRadiiPerSecond * radius * dt;
+        const double separation = flights.encounter(m, 0).separation;
+        const double apart = separation + kPushRadiiPerSecond * radius * dt;
         targets.push_back(std::fmin(apart, -kSlopFraction * radius));
+        depth -= separation;
+        for (const std::int32_t row : {m.a, m.b})
+            if (row >= 0 && !flights.is_immovable(row)) mass += 1 / flights.inverse_mass(row);
     }
+    // No force says here what lies on what: none of them rises farther than all overlaps together.
+    if (flights.books->is_open)
+        flights.books->overlap_worth += mass * std::sqrt(length_squared(flights.common_acceleration)) * depth;
     // A tenth of the slop is as good as there: sweeping on would only move round-off.
     constexpr double kCloseEnough = 0.1 * kSlopFraction;
     for (int sweep = 0; sweep < kSeparationSweeps; ++sweep) {

@@ -1,8 +1,11 @@
 #include "solvers/soft/books.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "math/vec2_math.hpp"
+#include "solvers/paths/contact_work.hpp"
 #include "solvers/soft/contacts/stored_contact.hpp"
 
 namespace carom {
@@ -154,6 +157,46 @@ void SubstepBooks<Real>::book_displacements(std::size_t rows, const WorldState<R
     }
     books.correction += gravity_work - fall;
     gravity_work = 0;
+}
+
+template <class Real>
+void SubstepBooks<Real>::book_overlaps(const StepView<Real>& step, const PathSolver<Real>& paths,
+                                       const WorldState<Real>& world, Books& books) {
+    const double g = std::sqrt(length_squared(world.gravity)), per_h = 1 / step.terms.substep_dt;
+    std::array<double, kHalfBlock> sums{};  // J; of pairs, every kHalfBlock-th
+    const auto add = [&](const ContactRows<Real>& rows, std::size_t i, double& sum) {
+        const double separation = rows.separation[i], depth = separation < 0 ? -separation : 0;
+        sum += depth *
+               (per_h * static_cast<double>(rows.normal_impulse[i]) + g * static_cast<double>(rows.mass[i]));
+    };
+    const ContactRows<Real>&pairs = step.graph.pairs, &supports = step.supports;
+    for (std::size_t group = 0; group < pairs.groups(); ++group) {
+        const auto* run = pairs.run.data() + pairs.first_place(group) / kContactBlock;
+        for (const auto* const end = run + pairs.run_count[group]; run < end; ++run)
+            for (std::size_t first = kHalfBlock * run->first; first < kHalfBlock * run->last;
+                 first += kHalfBlock)
+                for (std::size_t k = 0; k < kHalfBlock; ++k) add(pairs, first + k, sums[k]);
+    }
+    double worth = 0;
+    for (const double sum : sums) worth += sum;
+    supports.for_each([&](std::size_t i) { add(supports, i, worth); });
+    if (world.bodies.has_shapes)
+        paths.for_each([&](const PathContact<Real>& contact) {
+            const ContactWork<Real> of(contact);
+            const auto depth = [](Real separation) { return std::fmax(0, -static_cast<double>(separation)); };
+            const double depth1 = depth(contact.link.separation1[contact.lane]),
+                         depth2 = depth(contact.link.separation2[contact.lane]);
+            if (depth1 + depth2 == 0) return;
+            double mass = 0;  // kg, of both: no less than the effective one
+            for (const std::int32_t row : {contact.near, contact.far}) {
+                const auto r = static_cast<std::size_t>(row);
+                if (r < step.records.count() && !world.bodies.is_immovable(r))
+                    mass += static_cast<double>(world.bodies.mass[r]);
+            }
+            worth +=
+                depth1 * (per_h * of.impulse[0] + mass * g) + depth2 * (per_h * of.impulse[1] + mass * g);
+        });
+    books.overlap_worth += worth;
 }
 
 template class SubstepBooks<float>;

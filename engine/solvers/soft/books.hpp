@@ -35,6 +35,10 @@ class SubstepBooks {
     /// @param rows  bodies that took part in it
     void book_displacements(std::size_t rows, const WorldState<Real>& world, const Column<Real>& motion,
                             Books& books);
+    /// Books what the overlaps are worth that this step found (solvers/shared/check_energy.hpp), by the
+    /// forces of the last substep.
+    static void book_overlaps(const StepView<Real>& step, const PathSolver<Real>& paths,
+                              const WorldState<Real>& world, Books& books);
 
     std::size_t bytes() const {
         return mean_.bytes() + flights_.capacity() * sizeof(Flights) + works_.capacity() * sizeof(Work) +

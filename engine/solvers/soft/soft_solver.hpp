@@ -189,9 +189,10 @@ class SoftSolver {
     void end_substeps(Bodies<Real>& bodies, ChunkedList& lost_rows, std::vector<std::int32_t>& lost) {
         records_.end(bodies, lost_rows, lost, loops_);
     }
-    /// What the pushes of this step did against gravity.
+    /// What the pushes of this step did against gravity, and what the overlaps were worth.
     void book_displacements(const WorldState<Real>& world, const Column<Real>& motion, Books& books) {
         books_.book_displacements(records_.count(), world, motion, books);
+        books_.book_overlaps(view(), paths, world, books);
     }
 
     /// Forgets what was not booked yet of a step that is given up.

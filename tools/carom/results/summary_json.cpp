@@ -39,6 +39,11 @@ Json to_json(const EnergyByCause& work) {
             {"unexplained", work.unexplained}};
 }
 
+Json to_json(const EnergyExcess& excess) {
+    return {
+        {"restitution", excess.restitution}, {"correction", excess.correction}, {"passive", excess.passive}};
+}
+
 Json to_json(const MomentumByCause& given) {
     return {{"gravity", to_json(given.gravity)},
             {"drag", to_json(given.drag)},
@@ -158,6 +163,7 @@ Json summary_of(const RunOutcome& run) {
     if (run.keeps_ledger) {
         json["energy_by_cause"] = to_json(books.energy_by_cause);
         json["momentum_by_cause"] = to_json(books.momentum_by_cause);
+        if (run.plan.solver != "pairwise") json["energy_excess"] = to_json(books.energy_excess);
     }
     json["wall_impulse"] = books.wall_impulse;
     json["contacts"] = {{"count", run.overlaps.candidates},

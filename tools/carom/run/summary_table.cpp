@@ -80,6 +80,18 @@ std::string ledger_line(const EnergyByCause& work) {
     return text;
 }
 
+/// What a run had of energy that neither a law nor rounding explains; nothing where it had none.
+std::string excess_line(const EnergyExcess& excess) {
+    std::string text;
+    const auto add = [&text](double value, const char* of) {
+        if (value > 0) text += format("%s %.2g J %s", text.empty() ? "" : ",", value, of);
+    };
+    add(excess.restitution, "by restitution in a step");
+    add(excess.correction, "by correction in a step");
+    add(excess.passive, "above what nothing drives began with");
+    return text.empty() ? text : "  energy beyond its laws and rounding, at most:" + text + "\n";
+}
+
 std::string contact_line(const RunOutcome& run) {
     return format(
         "  contacts: %lld touching of %lld candidates; overlap %.3g %% mean, %.3g %% max of the smaller "
@@ -109,7 +121,8 @@ std::string time_line(const RunOutcome& run) {
 
 std::string summary_table(const RunOutcome& run) {
     std::string text = heading(run) + course_table(run);
-    text += run.keeps_ledger ? ledger_line(run.ledger.energy_by_cause) : "\n";
+    text += run.keeps_ledger ? ledger_line(run.ledger.energy_by_cause) + excess_line(run.ledger.energy_excess)
+                             : "\n";
     text += contact_line(run) + sleep_line(run.profile) + time_line(run);
     return text;
 }

@@ -83,6 +83,12 @@ void add_accuracy(const Json& summary, Page& page) {
     if (summary.contains("energy_by_cause"))
         table.rows.push_back({"energy that no cause explains",
                               rounded(number_of(summary.at("energy_by_cause").at("unexplained"))), "J"});
+    if (summary.contains("energy_excess"))
+        for (const auto& [rule, excess] : summary.at("energy_excess").items())
+            if (number_of(excess) > 0)
+                table.rows.push_back({rule == "passive" ? "energy above the start, undriven"
+                                                        : "energy from " + rule + ", most in a step",
+                                      rounded(number_of(excess)), "J"});
     table.rows.push_back({"touching contacts at the end", plain(contacts.at("touching")), ""});
     table.rows.push_back({"their mean overlap", overlap("overlap_mean"), "% of the smaller radius"});
     table.rows.push_back({"their largest overlap", overlap("overlap_max"), "% of the smaller radius"});

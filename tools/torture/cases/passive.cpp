@@ -31,6 +31,9 @@ Outcome run(const PassiveTraits& traits, Solver solver, Precision precision, con
                                  {"outside", static_cast<double>(outside), 0},
                                  {"by restitution", books.restitution_gain()},
                                  {"by correction", books.correction_gain()},
+                                 {"restitution excess", books.excess().restitution},
+                                 {"correction excess", books.excess().correction},
+                                 {"passive excess", books.excess().passive},
                                  {"overlap", overlap}},
                     .failure = watch.failure()};
     tell_times(outcome, watch);

@@ -1,0 +1,136 @@
+// The rules of energy that every step is checked by (docs/how-a-step-works.md#check_energy), in whole worlds.
+#include <doctest/doctest.h>
+#include <carom/carom.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "support/report.hpp"
+#include "support/scenes.hpp"
+#include "support/trial.hpp"
+
+using namespace carom;
+using namespace carom::test;
+
+namespace {
+
+constexpr double kStep = 1.0 / 60, kGravity = 10, kRadius = 0.5;
+
+/// A column of discs of 1 kg that are in each other and in the floor by `depth` [m].
+Scene pressed_column(int discs, double depth) {
+    Scene scene;
+    scene.gravity = {0, -kGravity};
+    scene.walls = floor_at(0);
+    scene.effects.ledger = true;
+    scene.accuracy.solver = Solver::soft;
+    for (int i = 0; i < discs; ++i)
+        scene.add(disc(kRadius, 1, {0, kRadius - depth + i * (2 * kRadius - depth)}));
+    return scene;
+}
+
+/// An elastic gas of smooth discs in a box, which falls if there is gravity.
+Scene elastic_gas(double gravity) {
+    Scene scene;
+    scene.gravity = {0, -gravity};
+    scene.walls = Walls{.min = {0, 0}, .max = {12, 12}, .material = bouncy(1)};
+    scene.effects.ledger = true;
+    for (int i = 0; i < 36; ++i)
+        scene.add(disc(0.4, 1 + 0.1 * (i % 3), {1 + 2.0 * (i % 6), 1 + 2.0 * (i / 6)},
+                       {3 * std::cos(2.4 * i), 3 * std::sin(2.4 * i)}, 1));
+    return scene;
+}
+
+bool has_stage(const Plan& plan, std::string_view name) {
+    for (const auto& stage : plan.stages)
+        if (stage.name == name) return true;
+    return false;
+}
+
+}  // namespace
+
+TEST_SUITE("hard cases/energy rules") {
+    // Disc i rises by i + 1 overlaps. None of that is there before, so that without what overlaps are worth
+    // the check would have all of it as excess.
+    TEST_CASE_TEMPLATE("a column that begins in itself is lifted by what its overlap is worth", Real, float,
+                       double) {
+        for (const int discs : {1, 2, 5}) {
+            constexpr double kDepth = 0.04;  // m
+            BasicWorld<Real> world(pressed_column(discs, kDepth));
+            const double all = kGravity * kDepth * 0.5 * discs * (discs + 1);  // J
+            for (int i = 0; i < 240; ++i) world.step(kStep);
+            const Ledger ledger = world.ledger();
+            CAPTURE(discs);
+            report(discs, ": lifted by ", ledger.energy_by_cause.correction / all, " of the overlap");
+            CHECK(ledger.energy.total() - ledger.initial.total() > 0.85 * all);
+            CHECK(ledger.energy_by_cause.correction < 1.001 * all);
+            CHECK(ledger.energy_excess.correction == 0);
+            CHECK(ledger.energy_excess.passive == 0);
+        }
+    }
+
+    TEST_CASE_TEMPLATE("elastic gases keep the rules under solvers that take each impact at its time", Real,
+                       float, double) {
+        for (const Solver solver : {Solver::event, Solver::impulse})
+            for (const double gravity : {0.0, kGravity}) {
+                BasicWorld<Real> world(elastic_gas(gravity), {.solver = solver});
+                for (int i = 0; i < 300; ++i) world.step(kStep);
+                const Ledger ledger = world.ledger();
+                CAPTURE(world.plan().solver);
+                CAPTURE(gravity);
+                REQUIRE(world.profile().impacts > 100);
+                CHECK(ledger.energy.total() == doctest::Approx(ledger.initial.total()).epsilon(1e-4));
+                CHECK(ledger.energy_excess.restitution == 0);
+                CHECK(ledger.energy_excess.correction == 0);
+                CHECK(ledger.energy_excess.passive == 0);
+            }
+    }
+
+    // A rod of 1 m that begins 1.5 m long draws 2 kg up by .5 m, by displacement alone, where nothing
+    // overlaps.
+    TEST_CASE_TEMPLATE(
+        "what displacement gives that no overlap is worth is excess, and part of a saved state", Real, float,
+        double) {
+        Scene scene;
+        scene.gravity = {0, -kGravity};
+        scene.effects.ledger = true;
+        const BodyId bob = scene.add(disc(0.1, 2, {0, -1.5}));
+        scene.add(Joint{.b = bob, .kind = DistanceJoint{.length = 1}});
+        BasicWorld<Real> world(scene), restored(scene);
+        for (int i = 0; i < 120; ++i) world.step(kStep);
+        const EnergyExcess excess = world.ledger().energy_excess;
+        CHECK(excess.restitution == 0);
+        CHECK(excess.correction == doctest::Approx(10).epsilon(1e-3));
+        CHECK(excess.passive == doctest::Approx(10).epsilon(1e-3));
+
+        std::vector<std::byte> bytes(world.state_bytes());
+        world.save_state(bytes);
+        restored.restore_state(bytes);
+        restored.step(kStep);
+        CHECK(restored.ledger().energy_excess.correction == excess.correction);
+        CHECK(restored.ledger().energy_excess.passive == excess.passive);
+        // What it has now is what a call leaves it with: from there it may fall, and not rise.
+        world.set_velocity(bob, {0, 0.001});
+        world.step(kStep);
+        CHECK(world.ledger().energy_excess.passive == excess.passive);
+    }
+
+    // What has no ledger pays nothing: no stage is called for. Debug builds check every world.
+    TEST_CASE("worlds are checked where they have a ledger, and say nothing where they have none") {
+        for (const Solver solver : {Solver::event, Solver::impulse, Solver::soft})
+            for (const bool has_ledger : {true, false}) {
+                Scene scene = elastic_gas(0);
+                scene.effects.ledger = has_ledger;
+                World world(scene, {.solver = solver});
+                world.step(kStep);
+#ifdef NDEBUG
+                CHECK(has_stage(world.plan(), "check_energy") == has_ledger);
+#else
+                CHECK(has_stage(world.plan(), "check_energy"));
+#endif
+                if (has_ledger) continue;
+                CHECK(world.ledger().energy_by_cause.restitution == 0);
+                CHECK(world.ledger().energy_excess.passive == 0);
+            }
+    }
+}
