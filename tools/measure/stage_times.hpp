@@ -11,7 +11,7 @@ namespace carom::measure {
 /// one. A profile lists the stages that have run so far, so one stage may have other places in both.
 std::vector<StageTime> stage_times_between(const Profile& before, const Profile& after);
 
-/// That of one stage; no calls and no seconds if it is not among them.
+/// The time of one stage [s] and its calls; zero if it is not among them.
 StageTime time_of_stage(const std::vector<StageTime>& times, std::string_view name);
 
 }  // namespace carom::measure

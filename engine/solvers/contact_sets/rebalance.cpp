@@ -28,7 +28,7 @@ constexpr std::size_t kMostLooks = 20000;
 /// loosen what holds together around a hole.
 constexpr std::size_t kLooksOfLight = 200;
 constexpr double kHeavy = 4;
-/// And for each further one that goes in the same step: where many go the rest falls anyway.
+/// Looks for each further body that goes in the same step: where many go the rest falls anyway.
 constexpr std::size_t kLooksOfNext = 60;
 /// Bodies around holes are looked at alone if no more contacts were lost; around is within so many radii.
 constexpr std::size_t kFewLost = 16;
@@ -193,7 +193,8 @@ void Rebalance<Real>::begin_flows(std::span<const LostContact> lost) {
         }
         most_looks_ += most_looks_ == 0 ? kLooksOfLight : kLooksOfNext;
         if (!(up > down)) continue;
-        // What is known by its impulses alone bore that; in a heap that moves these are those of blows, too.
+        // Impulses tell what an edge bore that is gone. A body is told by its mass: in a heap that moves its
+        // impulses are those of blows, too.
         const double borne = (up - down) / std::sqrt(length_squared(gain_)),
                      mass = lost[first].is_impulse_known ? lost[first].mass : borne;
         if (mass > kHeavy * heaviest) most_looks_ = kMostLooks;

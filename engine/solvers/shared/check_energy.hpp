@@ -27,7 +27,7 @@ struct KeptEnergyRules {
 ///
 /// Each may be exceeded by rounding: a velocity is rounded kRoundings times a substep, each time by half the
 /// distance to the next number of the world's precision, which changes an energy by twice that share of it.
-/// Of the energy all of these count as if they had one sign. Cost: 2 ns a body.
+/// All roundings of an energy count as if they had one sign. Cost: 2 ns a body.
 template <class Real>
 void check_energy(WorldState<Real>& world, int substeps, const KeptEnergyRules& kept);
 

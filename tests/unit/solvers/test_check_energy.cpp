@@ -93,7 +93,7 @@ TEST_SUITE("solvers/check energy") {
         CHECK(inside.excess().passive == 0);
         inside.world().bodies.position_y[0] = 1;  // 15 J more
         inside.check();
-        // Of three steps, in which motion and height have had 9, 4 and 5, 4 and 20 J.
+        // Rounding counts for three steps: 9 J of motion, then 4 J and 5 J of height, then 4 J and 20 J.
         CHECK(inside.excess().passive == close_to(15 - round_off<Real>(kAtStart + 9 + 24)));
         inside.world().bodies.position_y[0] = 0;
         inside.check();
