@@ -1,5 +1,5 @@
-// B41 of docs/hard-cases.md: heavy and light discs mixed in a pile, and a heavy one on a column of light
-// ones.
+// B34 and B41 of docs/hard-cases.md: heavy and light discs mixed in a pile, and a heavy one on a column of
+// light ones.
 #include "support/effort.hpp"
 #include "support/hard_case.hpp"
 #include "support/rms_speed.hpp"

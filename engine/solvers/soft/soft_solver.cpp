@@ -284,7 +284,7 @@ void SoftSolver<Real>::solve_wedged_bodies() {
 
 template <class Real>
 void SoftSolver<Real>::solve_uneven_contacts(bool is_last) {
-    if (masses_.are_uneven()) corrections_.uneven.solve(view(), sweeps_, is_last);
+    if (masses_.are_uneven()) counters.uneven_sweeps += corrections_.uneven.solve(view(), sweeps_, is_last);
     corrections_.shape_turns.settle(view(), sweeps_, paths);
 }
 

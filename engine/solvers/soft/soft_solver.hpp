@@ -32,6 +32,7 @@ struct SoftCounters {
     std::int64_t contacts = 0;  ///< in the last step
     std::int64_t colours = 0;
     std::int64_t overflow = 0;
+    std::int64_t uneven_sweeps = 0;  ///< over contacts of uneven masses, beside those that all contacts get
 };
 
 /// Solver `soft`: contacts at rest, with friction and rotation.

@@ -8,7 +8,9 @@
 namespace carom {
 namespace {
 
-constexpr double kVeryUneven = 101;  // ratio of masses, with room for rounded ones
+/// Ratios of masses beyond which sweeps do not do, with room for rounded ones.
+constexpr double kVeryUneven = 1010;
+constexpr double kVeryUnevenSmooth = 303;  // without friction
 /// Heavy and light bodies are mixed if there is one of either in so many bodies.
 constexpr std::size_t kMixed = 64;
 
@@ -32,14 +34,16 @@ bool BodyMasses<Real>::derive(const Bodies<Real>& bodies, bool has_friction) {
         heaviest = heaviest > 0 ? std::fmin(heaviest, inverse) : inverse;
     }
     if (vary_) std::fill(inverse_.begin() + bodies.moving(), inverse_.end(), Real(0));
+    ratio_ = heaviest > 0 ? lightest / heaviest : 1;
     are_uneven_ = lightest > LocalSolve<Real>::kUneven * heaviest;
-    are_very_uneven_ = lightest > kVeryUneven * heaviest;
+    const double very_uneven = has_friction ? kVeryUneven : kVeryUnevenSmooth;
+    are_very_uneven_ = lightest > very_uneven * heaviest;
     std::size_t light = 0, heavy = 0;
     for (std::size_t row = 0; row < bodies.count && are_very_uneven_; ++row) {
         const double inverse = bodies.inverse_mass(row);
         if (!(inverse > 0)) continue;
-        light += inverse > kVeryUneven * heaviest ? 1 : 0;
-        heavy += lightest > kVeryUneven * inverse ? 1 : 0;
+        light += inverse > very_uneven * heaviest ? 1 : 0;
+        heavy += lightest > very_uneven * inverse ? 1 : 0;
     }
     are_mixed_ = kMixed * std::min(light, heavy) >= std::max<std::size_t>(bodies.count, 1);
     return are_known_ = true;

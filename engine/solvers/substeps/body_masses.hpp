@@ -33,7 +33,10 @@ class BodyMasses {
     /// Whether the heaviest body is so much heavier than the lightest one that sweeps do not converge soon
     /// enough: solvers/contact_sets/local_solve.hpp.
     bool are_uneven() const { return are_uneven_; }
-    /// Whether the heaviest body is more than a hundred times heavier than the lightest one.
+    /// How many times heavier the heaviest body is than the lightest one; 1 where masses do not vary.
+    double ratio() const { return ratio_; }
+    /// Whether the heaviest body is more than a thousand times heavier than the lightest one, without
+    /// friction more than three hundred times.
     bool are_very_uneven() const { return are_very_uneven_; }
     /// Whether bodies that differ so much are mixed, so that even that may not do.
     bool are_mixed() const { return are_mixed_; }
@@ -43,6 +46,7 @@ class BodyMasses {
   private:
     bool are_known_ = false, has_followed_rows_ = false, vary_ = false, some_are_fixed_ = false;
     bool are_uneven_ = false, are_very_uneven_ = false, are_mixed_ = false;
+    double ratio_ = 1;
     Column<Real> inverse_;
 };
 

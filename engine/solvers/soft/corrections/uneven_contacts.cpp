@@ -19,10 +19,26 @@ constexpr double kLittle = 0.02;
 /// Steps in which sweeps must leave little before contacts are solved locally again.
 constexpr int kPatience = 60;
 
-// Sweeps of many contacts of uneven masses, after those that all contacts get: over-relaxed ones, and the
-// last ones that are not. docs/decisions/0064-uneven-masses-in-sweeps.md has what else was tried.
-constexpr int kRelaxedSweeps = 9;
-constexpr int kLastSweeps = 2;
+// Sweeps of many contacts of uneven masses, after those that all contacts get: over-relaxed ones until these
+// change little, and the last ones that are not. docs/decisions/0064-uneven-masses-in-sweeps.md has what else
+// was tried.
+/// Over-relaxed sweeps at most: this share of what the ratio of masses exceeds kFewUpTo by, within the
+/// bounds.
+constexpr double kSweepsOfRatio = 0.2;
+constexpr double kFewUpTo = 50;
+constexpr double kFewestRelaxed = 9;
+constexpr double kMostRelaxed = 60;
+/// Sweeps behind which velocities are compared with those before them.
+constexpr int kTogether = 3;
+/// Over-relaxed sweeps end when none changes a velocity by more than this share of what gravity adds in a
+/// substep; where masses differ by more than a hundred times by less, for loads are so much larger then.
+constexpr double kEnough = 0.03;
+constexpr double kEnoughOfRatio = 3;
+constexpr int kLastSweeps = 1;
+/// Heaps without friction, which small errors move for ever, are swept to the end.
+constexpr int kLastSmoothSweeps = 2;
+/// Overlaps beyond this share of the smaller radius are parted by equal shares as well.
+constexpr double kPartedFrom = 0.02;
 
 template <class Real>
 void store_impulses(ContactRows<Real>& rows, std::size_t i, const ContactImpulses<double>& impulses) {
@@ -42,6 +58,9 @@ void UnevenContacts<Real>::find(const ContactRows<Real>& pairs, const BodyMasses
     if (masses.are_very_uneven() || !local_.has_many()) return;
     blocks_.assign(pairs.is_live.size(), 0);
     for (const std::uint32_t i : local_.found()) blocks_[i / kContactBlock] = 1;
+    most_relaxed_ = static_cast<int>(
+        std::clamp(kSweepsOfRatio * (masses.ratio() - kFewUpTo), kFewestRelaxed, kMostRelaxed));
+    enough_ = std::min(kEnough, kEnoughOfRatio / masses.ratio());
 }
 
 template <class Real>
@@ -66,7 +85,7 @@ template <class Real>
 void UnevenContacts<Real>::begin_step(const StepView<Real>& step, const WorldState<Real>& world,
                                       bool are_mixed) {
     if (are_swept())
-        local_.leave_step(), list_runs(step.graph.pairs);
+        local_.leave_step(), list_runs(step.graph.pairs), list_swept(step);
     else
         local_.begin_step(step.graph.pairs, step.supports);
     is_listed_ = false;
@@ -168,54 +187,108 @@ void UnevenContacts<Real>::relax(const StepView<Real>& step, ContactRelaxation<k
                        contacts_[i].impulses);
 }
 
-/// Takes away a share of an overlap, by moving both bodies equally: geometry alone.
+/// Takes away a share of an overlap beyond the slop, by moving both bodies equally: geometry alone.
+/// @param b  row; below zero: nothing moves it
 template <class Real>
-void UnevenContacts<Real>::part(const StepView<Real>& step, const SolveContacts<Real>& k,
-                                const LocalContact& c) const {
+void UnevenContacts<Real>::part(const StepView<Real>& step, const SolveContacts<Real>& k, std::size_t contact,
+                                std::int32_t a, std::int32_t b, double slop) const {
     Column<Real>& displacement = step.records.displacement;
-    const auto moved = [&](std::int32_t body) { return &displacement[2 * index(rows_[index(body)])]; };
+    const double nx = static_cast<double>(k.contacts.normal_x[contact]),
+                 ny = static_cast<double>(k.contacts.normal_y[contact]);
+    const auto moved = [&](std::int32_t row) { return &displacement[2 * index(row)]; };
     const auto along = [&](const Real* at) {
-        return static_cast<double>(at[0]) * c.terms.nx + static_cast<double>(at[1]) * c.terms.ny;
+        return static_cast<double>(at[0]) * nx + static_cast<double>(at[1]) * ny;
     };
-    double separation = static_cast<double>(k.contacts.separation[c.contact]) - along(moved(c.a));
-    separation += c.b < 0 ? c.surface_normal * static_cast<double>(k.elapsed) : along(moved(c.b));
-    const double unit = k.contacts.smaller ? static_cast<double>(k.contacts.smaller[c.contact]) : 1;
-    const double depth = -separation - static_cast<double>(k.slop) * unit;
+    double separation = static_cast<double>(k.contacts.separation[contact]) - along(moved(a));
+    separation +=
+        b < 0 ? static_cast<double>(k.contacts.surface_normal[contact]) * static_cast<double>(k.elapsed)
+              : along(moved(b));
+    const double unit = k.contacts.smaller ? static_cast<double>(k.contacts.smaller[contact]) : 1;
+    const double depth = -separation - slop * unit;
     if (!(depth > 0)) return;
     const double push =
         std::fmin(static_cast<double>(k.recovery) * depth, static_cast<double>(k.push) * unit);
-    const auto move = [&](std::int32_t body, double by) {
-        moved(body)[0] += static_cast<Real>(by * c.terms.nx),
-            moved(body)[1] += static_cast<Real>(by * c.terms.ny);
+    const auto move = [&](std::int32_t row, double by) {
+        moved(row)[0] += static_cast<Real>(by * nx), moved(row)[1] += static_cast<Real>(by * ny);
     };
-    move(c.a, c.b < 0 ? -push : -0.5 * push);
-    if (c.b >= 0) move(c.b, 0.5 * push);
+    move(a, b < 0 ? -push : -0.5 * push);
+    if (b >= 0) move(b, 0.5 * push);
+}
+
+/// Lists the bodies of the contacts that are swept, and of these contacts those that overlap by more than is
+/// left to the sweeps.
+template <class Real>
+void UnevenContacts<Real>::list_swept(const StepView<Real>& step) {
+    const ContactRows<Real>& pairs = step.graph.pairs;
+    const std::size_t bodies = step.records.count();
+    const Real* smaller = pairs.smaller.empty() ? nullptr : pairs.smaller.data();
+    const auto from = static_cast<Real>(kPartedFrom * step.settings.radius);
+    deep_.clear(), swept_.clear(), number_of_.assign(bodies, -1);
+    const auto add = [&](std::int32_t row) {
+        if (index(row) >= bodies || number_of_[index(row)] >= 0) return;  // padding, or known
+        number_of_[index(row)] = 0, swept_.push_back(row);
+    };
+    for (const auto& run : runs_.runs)
+        for (std::size_t i = kHalfBlock * run.first; i < kHalfBlock * run.last; ++i) {
+            add(pairs.a[i]), add(pairs.b[i]);
+            if (pairs.separation[i] < -from * (smaller ? smaller[i] : Real(1)))
+                deep_.push_back(static_cast<std::uint32_t>(i));
+        }
+    before_.resize(4 * swept_.size());
+}
+
+/// Whether a body's velocity has changed by more than `limit` [m/s] since it was looked at the last time.
+template <class Real>
+bool UnevenContacts<Real>::has_changed(const StepView<Real>& step, double limit) {
+    const auto most = static_cast<Real>(limit);
+    unsigned changed = 0;
+    Real* before = before_.data();
+    for (const std::int32_t row : swept_) {
+        const Real* velocity = &step.records.velocity[4 * index(row)];
+        for (std::size_t k = 0; k < 4; ++k) changed |= std::fabs(velocity[k] - before[k]) > most;
+        std::copy_n(velocity, 4, before);
+        before += 4;
+    }
+    return changed != 0;
 }
 
 template <class Real>
-void UnevenContacts<Real>::sweep(const StepView<Real>& step, ContactSweeps<Real>& sweeps,
-                                 bool is_last) const {
+int UnevenContacts<Real>::sweep(const StepView<Real>& step, ContactSweeps<Real>& sweeps, bool is_last) {
     using Sweep = typename ContactSweeps<Real>::Sweep;
     using Blocks = typename ContactSweeps<Real>::Blocks;
     const ContactKernels<Real>& kernels = *step.loops.contacts;
     Sweep relaxed{kernels.next_pairs, kernels.next_supports, is_last ? Blocks::all : Blocks::restless};
     relaxed.of_runs = &runs_;
     Sweep last = relaxed;
-    relaxed.times = kRelaxedSweeps, relaxed.over_relaxation = ContactSweeps<Real>::kUnevenOverRelaxation;
-    last.times = kLastSweeps;
-    const std::array<Sweep, 2> both{relaxed, last};
-    sweeps.run(step, both);
+    relaxed.over_relaxation = ContactSweeps<Real>::kUnevenOverRelaxation;
+    const bool is_smooth = step.settings.is_smooth_heap;
+    last.times = is_smooth ? kLastSmoothSweeps : kLastSweeps;
+    relaxed.times = is_smooth ? most_relaxed_ : kTogether;
+    if (!is_smooth) has_changed(step, 0);
+    int done = 0;
+    while (done < most_relaxed_) {
+        relaxed.times = std::min(relaxed.times, most_relaxed_ - done);
+        sweeps.run(step, {&relaxed, 1});
+        done += relaxed.times;
+        const double enough = enough_ * relaxed.times * step.terms.fall_speed();
+        if (done < most_relaxed_ && !has_changed(step, enough)) break;
+    }
+    sweeps.run(step, {&last, 1});
+    const SolveContacts<Real> k = ContactSweeps<Real>::arguments(step, step.graph.pairs);
+    const double slop = kPartedFrom * step.settings.radius;
+    for (const std::uint32_t i : deep_) part(step, k, i, step.graph.pairs.a[i], step.graph.pairs.b[i], slop);
+    return done + last.times;
 }
 
 template <class Real>
-void UnevenContacts<Real>::solve(const StepView<Real>& step, ContactSweeps<Real>& sweeps, bool is_last) {
+int UnevenContacts<Real>::solve(const StepView<Real>& step, ContactSweeps<Real>& sweeps, bool is_last) {
     if (are_swept()) return sweep(step, sweeps, is_last);
     const SolveContacts<Real> on_pairs = ContactSweeps<Real>::arguments(step, step.graph.pairs),
                               on_supports = ContactSweeps<Real>::with_rows(on_pairs, step.supports);
     const double fall = step.terms.fall_speed();
     if (!is_listed_) {
         const double left = local_.solve(on_pairs, on_supports, fall);
-        if (!may_relax_ || !(left > kMuch * fall)) return;
+        if (!may_relax_ || !(left > kMuch * fall)) return 0;
         list(step);
     }
     const auto arguments = [&](std::size_t i) -> const SolveContacts<Real>& {
@@ -229,7 +302,12 @@ void UnevenContacts<Real>::solve(const StepView<Real>& step, ContactSweeps<Real>
         else
             relax(step, smooth_);
     }
-    for (std::size_t i = 0; i < contacts_.size(); ++i) part(step, arguments(i), contacts_[i]);
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+        const LocalContact& c = contacts_[i];
+        const std::int32_t b = c.b < 0 ? -1 : rows_[index(c.b)];
+        part(step, arguments(i), c.contact, rows_[index(c.a)], b, static_cast<double>(on_pairs.slop));
+    }
+    return 0;
 }
 
 template class UnevenContacts<float>;
