@@ -263,12 +263,13 @@ template <class Real, class F, class Mask>
                   .size = pair.size};
 }
 
-/// A pair as the face sees it from which one is farthest from the other, in the frame of a.
+/// A pair as one of two faces sees it, in the frame of a.
+/// @param of_a, of_b  the face of each from which the other is farthest
 template <class Real, class F>
-[[gnu::always_inline]] inline void find_face(const ConvexPair<F>& pair, FacedPair<F>& found) {
+[[gnu::always_inline]] inline void see_face(const ConvexPair<F>& pair, const Face<F>& of_a,
+                                            const Face<F>& of_b, FacedPair<F>& found) {
     using simd::select;
     const F zero(Real(0)), one(Real(1));
-    const Face<F> of_a = farthest_face<Real>(pair.a, pair.b), of_b = farthest_face<Real>(pair.b, pair.a);
     const F cosine = of_a.normal_x * of_b.normal_x + of_a.normal_y * of_b.normal_y;
     const auto swapped = b_has_reference<Real>(of_a.separation, of_b.separation, cosine, pair.size);
     Face<F> face;
@@ -280,6 +281,13 @@ template <class Real, class F>
     face.normal_x = select(nx * nx + ny * ny == zero, one, nx);  // two discs: any frame will do
     face.normal_y = ny;
     view_from<Real>(face, swapped, pair, found);
+}
+
+/// A pair as the face sees it from which one is farthest from the other, in the frame of a.
+template <class Real, class F>
+[[gnu::always_inline]] inline void find_face(const ConvexPair<F>& pair, FacedPair<F>& found) {
+    const Face<F> of_a = farthest_face<Real>(pair.a, pair.b), of_b = farthest_face<Real>(pair.b, pair.a);
+    see_face<Real>(pair, of_a, of_b, found);
 }
 
 }  // namespace

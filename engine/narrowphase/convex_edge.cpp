@@ -21,54 +21,117 @@ constexpr double kDeeperAlongOwn = 2;
 /// Normals this much shorter than 1 along the edge's own are its own: 1e-6 rad.
 constexpr double kOwnNormal = 1e-12;
 
-/// An edge, the body's frame and what the body sees of it.
+/// Distances beyond a margin by less than this share of the body's size are looked at whole: those of faces
+/// and those of points round apart.
+constexpr double kRoundingOfGap = 1e-9;
+
+/// A body in its own frame beside one edge after the other: only what is of the edge is written anew.
+struct SeenBody {
+    const PlacedConvex& body;
+    ConvexPair<double> pair;
+    int places;                     // of both polygons: two, or as many as the body has vertices
+    double heights[kMostVertices];  // m, of the faces over the centre
+
+    explicit SeenBody(const PlacedConvex& of) : body(of), places(std::max(of.shape.count, 2)) {
+        for (int i = 0; i < places; ++i) {
+            pair.a.x[i] = of.shape.x[i], pair.a.y[i] = of.shape.y[i];
+            pair.a.normal_x[i] = of.shape.normal_x[i], pair.a.normal_y[i] = of.shape.normal_y[i];
+            heights[i] = of.shape.normal_x[i] * of.shape.x[i] + of.shape.normal_y[i] * of.shape.y[i];
+        }
+        pair.a.count = of.shape.count, pair.a.last = places - 1;
+        pair.b.count = 2, pair.b.last = places - 1;
+        const Vec2 origin = rotate_back(of.turn, -of.centre);
+        pair.b_x = origin.x, pair.b_y = origin.y;
+        pair.radius_a = of.shape.radius, pair.radius_b = 0;
+        pair.size = of.shape.inradius;
+    }
+};
+
+/// An edge and what the body sees of it.
 struct SeenEdge {
     const PlacedConvex& body;
     const Edge& edge;
-    ConvexPair<double> pair;
-    Vec2 from, to;  // m, in the frame of the body
+    const ConvexPair<double>& pair;
+    Vec2 from, to;            // m, in the frame of the body
+    Vec2 left;                // unit normal, likewise
+    Face<double> of_a, of_b;  // of either, from which the other is farthest
 
-    SeenEdge(const PlacedConvex& of, const Edge& line) : body(of), edge(line) {
+    SeenEdge(SeenBody& seen, const Edge& line) : body(seen.body), edge(line), pair(seen.pair) {
         from = rotate_back(body.turn, edge.a - body.centre);
         to = rotate_back(body.turn, edge.b - body.centre);
-        const Vec2 n = normal_to(1);
-        take_polygon(body.shape, pair.a);
-        Polygons<double>& b = pair.b;
-        for (int i = 0; i < kMostVertices; ++i) {
-            const bool is_first = i == 0;
-            b.x[i] = is_first ? from.x : to.x, b.y[i] = is_first ? from.y : to.y;
-            // From `from` to `to` the outward normal is on the right, on the way back on the left.
-            b.normal_x[i] = is_first ? -n.x : n.x, b.normal_y[i] = is_first ? -n.y : n.y;
-        }
-        b.count = 2, b.last = kMostVertices - 1;
-        const Vec2 origin = rotate_back(body.turn, -body.centre);
-        pair.b_x = origin.x, pair.b_y = origin.y;
-        pair.radius_a = body.shape.radius, pair.radius_b = 0;
-        pair.size = body.shape.inradius;
-    }
-
-    /// The unit normal to the left (side 1) or right (-1), in the frame of the body.
-    Vec2 normal_to(double side) const {
         const Vec2 along = to - from;
-        return side / std::sqrt(length_squared(along)) * Vec2{-along.y, along.x};
+        left = 1 / std::sqrt(length_squared(along)) * Vec2{-along.y, along.x};
+        Polygons<double>& b = seen.pair.b;
+        // From `from` to `to` the outward normal is on the right, on the way back on the left.
+        b.x[0] = from.x, b.y[0] = from.y, b.normal_x[0] = -left.x, b.normal_y[0] = -left.y;
+        for (int i = 1; i < seen.places; ++i)
+            b.x[i] = to.x, b.y[i] = to.y, b.normal_x[i] = left.x, b.normal_y[i] = left.y;
+        find_faces(seen);
     }
 
-    Manifold<double> nearest() const {
+    /// What farthest_face() says of the body and of the edge, which has two faces back to back.
+    void find_faces(const SeenBody& seen) {
+        const Polygons<double>& a = pair.a;
+        double lowest = dot(left, {a.x[0], a.y[0]}), highest = lowest;
+        for (int i = 1; i < a.count; ++i) {
+            const double height = dot(left, {a.x[i], a.y[i]});
+            lowest = std::min(lowest, height), highest = std::max(highest, height);
+        }
+        const double on_left = lowest - dot(left, to), on_right = dot(left, from) - highest;
+        of_b = on_right > on_left ? Face<double>{on_right, -left.x, -left.y, from.x, from.y, to.x, to.y}
+                                  : Face<double>{on_left, left.x, left.y, to.x, to.y, from.x, from.y};
+        int best = a.last;
+        double farthest = 0;
+        for (int end = 0, i = a.last; end < a.count; i = end++) {
+            const Vec2 n{a.normal_x[i], a.normal_y[i]};
+            const double separation = std::min(dot(n, from), dot(n, to)) - seen.heights[i];
+            if (end == 0 || separation > farthest) farthest = separation, best = i;
+        }
+        const int next = best == a.last ? 0 : best + 1;
+        of_a = {a.count > 1 ? farthest : -kNoPoint,
+                a.normal_x[best],
+                a.normal_y[best],
+                a.x[best],
+                a.y[best],
+                a.x[next],
+                a.y[next]};
+    }
+
+    /// Whether they are farther apart than `margin` along the normal of a face of either, which is nearer
+    /// than their points are: most edges that are looked at are so.
+    bool are_apart(double margin) const {
+        const double beyond = margin + pair.radius_a + kRoundingOfGap * (margin + body.shape.extent);
+        return of_a.separation > beyond || of_b.separation > beyond;
+    }
+
+    FacedPair<double> nearest() const {
         FacedPair<double> faced;
-        find_face<double>(pair, faced);
-        return manifold_from(faced, body.turn);
+        see_face<double>(pair, of_a, of_b, faced);
+        return faced;
     }
 
     /// The manifold with the edge's own normal; without points where the body is not over the edge. What has
     /// just passed its end still is over it: rounding must not put it between two edges.
-    Manifold<double> along_own_normal(double side) const {
-        const Vec2 n = normal_to(side);
-        const bool is_left = side > 0;
-        const Vec2 start = is_left ? to : from, end = is_left ? from : to;
-        FacedPair<double> faced;
-        view_from<double>(Face<double>{0, n.x, n.y, start.x, start.y, end.x, end.y}, true, pair, faced);
-        faced.view.from -= kSameLine * pair.size, faced.view.to += kSameLine * pair.size;
-        Manifold<double> found = manifold_from(faced, body.turn);
+    /// @param nearest, found  how the pair sees itself, and the manifold of that
+    Manifold<double> along_own_normal(double side, const FacedPair<double>& nearest,
+                                      Manifold<double> found) const {
+        const Vec2 n = side * left;
+        const FaceView<double>& view = nearest.view;
+        const bool is_seen_from_here = nearest.side < 0 && nearest.normal_x == n.x && nearest.normal_y == n.y;
+        // Where all of the body's face is over the edge it does not matter where that ends.
+        const bool is_over = view.from < view.to && view.from <= view.low_along &&
+                             view.low_along <= view.high_along && view.high_along <= view.to;
+        if (!is_seen_from_here || !is_over) {
+            FacedPair<double> faced = nearest;
+            if (!is_seen_from_here) {
+                const bool is_left = side > 0;
+                const Vec2 start = is_left ? to : from, end = is_left ? from : to;
+                view_from<double>(Face<double>{0, n.x, n.y, start.x, start.y, end.x, end.y}, true, pair,
+                                  faced);
+            }
+            faced.view.from -= kSameLine * pair.size, faced.view.to += kSameLine * pair.size;
+            found = manifold_from(faced, body.turn);
+        }
         const Vec2 own = -rotate(body.turn, n);
         if (dot(own, {found.normal_x, found.normal_y}) < 1 - kOwnNormal)
             found.separation1 = found.separation2 = kNoPoint;
@@ -94,12 +157,15 @@ Vec2 place_of(const Manifold<double>& m, double lever_b) {
     return m.lever_b_t * normal_of(m) - lever_b * Vec2{-m.normal_y, m.normal_x};
 }
 
-/// Whether a line from the centre of the body to the point of the edge nearest to p passes through another
-/// edge of the chain: 1, or only meets its end: 0, or neither: -1.
-int crosses(const Edge& other, Vec2 centre, const Edge& edge, Vec2 p) {
-    const Vec2 along = edge.b - edge.a, way = other.b - other.a;
-    const double share = std::clamp(dot(p - edge.a, along) / length_squared(along), 0.0, 1.0);
-    const Vec2 point = edge.a + share * along;
+/// The point of an edge that is nearest to p.
+Vec2 nearest_point(const Edge& edge, Vec2 p) {
+    return edge.a + nearest_share(p, edge.a, edge.b) * (edge.b - edge.a);
+}
+
+/// Whether a line from the centre of the body to a point passes through another edge of the chain: 1, or only
+/// meets its end: 0, or neither: -1.
+int crosses(const Edge& other, Vec2 centre, Vec2 point) {
+    const Vec2 way = other.b - other.a;
     const double of_point = cross(way, point - other.a), of_centre = cross(way, centre - other.a);
     const double scale = kOwnNormal * length_squared(way);
     if (std::fabs(of_point) <= scale) return 0;
@@ -122,11 +188,13 @@ double bend(const Edge& edge, const Edge& neighbour, bool is_before) {
 /// which it does not touch.
 bool is_behind_neighbour(const SeenEdge& seen, std::span<const Edge> edges, const Manifold<double>& m,
                          double side) {
+    const Vec2 point1 = nearest_point(seen.edge, place_of(m, m.lever_b1)),
+               point2 = nearest_point(seen.edge, place_of(m, m.lever_b2));
     for (const std::int32_t number : {seen.edge.previous, seen.edge.next}) {
         if (number < 0) continue;
         const Edge& other = edges[static_cast<std::size_t>(number)];
-        const int first = crosses(other, seen.body.centre, seen.edge, place_of(m, m.lever_b1));
-        const int second = crosses(other, seen.body.centre, seen.edge, place_of(m, m.lever_b2));
+        const int first = crosses(other, seen.body.centre, point1),
+                  second = crosses(other, seen.body.centre, point2);
         if (first + second > 0) return true;
         // Neither of two edges in one line has anything behind it, though round-off may bend them.
         const double towards = side * bend(seen.edge, other, number == seen.edge.previous);
@@ -136,11 +204,13 @@ bool is_behind_neighbour(const SeenEdge& seen, std::span<const Edge> edges, cons
 }
 
 /// What an edge may push with, of what it would push with were it alone.
-Manifold<double> allowed(const SeenEdge& seen, std::span<const Edge> edges, double margin) {
-    Manifold<double> found = seen.nearest();
+/// @param left  its left unit normal
+Manifold<double> allowed(const SeenEdge& seen, std::span<const Edge> edges, Vec2 left, double margin) {
+    const FacedPair<double> nearest = seen.nearest();
+    Manifold<double> found = manifold_from(nearest, seen.body.turn);
     if (lowest_of(found) > margin) return found;
     const Edge& edge = seen.edge;
-    const Vec2 push = -normal_of(found), left = left_normal(edge);  // push: from the edge to the body
+    const Vec2 push = -normal_of(found);  // from the edge to the body
     const double centre_side = dot(seen.body.centre - edge.a, left) < 0 ? -1 : 1;
     const double lift = dot(push, left);
     const double side = std::fabs(lift) < kEndOn ? centre_side : lift < 0 ? -1 : 1;
@@ -152,7 +222,7 @@ Manifold<double> allowed(const SeenEdge& seen, std::span<const Edge> edges, doub
     };
     const double to_own = dot(push, own);
     const auto flat = [&](double on) {
-        const Manifold<double> m = seen.along_own_normal(on);
+        const Manifold<double> m = seen.along_own_normal(on, nearest, found);
         return lowest_of(m) > margin ? nothing() : m;
     };
     if (to_own > 1 - kOwnNormal)
@@ -192,16 +262,9 @@ Manifold<double> allowed(const SeenEdge& seen, std::span<const Edge> edges, doub
     return nothing();
 }
 
-/// Points of edges in one line: of all the two that are extreme along it.
-struct Line {
-    Manifold<double> manifold;
-    std::int32_t edge;
-    Vec2 normal;
-    double height;  // m, of the edge along the normal
-};
-
 /// Levers about b fall along the tangent: r x n = -(r . t).
-void take_extremes(Line& line, const Manifold<double>& m, std::int32_t edge) {
+/// Points of edges in one line: of all the two that are extreme along it.
+void take_extremes(ChainManifold& line, const Manifold<double>& m, std::int32_t edge) {
     Manifold<double>& to = line.manifold;
     if (lowest_of(m) < lowest_of(to)) {
         line.edge = edge;
@@ -250,31 +313,30 @@ Manifold<double> manifold_on_plane(const PlacedConvex& body, Vec2 normal, Vec2 p
 void find_chain_manifolds(const PlacedConvex& body, std::span<const Edge> edges,
                           std::span<const std::int32_t> near, double margin,
                           std::vector<ChainManifold>& found) {
-    std::vector<Line> lines;
     const double size = body.shape.inradius, reach = kWiderCircle * (body.shape.extent + margin);
+    const auto first = static_cast<std::ptrdiff_t>(found.size());
+    SeenBody seen_body(body);
     for (const std::int32_t number : near) {
         const Edge& edge = edges[static_cast<std::size_t>(number)];
         if (distance_squared(body.centre, edge.a, edge.b) > reach * reach) continue;
-        const SeenEdge seen(body, edge);
-        const Manifold<double> m = allowed(seen, edges, margin);
+        const SeenEdge seen(seen_body, edge);
+        if (seen.are_apart(margin)) continue;
+        const Vec2 left = left_normal(edge);
+        const Manifold<double> m = allowed(seen, edges, left, margin);
         if (lowest_of(m) > margin) continue;
         const Vec2 n = normal_of(m);
-        const double height = dot(n, seen.edge.a);
-        const bool is_own = std::fabs(dot(n, left_normal(seen.edge))) > 1 - kSameLine * kSameLine;
-        const auto line = std::find_if(lines.begin(), lines.end(), [&](const Line& other) {
-            return is_own && length_squared(n - other.normal) < kSameLine * kSameLine &&
+        const double height = dot(n, edge.a);
+        const bool is_own = std::fabs(dot(n, left)) > 1 - kSameLine * kSameLine;
+        const auto line = std::find_if(found.begin() + first, found.end(), [&](const ChainManifold& other) {
+            return is_own && length_squared(n - normal_of(other.manifold)) < kSameLine * kSameLine &&
                    std::fabs(height - other.height) < kSameLine * size;
         });
-        if (line == lines.end())
-            lines.push_back({m, number, n, is_own ? height : kFar});
+        if (line == found.end())
+            found.push_back({m, number, is_own ? height : kFar});
         else
             take_extremes(*line, m, number);
     }
-    const auto first = static_cast<std::ptrdiff_t>(found.size());
-    for (Line& line : lines) {
-        join_points(line.manifold, size);
-        found.push_back({line.manifold, line.edge});
-    }
+    for (auto line = found.begin() + first; line != found.end(); ++line) join_points(line->manifold, size);
     std::sort(found.begin() + first, found.end(),
               [](const ChainManifold& l, const ChainManifold& r) { return l.edge < r.edge; });
 }

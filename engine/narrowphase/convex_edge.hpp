@@ -23,6 +23,7 @@ Manifold<double> manifold_on_plane(const PlacedConvex& body, Vec2 normal, Vec2 p
 struct ChainManifold {
     Manifold<double> manifold;  // levers of b are about the origin of the chain's frame
     std::int32_t edge;          // number of the edge at the lowest point
+    double height;              // m, of the line over the origin, along the normal; 1e15: of what is no line
 };
 
 /// What of a chain touches a convex shape, both in the frame of the chain's body. At a joint an edge pushes

@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstring>
 #include <numeric>
 
 using namespace carom;
@@ -138,6 +140,34 @@ TEST_SUITE("narrowphase/convex edge") {
                 CHECK(found[0].manifold.normal_y < 0);
                 CHECK(lowest_of(found[0].manifold) == doctest::Approx(gap).epsilon(1e-9));
             }
+    }
+
+    TEST_CASE(
+        "a shape of few vertices has the contacts, to the last bit, of one that repeats its last vertex") {
+        Draw draw(37);
+        const auto same = [](const ChainManifold& l, const ChainManifold& r) {
+            return l.edge == r.edge && std::memcmp(&l.manifold, &r.manifold, sizeof(l.manifold)) == 0;
+        };
+        for (const ShapeKind kind : {capsule, box, rounded_box, triangle, polygon, thin}) {
+            std::size_t several = 0, single = 0;
+            for (int i = 0; i < 1500; ++i) {
+                std::vector<Vec2> points;
+                const double rough = draw(0, 0.2);
+                for (int k = 0; k <= 12; ++k) points.push_back({-3 + 0.5 * k, draw(-rough, rough)});
+                const Ground chain(points);
+                const PlacedConvex few = body_at(draw_shape<double>(kind, draw, draw(0.1, 0.8)),
+                                                 {draw(-2, 2), draw(-0.1, 0.9)}, draw(-3, 3));
+                PlacedConvex many = few;
+                many.shape.count = kMostVertices;
+                const double margin = draw(0, 0.2);
+                const auto found = chain.touching(few, margin);
+                REQUIRE(std::ranges::equal(found, chain.touching(many, margin), same));
+                several += found.size() > 1, single += found.size() == 1;
+            }
+            CAPTURE(static_cast<int>(kind));
+            CHECK(several > 20);
+            CHECK(single > 50);
+        }
     }
 
     TEST_CASE("a box that hangs over a ledge is not pushed back by the face of the ledge") {

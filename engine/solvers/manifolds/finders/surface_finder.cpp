@@ -61,12 +61,12 @@ Manifold<double> turned(Manifold<double> m, const Rotation& turn) {
 }
 
 /// An edge, made longer at ends where its chain goes straight on or bends towards a body: there it has no end
-/// that the body could pass. @param body  in the frame of the chain
-Edge with_what_goes_on(std::span<const Edge> edges, std::int32_t number, const MovingConvex& body) {
+/// that the body could pass.
+/// @param centre  m, of the body, in the frame of the chain  @param extent  m, of its shape
+Edge with_what_goes_on(std::span<const Edge> edges, std::int32_t number, Vec2 centre, double extent) {
     Edge edge = edges[static_cast<std::size_t>(number)];
     const Vec2 along = edge.b - edge.a;
-    const double length = std::sqrt(length_squared(along)),
-                 side = cross(along, body.centre - edge.a) < 0 ? -1 : 1;
+    const double length = std::sqrt(length_squared(along)), side = cross(along, centre - edge.a) < 0 ? -1 : 1;
     const auto goes_on = [&](std::int32_t neighbour, double sign) {
         if (neighbour < 0) return false;
         const Edge& other = edges[static_cast<std::size_t>(neighbour)];
@@ -74,7 +74,7 @@ Edge with_what_goes_on(std::span<const Edge> edges, std::int32_t number, const M
         const double of_both = length * std::sqrt(length_squared(way));
         return dot(along, way) >= kParallel * of_both || sign * side * cross(along, way) > 0;
     };
-    const Vec2 longer = (2 * body.shape.extent / length) * along;
+    const Vec2 longer = (2 * extent / length) * along;
     const bool goes_on_before = goes_on(edge.previous, -1), goes_on_after = goes_on(edge.next, 1);
     if (goes_on_before) edge.a -= longer;
     if (goes_on_after) edge.b += longer;
@@ -245,34 +245,39 @@ void SurfaceFinder<Real>::find_on_chain(const Inputs& in, const EdgePose& pose, 
     const Vec2 centre = body.centre;
     const double angle_in_chain =
         (bodies.has_rotation ? static_cast<double>(bodies.angle[row]) : 0) - pose.angle;
+    // In the frame of the chain.
     body.centre = rotate_back(pose.turn, body.centre - pose.position);
     body.turn = {body.turn.cos * pose.turn.cos + body.turn.sin * pose.turn.sin,
                  body.turn.sin * pose.turn.cos - body.turn.cos * pose.turn.sin};
-    found_.clear();
-    const std::int32_t shape_number = piece ? piece->number : bodies.shape[row];
-    // In the frame of the chain.
-    MovingConvex moving = moving_row(world, row, in.flights.velocity(bodies, row), shape_number);
-    moving.centre = body.centre;
-    moving.velocity =
-        (1 / dt) *
-        (rotate_back(pose.end_turn, centre + dt * moving.velocity - pose.end_position) - body.centre);
-    moving.spin -= (pose.end_angle - pose.angle) / dt;
-    moving.angle = angle_in_chain;
-    const double met = time_of_meeting_edges(world, moving, dt, thickness);
+    const Vec2 flight = in.flights.velocity(bodies, row);
+    const Vec2 velocity =
+        (1 / dt) * (rotate_back(pose.end_turn, centre + dt * flight - pose.end_position) - body.centre);
+    const double spin = (bodies.has_rotation ? static_cast<double>(bodies.angular_velocity[row]) : 0) -
+                        (pose.end_angle - pose.angle) / dt;
+    const Vec2 centre_now = body.centre;
+    const auto moving = [&] { return MovingConvex{body.shape, centre_now, velocity, angle_in_chain, spin}; };
+    // Only what is so fast can meet an edge later than at once.
+    const double way = dt * (std::sqrt(length_squared(velocity)) + std::fabs(spin) * body.shape.extent);
+    const double met =
+        way > kFastThicknesses * thickness ? time_of_meeting_edges(world, moving(), way, dt, thickness) : 0;
     // What an edge that turns does in the step is in turning_edges.hpp.
     const double time = met > 0 ? met : pose.turns() ? 0 : in.ahead[row];
-    PlacedConvex then = body;
     if (time > 0)
-        then.centre = body.centre + time * moving.velocity,
-        then.turn = rotation_by(angle_in_chain + time * moving.spin);
+        body.centre = centre_now + time * velocity, body.turn = rotation_by(angle_in_chain + time * spin);
+    found_.clear();
     const Vec2 offset = piece ? Vec2{piece->x, piece->y} : Vec2{};
-    if (piece) then = around_own_centre(then, offset);
-    find_chain_manifolds(then, world.edges.edges, near_edges_, margin, found_);
+    const RelativeMotion motion{Vec2{} - velocity, spin, 0};
+    if (piece)
+        find_chain_manifolds(around_own_centre(body, offset), world.edges.edges, near_edges_, margin, found_);
+    else
+        find_chain_manifolds(body, world.edges.edges, near_edges_, margin, found_);
     for (ChainManifold& found : found_) {
-        if (piece) found.manifold = about_body(found.manifold, rotate(then.turn, offset));
-        if (time > 0) move_back(found.manifold, relative_motion(moving, {}), time);
-        const Edge edge = with_what_goes_on(world.edges.edges, found.edge, moving);
-        if (pass_each_other(moving, still_edge(edge), found.manifold, dt, thickness)) continue;
+        if (piece) found.manifold = about_body(found.manifold, rotate(body.turn, offset));
+        if (time > 0) move_back(found.manifold, motion, time);
+        if (pass_plane(found.manifold, motion, dt, thickness)) {
+            const Edge edge = with_what_goes_on(world.edges.edges, found.edge, centre_now, body.shape.extent);
+            if (pass_each_other(moving(), still_edge(edge), found.manifold, dt, thickness)) continue;
+        }
         const std::int32_t track = world.edges.track_of(found.edge);
         list.add(static_cast<std::int32_t>(row), Partner::edge(found.edge).stored(),
                  {bodies.id[row], world.edges.bodies[static_cast<std::size_t>(track)].id,
@@ -282,14 +287,11 @@ void SurfaceFinder<Real>::find_on_chain(const Inputs& in, const EdgePose& pose, 
 }
 
 /// The time at which a body that flies or turns farther in a step than it is thick meets the first of its
-/// near edges [s]; 0 if it does not, or is not so fast.
-/// @param body  in the frame of the chain
+/// near edges [s]; 0 if it does not.
+/// @param body  in the frame of the chain  @param way  m, of its points in the step
 template <class Real>
 double SurfaceFinder<Real>::time_of_meeting_edges(const WorldState<Real>& world, const MovingConvex& body,
-                                                  double dt, double thickness) const {
-    const double way = dt * (std::sqrt(length_squared(body.velocity)) +
-                             std::fabs(body.spin) * static_cast<double>(body.shape.extent));
-    if (!(way > kFastThicknesses * thickness)) return 0;
+                                                  double way, double dt, double thickness) const {
     const double target = kMeetingTarget * thickness,
                  reach = kWiderCircle * (body.shape.extent + way + target);
     double first = 0;

@@ -64,8 +64,8 @@ class SurfaceFinder {
     void find_on_chain(const Inputs& in, const EdgePose& pose, std::size_t row,
                        const ConvexShape<Real>& shape, std::int32_t number, const StoredPiece* piece,
                        ManifoldList<Real>& list);
-    double time_of_meeting_edges(const WorldState<Real>& world, const MovingConvex& body, double dt,
-                                 double thickness) const;
+    double time_of_meeting_edges(const WorldState<Real>& world, const MovingConvex& body, double way,
+                                 double dt, double thickness) const;
 
     std::vector<Near> pairs_;
     ChunkedList rows_near_walls_;
