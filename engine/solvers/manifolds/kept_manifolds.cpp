@@ -88,11 +88,16 @@ void Manifolds<Real>::recall(ManifoldList<Real>& list, const ManifoldList<Real>&
 }
 
 /// A body may touch a chain in several places: each takes what the one before it had that faced the same way.
+/// What is carried on has its memory already.
 template <class Real>
 void Manifolds<Real>::recall_surfaces() {
     index_.file(old_surfaces_);
     is_recalled_.assign(old_surfaces_.count(), 0);
+    const auto carried_from = [&](std::size_t i) { return surface_finder_.carried_from(i); };
+    for (std::size_t i = 0; i < surfaces_.count(); ++i)
+        if (carried_from(i) >= 0) is_recalled_[static_cast<std::size_t>(carried_from(i))] = 1;
     for (std::size_t i = 0; i < surfaces_.count(); ++i) {
+        if (carried_from(i) >= 0) continue;
         const ManifoldName& name = surfaces_.names[i];
         std::size_t best = old_surfaces_.count();
         Real most = static_cast<Real>(kSameNormal);

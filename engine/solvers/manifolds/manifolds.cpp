@@ -207,8 +207,8 @@ bool Manifolds<Real>::find(const WorldState<Real>& world, const EdgeCandidates<R
     flights_.settle(world.bodies, terms.dt);
     ahead_.look(world, terms.dt, poses_, flights_, items_, rows_to_find(world), *loops.executor);
     ahead_.look_at_surfaces(world, terms, old_surfaces_);
-    surface_finder_.find({world, edges, terms, near, poses_, flights_, ahead_.on_surfaces()}, surfaces_,
-                         *loops.executor);
+    surface_finder_.find({world, edges, terms, near, poses_, flights_, ahead_.on_surfaces(), old_surfaces_},
+                         surfaces_, *loops.executor);
     recall_surfaces();
     ahead_.resize_places(bodies_.count());
     const auto for_each_found_block = [&](double nanoseconds, const auto& fn) {
@@ -231,14 +231,20 @@ bool Manifolds<Real>::find(const WorldState<Real>& world, const EdgeCandidates<R
         note_live(block);
     });
     note_thicknesses(std::min(bodies_.count(), first_new_block_ * kRowPadding));
+    surface_finder_.for_each_near_edges([&](std::size_t row) {
+        if (!world.shapes.is_compound(world.bodies.shape[row]))
+            poses_.note_thickness(static_cast<std::int32_t>(row), world.bodies.inradius(row));
+    });
     first_new_block_ = block_is_found_.size();
     const auto none = static_cast<Real>(kNoPoint);
-    const bool is_same = live_.list(found_blocks_, surfaces_.count(), [&](std::size_t i) {
-        const bool is_live = surfaces_.separation1[i] < none;
-        if (!is_live) surfaces_.memory[i] = {};
-        return is_live;
-    });
-    return is_same &&
+    const auto is_live = [&](std::size_t i) {
+        const bool can_touch = surfaces_.separation1[i] < none;
+        if (!can_touch) surfaces_.memory[i] = {};
+        return can_touch;
+    };
+    const bool is_same = live_.list(found_blocks_, surfaces_.count(), is_live,
+                                    [&](std::size_t i) { return surface_finder_.carried_from(i) < 0; });
+    return is_same && surface_finder_.keep_numbers() &&
            std::equal(surfaces_.a.begin(), surfaces_.a.end(), old_surfaces_.a.begin(), old_surfaces_.a.end());
 }
 

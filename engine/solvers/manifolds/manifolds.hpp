@@ -87,10 +87,13 @@ class Manifolds {
     }
     /// Whether a live contact was found in this step; else it has been carried on.
     bool is_found(std::int32_t contact) const {
-        return contact < 0 || block_is_found_[place_of(contact) / kRowPadding] != 0;
+        return contact < 0 ? surface_finder_.carried_from(place_of(contact)) < 0
+                           : block_is_found_[place_of(contact) / kRowPadding] != 0;
     }
     /// Whether some were carried on.
-    bool some_are_carried() const { return found_blocks_.size() < block_is_found_.size(); }
+    bool some_are_carried() const {
+        return surface_finder_.some_are_carried() || found_blocks_.size() < block_is_found_.size();
+    }
     /// Contacts of two bodies that have come or gone since the step before, as a share of those there are;
     /// negative where that is not known, since pairs have been found anew.
     double changed_share() const { return live_.changed_share(); }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "constraints/partner.hpp"
 #include "effects/friction.hpp"
@@ -102,7 +103,7 @@ void SurfaceFinder<Real>::take_over(const WorldState<Real>& world, std::span<con
 
 template <class Real>
 void SurfaceFinder<Real>::renew(const WorldState<Real>& world, const EdgeCandidates<Real>& edges) {
-    pairs_.clear();
+    clear();
     if (world.bodies.has_shapes) take_over(world, edges.pairs());
 }
 
@@ -115,7 +116,9 @@ template <class Real>
 void SurfaceFinder<Real>::find(const Inputs& in, ManifoldList<Real>& list, const Executor& executor) {
     const WorldState<Real>& world = in.world;
     list.clear(), manifolds_.clear(), pieces_.clear();
+    carried_from_.clear(), some_are_carried_ = false, keep_numbers_ = true;
     if (world.walls) list_near_walls(in, executor), find_walls(in, list);
+    carried_from_.resize(list.count(), -1);
     find_edges(in, list);
     list.fit();
     const Bodies<Real>& bodies = world.bodies;
@@ -193,23 +196,64 @@ void SurfaceFinder<Real>::find_walls(const Inputs& in, ManifoldList<Real>& list)
 template <class Real>
 void SurfaceFinder<Real>::find_edges(const Inputs& in, ManifoldList<Real>& list) {
     const WorldState<Real>& world = in.world;
+    groups_before_.swap(groups_), groups_.clear();
+    if (std::exchange(finds_all_, false) != 0) groups_before_.clear();
+    auto before = groups_before_.begin();
     for (std::size_t first = 0, last = 0; first < pairs_.size(); first = last) {
-        near_edges_.clear();
-        for (; last < pairs_.size() && pairs_[last].row == pairs_[first].row &&
-               pairs_[last].track == pairs_[first].track;
-             ++last)
-            near_edges_.push_back(pairs_[last].edge);
+        while (last < pairs_.size() && pairs_[last].row == pairs_[first].row &&
+               pairs_[last].track == pairs_[first].track)
+            ++last;
         const auto row = static_cast<std::size_t>(pairs_[first].row);
-        const EdgePose& pose = in.edges.pose_of(world.edges[near_edges_[0]]);
-        if (!pose.takes_part) continue;
-        leave_out_distant(in, pose, row);
-        if (near_edges_.empty()) continue;
-        world.shapes.for_each_piece(
-            world.bodies.shape[row],
-            [&](const ConvexShape<Real>& shape, std::int32_t number, const StoredPiece* piece) {
-                find_on_chain(in, pose, row, shape, number, piece, list);
-            });
+        const auto begin = static_cast<std::int32_t>(list.count());
+        Group group{pairs_[first].row, pairs_[first].track, begin, 0};
+        const EdgePose& pose = in.edges.pose_of(world.edges[pairs_[first].edge]);
+        while (before != groups_before_.end() && before->is_before(group)) ++before;
+        if (before != groups_before_.end() && before->is_same_pair(group) && may_carry(in, pose, row)) {
+            carry(in, *before, list);
+        } else if (pose.takes_part) {
+            near_edges_.clear();
+            for (std::size_t n = first; n < last; ++n) near_edges_.push_back(pairs_[n].edge);
+            find_on_edges(in, pose, row, list);
+        }
+        group.contacts = static_cast<std::int32_t>(list.count()) - begin;
+        groups_.push_back(group);
     }
+}
+
+/// Whether a body touches edges as it did in the step before: neither it nor they have moved. A compound
+/// would have to be watched by its thinnest piece.
+template <class Real>
+bool SurfaceFinder<Real>::may_carry(const Inputs& in, const EdgePose& pose, std::size_t row) const {
+    return in.world.bodies.stands(pose.row) && pose.takes_part &&
+           !in.poses.has_moved(static_cast<std::int32_t>(row)) &&
+           !in.world.shapes.is_compound(in.world.bodies.shape[row]);
+}
+
+/// Takes the contacts of a body over from the step before.
+template <class Real>
+void SurfaceFinder<Real>::carry(const Inputs& in, const Group& group, ManifoldList<Real>& list) {
+    for (std::int32_t i = group.first_contact; i < group.first_contact + group.contacts; ++i) {
+        const auto from = static_cast<std::size_t>(i);
+        some_are_carried_ = true, keep_numbers_ = keep_numbers_ && from == list.count();
+        list.add(group.row, in.before.b[from], in.before.names[from]);
+        list.memory.back() = in.before.memory[from];
+        manifolds_.push_back(in.before.manifold(from)), pieces_.push_back(nullptr);
+        carried_from_.push_back(i);
+    }
+}
+
+/// Finds where a body touches its near edges.
+template <class Real>
+void SurfaceFinder<Real>::find_on_edges(const Inputs& in, const EdgePose& pose, std::size_t row,
+                                        ManifoldList<Real>& list) {
+    leave_out_distant(in, pose, row);
+    if (near_edges_.empty()) return;
+    in.world.shapes.for_each_piece(
+        in.world.bodies.shape[row],
+        [&](const ConvexShape<Real>& shape, std::int32_t number, const StoredPiece* piece) {
+            find_on_chain(in, pose, row, shape, number, piece, list);
+        });
+    carried_from_.resize(list.count(), -1);
 }
 
 /// Leaves edges out that a body cannot meet in the step, by a bound that is cheaper than to place its shape:
@@ -309,8 +353,9 @@ double SurfaceFinder<Real>::time_of_meeting_edges(const WorldState<Real>& world,
 template <class Real>
 std::size_t SurfaceFinder<Real>::bytes() const {
     return rows_near_walls_.bytes() + pairs_.capacity() * sizeof(Near) +
-           near_edges_.capacity() * sizeof(std::int32_t) + found_.capacity() * sizeof(ChainManifold) +
-           manifolds_.capacity() * sizeof(Manifold<double>);
+           (near_edges_.capacity() + carried_from_.capacity()) * sizeof(std::int32_t) +
+           found_.capacity() * sizeof(ChainManifold) + manifolds_.capacity() * sizeof(Manifold<double>) +
+           (groups_.capacity() + groups_before_.capacity()) * sizeof(Group);
 }
 
 template class SurfaceFinder<float>;

@@ -26,7 +26,7 @@ bool LiveContacts::list_all(std::span<const std::uint32_t> found_blocks) {
     for (const std::uint32_t block : found_blocks)
         for (std::uint32_t n = first_[block]; n < first_[block + 1]; ++n)
             found_.push_back(static_cast<std::int32_t>(n));
-    for (std::size_t n = of_bodies_; n < numbers_.size(); ++n) found_.push_back(static_cast<std::int32_t>(n));
+    for (const std::int32_t n : found_surfaces_) found_.push_back(static_cast<std::int32_t>(of_bodies_) + n);
     return changes == 0 && same_surfaces && !has_new_rows;
 }
 
@@ -56,7 +56,8 @@ void LiveContacts::read_masks() {
 
 std::size_t LiveContacts::bytes() const {
     const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-    return of(numbers_) + of(found_) + of(masks_) + of(changes_) + of(first_) + of(surfaces_);
+    return of(numbers_) + of(found_) + of(masks_) + of(changes_) + of(first_) + of(surfaces_) +
+           of(found_surfaces_);
 }
 
 }  // namespace carom

@@ -52,12 +52,17 @@ class LiveContacts {
     /// @param found_blocks  those of `set`, in order
     /// @param surfaces  how many there are
     /// @param is_live  is_live(number) of a surface
+    /// @param is_found  is_found(number): whether it was found in this step
     /// @return whether they are those of the step before
-    template <class IsLive>
-    bool list(std::span<const std::uint32_t> found_blocks, std::size_t surfaces, const IsLive& is_live) {
-        surfaces_.clear();
-        for (std::size_t i = 0; i < surfaces; ++i)
-            if (is_live(i)) surfaces_.push_back(~static_cast<std::int32_t>(i));
+    template <class IsLive, class IsFound>
+    bool list(std::span<const std::uint32_t> found_blocks, std::size_t surfaces, const IsLive& is_live,
+              const IsFound& is_found) {
+        surfaces_.clear(), found_surfaces_.clear();
+        for (std::size_t i = 0; i < surfaces; ++i) {
+            if (!is_live(i)) continue;
+            if (is_found(i)) found_surfaces_.push_back(static_cast<std::int32_t>(surfaces_.size()));
+            surfaces_.push_back(~static_cast<std::int32_t>(i));
+        }
         return list_all(found_blocks);
     }
 
@@ -84,12 +89,13 @@ class LiveContacts {
     void read_masks();
 
     std::vector<std::int32_t> numbers_;
-    std::size_t of_bodies_ = 0;           // of them, those of two bodies: they come first
-    std::vector<std::int32_t> found_;     // places in numbers_
-    std::vector<std::uint16_t> masks_;    // by block
-    std::vector<std::uint8_t> changes_;   // by block, of this step
-    std::vector<std::uint32_t> first_;    // by block, and the end: places in numbers_
-    std::vector<std::int32_t> surfaces_;  // of this step
+    std::size_t of_bodies_ = 0;                 // of them, those of two bodies: they come first
+    std::vector<std::int32_t> found_;           // places in numbers_
+    std::vector<std::uint16_t> masks_;          // by block
+    std::vector<std::uint8_t> changes_;         // by block, of this step
+    std::vector<std::uint32_t> first_;          // by block, and the end: places in numbers_
+    std::vector<std::int32_t> surfaces_;        // of this step
+    std::vector<std::int32_t> found_surfaces_;  // places in surfaces_ of those that were found in this step
     double changed_share_ = -1;
     bool has_new_rows_ = false;  // since the last list
 };
