@@ -36,6 +36,7 @@ constexpr std::array<Limb, 11> kLimbs{{
     {7, {0, -0.52}, 0.36, 0.05, -2.3, 0},  // shins
     {8, {0, -0.52}, 0.36, 0.05, -2.3, 0},
 }};
+constexpr int kLong = 600;                  // steps, over and over
 constexpr double kTall = 1.9, kWide = 0.6;  // m, of the box that each is given at the start
 constexpr double kMeanArea = 0.62;          // m² of the heap that a ragdoll fills, about
 
@@ -71,7 +72,6 @@ BenchScene net(std::int64_t bodies) {
     Scene scene;
     scene.gravity = {0, -kGravity};
     add_net(scene, net);
-    constexpr int kLong = 600;  // steps
     return {"net", std::move(scene), {}, 0, kLong};
 }
 
@@ -93,6 +93,67 @@ BenchScene ragdolls(std::int64_t bodies) {
     }
     constexpr int kSettle = 900;  // steps
     return {"ragdolls", std::move(scene), {}, kSettle};
+}
+
+BenchScene car(std::int64_t bodies) {
+    constexpr double kHalfLength = 100, kEdge = 0.5;  // m
+    constexpr int kOfCar = 3;
+    const auto height = [](double x) { return 2 * std::sin(0.16 * x) + 0.25 * std::sin(1.4 * x); };
+    Scene scene;
+    scene.gravity = {0, -kGravity};
+    Chain track;
+    // A wall at both ends, and an edge beyond it: the last ones are none in Box2D.
+    track.points.push_back({kHalfLength + 20, 20}), track.points.push_back({kHalfLength, 20});
+    for (double x = kHalfLength; x >= -kHalfLength; x -= kEdge) track.points.push_back({x, height(x)});
+    track.points.push_back({-kHalfLength, 20}), track.points.push_back({-kHalfLength - 20, 20});
+    scene.add({.type = BodyType::static_body, .shape = track, .material = {.friction = 0.9}});
+    const Vec2 start{-0.9 * kHalfLength, height(-0.9 * kHalfLength) + 1.5};
+    const BodyId hull = scene.add({.shape = Box{3, 0.8}, .position = start, .material = {.friction = 0.4}});
+    for (const double side : {-1, 1}) {
+        const Vec2 axle{start.x + 1.1 * side, start.y - 0.8};
+        const BodyId wheel = scene.add({.shape = Disc{0.5}, .position = axle, .material = {.friction = 1.2}});
+        scene.add(Joint{.a = hull,
+                        .b = wheel,
+                        .kind = RevoluteJoint{.anchor = axle, .motor_speed = -12, .max_motor_torque = 8}});
+    }
+    const std::int64_t crates = std::max<std::int64_t>(0, bodies - 1 - kOfCar);
+    for (std::int64_t i = 0; i < crates; ++i) {
+        const double x =
+            0.9 * kHalfLength * (2 * (static_cast<double>(i) + 0.5) / static_cast<double>(crates) - 1);
+        scene.add(
+            {.shape = Box{0.6, 0.6}, .position = {x, height(x) + 3}, .material = {.friction = kFriction}});
+    }
+    return {"car", std::move(scene), {}, 0, kLong};
+}
+
+BenchScene stairs(std::int64_t bodies) {
+    constexpr int kSteps = 20;
+    constexpr double kTread = 2, kRise = 1;  // m
+    Scene scene;
+    scene.gravity = {0, -kGravity};
+    Chain stairs;
+    // As the track's ends.
+    stairs.points.push_back({kTread * kSteps + 50, 0}), stairs.points.push_back({kTread * kSteps + 30, 0});
+    stairs.points.push_back({kTread * kSteps + 30, -kRise * kSteps});
+    for (int i = kSteps; i > 0; --i) {
+        stairs.points.push_back({kTread * i, -kRise * i});
+        stairs.points.push_back({kTread * i, -kRise * (i - 1)});
+    }
+    stairs.points.push_back({0, 0});
+    stairs.points.push_back({0, 20}), stairs.points.push_back({-20, 20});
+    scene.add({.type = BodyType::static_body, .shape = stairs, .material = {.friction = kFriction}});
+    add_ragdoll(scene, {1.5, 3}, -1);
+    const std::int64_t loose =
+        std::max<std::int64_t>(0, bodies - 1 - static_cast<std::int64_t>(kLimbs.size()));
+    const std::array<Shape, 4> shapes{Box{0.6, 0.4}, Capsule{0.4, 0.15}, Disc{0.3}, Box{0.5, 0.5}};
+    for (std::int64_t i = 0; i < loose; ++i) {
+        const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(loose);
+        scene.add({.shape = shapes[static_cast<std::size_t>(i) % shapes.size()],
+                   .position = {4 + share * (kTread * kSteps - 4), 2 - share * kRise * kSteps},
+                   .angle = 0.7 * static_cast<double>(i),
+                   .material = {.friction = kFriction}});
+    }
+    return {"stairs", std::move(scene), {}, 0, kLong};
 }
 
 }  // namespace carom::bench

@@ -14,4 +14,12 @@ BenchScene net(std::int64_t bodies);
 /// to whole ones.
 BenchScene ragdolls(std::int64_t bodies);
 
+/// A car of a body and two wheels that motors turn, on a rough track of chain edges, along which crates lie;
+/// `bodies` counts the track, too.
+BenchScene car(std::int64_t bodies);
+
+/// A ragdoll of eleven bodies that falls down stairs of chain edges, on which crates, capsules and discs lie;
+/// likewise.
+BenchScene stairs(std::int64_t bodies);
+
 }  // namespace carom::bench

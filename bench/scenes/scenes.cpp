@@ -120,7 +120,9 @@ const std::vector<std::string>& scene_names() {
                                                 "driven-drum",
                                                 "spinner",
                                                 "net",
-                                                "ragdolls"};
+                                                "ragdolls",
+                                                "car",
+                                                "stairs"};
     return names;
 }
 
@@ -146,6 +148,8 @@ BenchScene make_scene(const std::string& name, std::int64_t bodies) {
     if (name == "spinner") return spinner(bodies);
     if (name == "net") return net(bodies);
     if (name == "ragdolls") return ragdolls(bodies);
+    if (name == "car") return car(bodies);
+    if (name == "stairs") return stairs(bodies);
     throw std::invalid_argument(measure::joined("no benchmark scene is called ", name));
 }
 

@@ -44,6 +44,15 @@ bool has_joints(const SolvedSubstep<Real>& solved) {
     return !solved.step.world.joints.empty();
 }
 
+/// Whether what impulses do not move in a row moves by itself.
+template <class Real>
+bool drives(const Bodies<Real>& bodies, std::size_t row) {
+    const std::uint8_t flags = bodies.flags_of(row);
+    if ((flags & kKinematic) != 0) return true;
+    return (flags & kImmovable) != 0 && (bodies.velocity_x[row] != 0 || bodies.velocity_y[row] != 0 ||
+                                         (bodies.has_rotation && bodies.angular_velocity[row] != 0));
+}
+
 /// Calls fn(row, row, work) for what may give energy in a substep: surfaces that move by themselves, motors
 /// and springs. Work in J.
 template <class Real, class Fn>
@@ -54,10 +63,13 @@ void for_each_drive(const SolvedSubstep<Real>& solved, const Fn& fn) {
     const auto body = [&](std::int32_t row) {
         return moves(records, row) ? DoubleBody{} : body_at(records.velocity, row);
     };
-    bool any_disc_drives = false;
-    for (std::size_t row = 0; row < bodies.count && bodies.has_flags; ++row)
+    bool any_drives = false, any_disc_drives = false;
+    for (std::size_t row = 0; row < bodies.count && bodies.has_flags; ++row) {
+        if (!drives(bodies, row)) continue;
+        any_drives = true;
         any_disc_drives =
             any_disc_drives || ((bodies.flags_of(row) & kKinematic) != 0 && bodies.is_disc(row));
+    }
     const ContactRows<Real>& pairs = solved.contacts.graph.pairs;
     if (any_disc_drives)
         pairs.for_each([&](std::size_t i) {
@@ -65,16 +77,18 @@ void for_each_drive(const SolvedSubstep<Real>& solved, const Fn& fn) {
             if (pairs.is_live[i / kContactBlock] && moves(records, a) != moves(records, b))
                 fn(a, b, -StoredContact<Real>(pairs, i).work(body(a), body(b)));
         });
+    // What stands gives nothing, and most scenes have nothing else that no impulse moves.
     const ContactRows<Real>& supports = solved.contacts.supports;
-    supports.for_each([&](std::size_t i) {
-        fn(supports.a[i], supports.a[i],
-           -StoredContact<Real>(supports, i).work(DoubleBody{}, surface_at(supports, i)));
-    });
+    if (any_drives)
+        supports.for_each([&](std::size_t i) {
+            fn(supports.a[i], supports.a[i],
+               -StoredContact<Real>(supports, i).work(DoubleBody{}, surface_at(supports, i)));
+        });
     const auto motion = [&](std::int32_t row) {
         const DoubleBody of = body(row);
         return MeanVelocity{{of.record[0], of.record[1]}, of.record[2]};
     };
-    if (bodies.has_shapes) {
+    if (any_drives && bodies.has_shapes) {
         solved.paths.for_each_unmoved([&](const PathContact<Real>& contact) {
             fn(contact.near, contact.far,
                -ContactWork<Real>(contact).work(motion(contact.near), motion(contact.far)));
