@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "constraints/partner.hpp"
@@ -211,9 +212,7 @@ void SurfaceFinder<Real>::find_edges(const Inputs& in, ManifoldList<Real>& list)
         if (before != groups_before_.end() && before->is_same_pair(group) && may_carry(in, pose, row)) {
             carry(in, *before, list);
         } else if (pose.takes_part) {
-            near_edges_.clear();
-            for (std::size_t n = first; n < last; ++n) near_edges_.push_back(pairs_[n].edge);
-            find_on_edges(in, pose, row, list);
+            find_on_edges(in, pose, std::span(pairs_).subspan(first, last - first), list);
         }
         group.contacts = static_cast<std::int32_t>(list.count()) - begin;
         groups_.push_back(group);
@@ -243,10 +242,13 @@ void SurfaceFinder<Real>::carry(const Inputs& in, const Group& group, ManifoldLi
 }
 
 /// Finds where a body touches its near edges.
+/// @param pairs  of one body and one chain or track
 template <class Real>
-void SurfaceFinder<Real>::find_on_edges(const Inputs& in, const EdgePose& pose, std::size_t row,
+void SurfaceFinder<Real>::find_on_edges(const Inputs& in, const EdgePose& pose, std::span<const Near> pairs,
                                         ManifoldList<Real>& list) {
-    leave_out_distant(in, pose, row);
+    const auto row = static_cast<std::size_t>(pairs[0].row);
+    near_edges_.clear();
+    list_near_edges(in, pose, row, pairs);
     if (near_edges_.empty()) return;
     in.world.shapes.for_each_piece(
         in.world.bodies.shape[row],
@@ -256,22 +258,26 @@ void SurfaceFinder<Real>::find_on_edges(const Inputs& in, const EdgePose& pose, 
     carried_from_.resize(list.count(), -1);
 }
 
-/// Leaves edges out that a body cannot meet in the step, by a bound that is cheaper than to place its shape:
-/// fast bodies have margins of several steps, most edges within which are beyond the way of one.
+/// Lists edges but those that a body cannot meet in the step, by a bound that is cheaper than to place its
+/// shape: fast bodies have margins of several steps, most edges within which are beyond the way of one.
 template <class Real>
-void SurfaceFinder<Real>::leave_out_distant(const Inputs& in, const EdgePose& pose, std::size_t row) {
-    if (pose.turns()) return;  // what is far from the axis is fast
+void SurfaceFinder<Real>::list_near_edges(const Inputs& in, const EdgePose& pose, std::size_t row,
+                                          std::span<const Near> pairs) {
+    // What is far from the axis of something that turns is fast.
+    double most = std::numeric_limits<double>::infinity();
     const Bodies<Real>& bodies = in.world.bodies;
-    const auto radius = static_cast<double>(bodies.radius[row]);
-    const double come = reach_in_step(bodies, row, in.terms.dt) +
-                        std::sqrt(length_squared(pose.end_position - pose.position));
-    // To where it is by the end of its way, and from there as far as a contact is looked for, which is that
-    // way and the distance of contacts at rest. No piece is thicker than the radius of its body.
-    const double most = (1 + kRoundingOfReach) * ((1 + kMeetingTarget) * radius + in.near(radius) + 2 * come);
+    if (!pose.turns()) {
+        const auto radius = static_cast<double>(bodies.radius[row]);
+        const double come = reach_in_step(bodies, row, in.terms.dt) +
+                            std::sqrt(length_squared(pose.end_position - pose.position));
+        // To where it is by the end of its way, and from there as far as a contact is looked for, which is
+        // that way and the distance of contacts at rest. No piece is thicker than the radius of its body.
+        most = (1 + kRoundingOfReach) * ((1 + kMeetingTarget) * radius + in.near(radius) + 2 * come);
+    }
     const Vec2 centre =
         rotate_back(pose.turn, Vec2{bodies.position_x[row], bodies.position_y[row]} - pose.position);
-    std::erase_if(near_edges_,
-                  [&](std::int32_t number) { return is_beyond_box(centre, in.world.edges[number], most); });
+    for (const Near& pair : pairs)
+        if (!is_beyond_box(centre, in.world.edges[pair.edge], most)) near_edges_.push_back(pair.edge);
 }
 
 /// Finds where a body, or a piece of it, touches the near edges, which are of one chain or track.

@@ -85,8 +85,10 @@ class SurfaceFinder {
     void list_near_walls(const Inputs& in, const Executor& executor);
     void find_walls(const Inputs& in, ManifoldList<Real>& list);
     void find_edges(const Inputs& in, ManifoldList<Real>& list);
-    void find_on_edges(const Inputs& in, const EdgePose& pose, std::size_t row, ManifoldList<Real>& list);
-    void leave_out_distant(const Inputs& in, const EdgePose& pose, std::size_t row);
+    void find_on_edges(const Inputs& in, const EdgePose& pose, std::span<const Near> pairs,
+                       ManifoldList<Real>& list);
+    void list_near_edges(const Inputs& in, const EdgePose& pose, std::size_t row,
+                         std::span<const Near> pairs);
     void find_on_chain(const Inputs& in, const EdgePose& pose, std::size_t row,
                        const ConvexShape<Real>& shape, std::int32_t number, const StoredPiece* piece,
                        ManifoldList<Real>& list);
