@@ -111,8 +111,10 @@ void DirectJoints<Real>::begin_step(const JointStep<Real>& step, bool touches, b
 /// its next step begins with them: so neither the first touch nor the last changes its energy.
 template <class Real>
 void DirectJoints<Real>::half_kick(const JointStep<Real>& step, double sign) {
-    const Vec2 kick = 0.5 * sign * step.terms.gravity_change;
+    const Vec2 kick = 0.5 * sign * step.terms.gravity_change,
+               of_gravity = (0.5 * sign * step.terms.substep_dt) * step.world.gravity;
     if (kick == Vec2{}) return;
+    double work_of_drag = 0;  // J: what it takes from the kick
     const StartColumns<Real> start = step.records.start_columns();
     for (std::size_t i = 1; i < rows_.size(); ++i) {
         if (!(system_.bodies[i].inverse_mass > 0)) continue;
@@ -120,10 +122,15 @@ void DirectJoints<Real>::half_kick(const JointStep<Real>& step, double sign) {
         Real* record = &step.records.velocity[4 * row];
         // At the start of a step the record has the whole kick of its first substep in it already.
         const Vec2 v = sign < 0 ? Vec2{start.x[row], start.y[row]} : Vec2{record[0], record[1]};
-        step.gravity_work += static_cast<double>(step.world.bodies.mass[row]) * dot(kick, v + 0.5 * kick);
-        record[0] += static_cast<Real>(kick.x), record[1] += static_cast<Real>(kick.y);
+        const Vec2 momentum = static_cast<double>(step.world.bodies.mass[row]) * (v + 0.5 * kick);
+        step.gravity_work += dot(of_gravity, momentum);
+        work_of_drag += dot(kick - of_gravity, momentum);
+        // Drag has acted on that record, too, and takes of the kick what it takes of all velocities.
+        const double left = sign < 0 ? step.terms.decay : 1;
+        record[0] += static_cast<Real>(left * kick.x), record[1] += static_cast<Real>(left * kick.y);
         if (sign < 0) start.x[row] += static_cast<Real>(kick.x), start.y[row] += static_cast<Real>(kick.y);
     }
+    if (step.world.books.is_open) step.world.books.drag += work_of_drag;
 }
 
 template <class Real>

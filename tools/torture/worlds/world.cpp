@@ -107,6 +107,28 @@ double lowest_of_body(const Body& body, const RandomWorld& world) {
     return -std::hypot(std::fmax(-low.x, high.x), std::fmax(-low.y, high.y));
 }
 
+/// Where a rod holds a body of the scene or the world [m].
+Vec2 end_of_rod(const Scene& scene, const std::optional<BodyId>& id, Vec2 anchor) {
+    if (!id) return anchor;
+    const Body& body = scene.bodies[id->index];
+    const double cos = std::cos(body.angle), sin = std::sin(body.angle);
+    return {body.position.x + cos * anchor.x - sin * anchor.y,
+            body.position.y + sin * anchor.x + cos * anchor.y};
+}
+
+/// Whether a joint is a rod, which is drawn no shorter than a tenth of the world's unit, whose ends stand
+/// nearer or farther than it keeps them: closing it lifts what hangs on it.
+bool begins_open(const Scene& scene, const Joint& joint) {
+    constexpr double kRoundOff = 1e-9;  // of the distance
+    const auto* rod = std::get_if<DistanceJoint>(&joint.kind);
+    if (!rod) return false;
+    const Vec2 a = end_of_rod(scene, joint.a, rod->anchor_a), b = end_of_rod(scene, joint.b, rod->anchor_b);
+    const double now = std::hypot(b.x - a.x, b.y - a.y);
+    const double least = rod->length.value_or(rod->min.value_or(0)),
+                 most = rod->length.value_or(rod->max.value_or(now));
+    return now * (1 + kRoundOff) < least || now > most * (1 + kRoundOff);
+}
+
 EnergySources sources_of(const Scene& scene, const WorldTraits& traits) {
     EnergySources sources;
     for (const Body& body : scene.bodies) {
@@ -114,7 +136,9 @@ EnergySources sources_of(const Scene& scene, const WorldTraits& traits) {
         sources.falls |= body.sensor && body.type == BodyType::dynamic_body;  // through what is closed
     }
     for (const Joint& joint : scene.joints) sources.joints |= has_own_force(joint);
-    const bool is_stretched = traits.are_joints_stretched && !scene.joints.empty();
+    const bool is_stretched = (traits.are_joints_stretched && !scene.joints.empty()) ||
+                              std::any_of(scene.joints.begin(), scene.joints.end(),
+                                          [&](const Joint& joint) { return begins_open(scene, joint); });
     sources.joints |= is_stretched;
     sources.overlaps = traits.is_crowded || is_stretched || sources.drives || sources.joints;
     sources.falls |= traits.surroundings == Surroundings::open || traits.surroundings == Surroundings::floor;
