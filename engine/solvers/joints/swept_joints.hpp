@@ -89,7 +89,8 @@ class SweptJoints {
             for (std::size_t i = 0; i < own.slot.size(); ++i) {
                 const auto share = static_cast<Real>(own.slot[i] >= 0 ? share_of(own.a[i], own.b[i]) : 1);
                 if (share == 1) continue;
-                for (Column<Real>* impulse : {&own.impulse_x, &own.impulse_y, &own.impulse_z, &own.impulse_w})
+                for (Column<Real>* impulse :
+                     {&own.impulse_x, &own.impulse_y, &own.impulse_z, &own.impulse_w, &own.across})
                     if (!impulse->empty()) (*impulse)[i] *= share;
             }
     }
