@@ -72,15 +72,15 @@ class SweptJoints {
             for (std::size_t i = 0; i < kind.slot.size(); ++i)
                 if (kind.slot[i] >= 0) fn(kind.a[i]), fn(kind.b[i]);
     }
-    /// Calls fn(a, b, work) for each joint: the work that it may do in this substep [J], of its spring and
-    /// motor, and of what keeps bodies on paths that bend.
+    /// Calls fn(a, b, work, bend) for each joint: the work that it may do in this substep [J], of its spring
+    /// and motor, and of what keeps bodies on paths that bend.
     template <class Fn>
     void for_each_drive(const JointStep<Real>& step, const Fn& fn) const {
         for (std::size_t kind = 0; kind < kinds_.size(); ++kind)
             for (std::size_t i = 0; i < kinds_[kind].slot.size(); ++i)
                 if (kinds_[kind].slot[i] >= 0)
-                    fn(kinds_[kind].a[i], kinds_[kind].b[i],
-                       work_of_drive(step, kind, i) + work_of_bend(step, kind, i));
+                    fn(kinds_[kind].a[i], kinds_[kind].b[i], work_of_drive(step, kind, i),
+                       work_of_bend(step, kind, i));
     }
     /// Multiplies the impulses of each joint by share_of(a, b); velocities stay as they are.
     template <class ShareOf>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/joints/joint_arguments.hpp"
 #include "solvers/soft/contacts/stored_contact.hpp"
 #include "solvers/soft/substep_drives.hpp"
 
@@ -15,6 +16,11 @@ constexpr double kLeastShare = 3e-3;
 constexpr double kFalls = 8;
 /// Where impulses of what has risen cannot be blamed for more than this share, the others are let stand.
 constexpr double kLastShare = 0.01;
+/// What joints on bent paths may give, as a share of the energy that bodies have: a joint that turns by f = w
+/// h in a substep is asked for the velocity f v / 2 and gives m f v, so f² of what turns with v, f at most
+/// kMostBend. Joints that are torn far open turn light bodies about anchors far from them, as fast as they
+/// will: what such bends give is no bound for themselves.
+constexpr double kShareOfBends = kMostBend * kMostBend;
 /// Share of the energy of all bodies that is the round-off of its sums.
 constexpr double kRoundOff = 1e-5;
 
@@ -47,9 +53,12 @@ template <class Real>
 bool PassiveSubsteps<Real>::world_gains(const SolvedSubstep<Real>& solved) const {
     const auto [gain, before] = solved.contacts.records.gain(solved.contacts.terms, solved.contacts.loops);
     if (gain <= kRoundOff * before) return false;
-    double work = 0, effort = 0;
-    for_each_drive(solved,
-                   [&](std::int32_t, std::int32_t, double done) { work += done, effort += std::fabs(done); });
+    double work = 0, effort = 0, bend = 0, effort_of_bend = 0;
+    for_each_drive(solved, [&](std::int32_t, std::int32_t, double done, double of_bend) {
+        work += done, effort += std::fabs(done), bend += of_bend, effort_of_bend += std::fabs(of_bend);
+    });
+    const double most = kShareOfBends * (before + effort);
+    work += std::clamp(bend, -most, most), effort += std::fmin(effort_of_bend, most);
     return !(gain - work <= kRoundOff * (before + effort));  // also where it is not a number
 }
 
@@ -117,15 +126,21 @@ double PassiveSubsteps<Real>::find_gains(const SolvedSubstep<Real>& solved) {
         island.mass += groups_[row].mass, island.before += groups_[row].before;
         island.gain += groups_[row].gain;
     }
-    for_each_drive(solved, [&](std::int32_t a, std::int32_t b, double work) {
+    for_each_drive(solved, [&](std::int32_t a, std::int32_t b, double work, double bend) {
         const std::int32_t row = moves(records, a) ? a : b;
         if (!moves(records, row)) return;
         Island& island = island_of(static_cast<std::size_t>(row));
         island.work += work, island.effort += std::fabs(work);
-        if (has_risen_[static_cast<std::size_t>(row)]) island.work_of_risen += work;
+        island.bend += bend, island.effort_of_bend += std::fabs(bend);
+        if (has_risen_[static_cast<std::size_t>(row)])
+            island.work_of_risen += work, island.bend_of_risen += bend;
     });
     double sum = 0;
     for (Island& island : islands_) {
+        const double most = kShareOfBends * (island.before + island.effort);
+        island.work += std::clamp(island.bend, -most, most);
+        island.work_of_risen += std::clamp(island.bend_of_risen, -most, most);
+        island.effort += std::fmin(island.effort_of_bend, most);
         const double gained = island.gain - island.work;
         island.has_gained =
             gained > least_of(island.mass, island.before + island.effort, solved.contacts.terms);

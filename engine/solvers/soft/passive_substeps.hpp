@@ -44,6 +44,8 @@ class PassiveSubsteps {
         double along = 0;          // J, momentum now times the velocities that impulses of risen bodies gave
         double square = 0;         // J, twice the energy of these velocities alone
         double work_of_risen = 0;  // J, the part of `work` that those impulses did
+        // J, likewise of what joints on bent paths gave; beyond a bound it is not in the above.
+        double bend = 0, effort_of_bend = 0, bend_of_risen = 0;
         bool has_gained = false;
         double share = 1;
     };

@@ -269,8 +269,9 @@ void SoftSolver<Real>::share_with_joints(WorldState<Real>& world, Books& books, 
     const double given = books.restitution + books.friction - before;
     if (!(given > 0 && books_.work_of_joints < 0)) return;
     double of_rigid = books_.work_of_joints;  // J
-    joints.for_each_drive(joint_step(world),
-                          [&](std::int32_t, std::int32_t, double work) { of_rigid -= work; });
+    joints.for_each_drive(joint_step(world), [&](std::int32_t, std::int32_t, double work, double bend) {
+        of_rigid -= work + bend;
+    });
     const double of_order =
         std::fmin(given - std::fmax(0, work_at_end(view(), paths, world.bodies)), -books_.work_of_joints);
     const double share = std::fmax(of_order, std::fmin(given, std::fmax(0, -of_rigid)));

@@ -53,8 +53,8 @@ bool drives(const Bodies<Real>& bodies, std::size_t row) {
                                          (bodies.has_rotation && bodies.angular_velocity[row] != 0));
 }
 
-/// Calls fn(row, row, work) for what may give energy in a substep: surfaces that move by themselves, motors
-/// and springs. Work in J.
+/// Calls fn(row, row, work, bend) for what may give energy in a substep: surfaces that move by themselves,
+/// motors and springs; and what joints on paths that bend gave beyond those along straight ones. Works in J.
 template <class Real, class Fn>
 void for_each_drive(const SolvedSubstep<Real>& solved, const Fn& fn) {
     const BodyRecords<Real>& records = solved.contacts.records;
@@ -75,14 +75,14 @@ void for_each_drive(const SolvedSubstep<Real>& solved, const Fn& fn) {
         pairs.for_each([&](std::size_t i) {
             const std::int32_t a = pairs.a[i], b = pairs.b[i];
             if (pairs.is_live[i / kContactBlock] && moves(records, a) != moves(records, b))
-                fn(a, b, -StoredContact<Real>(pairs, i).work(body(a), body(b)));
+                fn(a, b, -StoredContact<Real>(pairs, i).work(body(a), body(b)), 0.0);
         });
     // What stands gives nothing, and most scenes have nothing else that no impulse moves.
     const ContactRows<Real>& supports = solved.contacts.supports;
     if (any_drives)
         supports.for_each([&](std::size_t i) {
             fn(supports.a[i], supports.a[i],
-               -StoredContact<Real>(supports, i).work(DoubleBody{}, surface_at(supports, i)));
+               -StoredContact<Real>(supports, i).work(DoubleBody{}, surface_at(supports, i)), 0.0);
         });
     const auto motion = [&](std::int32_t row) {
         const DoubleBody of = body(row);
@@ -91,10 +91,10 @@ void for_each_drive(const SolvedSubstep<Real>& solved, const Fn& fn) {
     if (any_drives && bodies.has_shapes) {
         solved.paths.for_each_unmoved([&](const PathContact<Real>& contact) {
             fn(contact.near, contact.far,
-               -ContactWork<Real>(contact).work(motion(contact.near), motion(contact.far)));
+               -ContactWork<Real>(contact).work(motion(contact.near), motion(contact.far)), 0.0);
         });
-        solved.paths.rolling().for_each_drive(records,
-                                              [&](std::int32_t row, double work) { fn(row, row, work); });
+        solved.paths.rolling().for_each_drive(
+            records, [&](std::int32_t row, double work) { fn(row, row, work, 0.0); });
     }
     if (has_joints(solved)) solved.joints.for_each_drive(solved.step, fn);
 }

@@ -72,12 +72,14 @@ class SoftJoints {
     bool end_step(const JointStep<Real>& step, const StepView<Real>& contacts, const PathSolver<Real>& paths,
                   Books& books, double dt);
 
-    /// Calls fn(row, row, work) for what springs or drives: its work in this substep [J].
+    /// Calls fn(row, row, work, bend) for what springs or drives, and for joints on paths that bend: works in
+    /// this substep [J].
     template <class Fn>
     void for_each_drive(const JointStep<Real>& step, const Fn& fn) {
         swept_.for_each_drive(step, fn);
         for (DirectJoints<Real>& group : direct_)
-            if (group.may_drive()) fn(group.moving_row(), group.moving_row(), group.work_of_drives(step));
+            if (group.may_drive())
+                fn(group.moving_row(), group.moving_row(), group.work_of_drives(step), 0.0);
     }
     /// Multiplies the impulses of each joint by share_of(row, row), which is the same for all joints of a
     /// group that is solved exactly; velocities stay as they are.
