@@ -29,7 +29,7 @@ namespace carom {
 /// What a variant of the contact law has compiled in.
 enum ContactVariant : unsigned {
     kRough = 1,        // friction, and with it rotation
-    kFixedAngles = 2,  // some bodies do not turn (only with kRough)
+    kFixedAngles = 2,  // some bodies do not turn
     kRolling = 4,      // rolling resistance (only with kRough): effects/rolling_resistance.hpp
 };
 

@@ -58,8 +58,9 @@ struct KernelTable {
     std::size_t (*find_contacts)(const FindContacts<Real>&, std::size_t first, std::size_t last);
     bool (*find_deep)(const SolveContacts<Real>&, const DeepPairs<Real>&, std::size_t first,
                       std::size_t last);
-    // smooth; rough; rough, and some bodies do not turn; the last two with rolling resistance
-    std::array<ContactKernels<Real>, 5> contacts;
+    // smooth; rough; rough, and some bodies do not turn; the last two with rolling resistance; smooth, and
+    // some bodies do not turn
+    std::array<ContactKernels<Real>, 6> contacts;
     // rods between centres, between anchors; hinges; springs and ropes; wheels and sliders; what acts on
     // angles
     std::array<JointKernels<Real>, 6> joints;

@@ -71,7 +71,8 @@ constexpr KernelTable<Real> make_table(std::string_view isa, const ConvexKernels
         .contacts = {make_contact_kernels<0, Real, Isa>(), make_contact_kernels<kRough, Real, Isa>(),
                      make_contact_kernels<kRough | kFixedAngles, Real, Isa>(),
                      make_contact_kernels<kRough | kRolling, Real, Isa>(),
-                     make_contact_kernels<kRough | kFixedAngles | kRolling, Real, Isa>()},
+                     make_contact_kernels<kRough | kFixedAngles | kRolling, Real, Isa>(),
+                     make_contact_kernels<kFixedAngles, Real, Isa>()},
         .joints =
             {{{&give_rods<false, Real, Isa>, &sweep_rods<false, true, Real, Isa>,
                &sweep_rods<false, false, Real, Isa>},

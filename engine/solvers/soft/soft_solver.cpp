@@ -88,8 +88,9 @@ void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Colum
                                       const Executor& executor) {
     read_effects(world, settings_);
     settings_.iterations = iterations(world);
-    const bool are_new =
-        masses_.derive(world.bodies, settings_.effects.friction && !settings_.is_smooth_heap);
+    const bool has_friction = settings_.effects.friction && !settings_.is_smooth_heap,
+               may_turn = has_friction || world.bodies.has_shapes || !world.joints.empty();
+    const bool are_new = masses_.derive(world.bodies, has_friction, may_turn);
     if (are_new && !masses_.have_followed_rows()) finder_.pairs.forget(), corrections_.uneven.clear();
     takes_gains_ = false, gains_.begin_step();
     loops_ = {&kernels, &settings_.kernels_of(kernels, masses_.some_are_fixed()), &executor, rows_per_task()};

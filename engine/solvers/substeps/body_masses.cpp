@@ -17,14 +17,14 @@ constexpr std::size_t kMixed = 64;
 }  // namespace
 
 template <class Real>
-bool BodyMasses<Real>::derive(const Bodies<Real>& bodies, bool has_friction) {
+bool BodyMasses<Real>::derive(const Bodies<Real>& bodies, bool has_friction, bool discs_may_turn) {
     if (are_known_) return false;
     vary_ = !bodies.mass.is_uniform() || bodies.has_flags;
     some_are_fixed_ = false;
     if (vary_) inverse_.resize(bodies.count);
     double lightest = 0, heaviest = 0;  // inverse
     for (std::size_t row = 0; row < bodies.moving() && vary_; ++row) {
-        const bool may_turn = has_friction || !bodies.is_disc(row);
+        const bool may_turn = discs_may_turn || !bodies.is_disc(row);
         const bool is_fixed = may_turn && (bodies.flags_of(row) & kFixedAngle) != 0;
         const double inverse = bodies.inverse_mass(row);
         inverse_[row] = static_cast<Real>(is_fixed ? -inverse : inverse);

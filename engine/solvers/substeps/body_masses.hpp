@@ -21,9 +21,11 @@ class BodyMasses {
     /// Whether that is why they were derived anew; asked once.
     bool have_followed_rows() { return std::exchange(has_followed_rows_, false); }
     /// Derives them if they are not known. Cost: O(bodies) then, where masses vary.
-    /// @param has_friction  without it no disc turns, so that none has a fixed angle
+    /// @param has_friction  whether contacts have any
+    /// @param discs_may_turn  whether something may turn a disc: friction, joints, or contacts of shapes; if
+    /// nothing does, none has a fixed angle
     /// @return whether they were derived anew
-    bool derive(const Bodies<Real>& bodies, bool has_friction);
+    bool derive(const Bodies<Real>& bodies, bool has_friction, bool discs_may_turn);
 
     /// 1/kg, by row: zero for what nothing moves, negative for a fixed angle. Null: all have the same.
     const Real* inverse() const { return vary_ ? inverse_.data() : nullptr; }

@@ -74,7 +74,7 @@ struct ContactSettings {
     /// @param some_are_fixed  whether some bodies do not turn
     template <class Real>
     const ContactKernels<Real>& kernels_of(const KernelTable<Real>& kernels, bool some_are_fixed) const {
-        if (!effects.friction || is_smooth_heap) return kernels.contacts[0];
+        if (!effects.friction || is_smooth_heap) return kernels.contacts[some_are_fixed ? 5 : 0];
         return kernels.contacts[(effects.rolling ? 3u : 1u) + (some_are_fixed ? 1u : 0u)];
     }
 };

@@ -22,7 +22,7 @@ Bodies<Real> bodies_of(const std::vector<double>& masses) {
 TEST_SUITE("solvers/substeps/body_masses") {
     TEST_CASE_TEMPLATE("like masses need no column, and nothing besides the sweeps", Real, float, double) {
         BodyMasses<Real> masses;
-        CHECK(masses.derive(bodies_of<Real>({2, 2, 2}), true));
+        CHECK(masses.derive(bodies_of<Real>({2, 2, 2}), true, true));
         CHECK(masses.inverse() == nullptr);
         CHECK_FALSE(masses.are_uneven());
         CHECK(masses.bytes() == 0);
@@ -32,30 +32,30 @@ TEST_SUITE("solvers/substeps/body_masses") {
         bodies.set_flags(0, kImmovable);
         bodies.set_flags(1, kFixedAngle);
         BodyMasses<Real> masses;
-        masses.derive(bodies, true);
+        masses.derive(bodies, true, true);
         CHECK(masses.some_are_fixed());
         CHECK(masses.inverse()[0] == Real(0));
         CHECK(masses.inverse()[1] == Real(-0.25));
         CHECK(masses.inverse()[2] == Real(0.125));
         masses.forget();
-        masses.derive(bodies, false);  // nothing turns
+        masses.derive(bodies, false, false);  // nothing turns
         CHECK_FALSE(masses.some_are_fixed());
         CHECK(masses.inverse()[1] == Real(0.25));
     }
     TEST_CASE_TEMPLATE("they are derived again only after they were forgotten", Real, float, double) {
         BodyMasses<Real> masses;
-        CHECK(masses.derive(bodies_of<Real>({1, 2}), true));
-        CHECK_FALSE(masses.derive(bodies_of<Real>({1, 1000}), true));
+        CHECK(masses.derive(bodies_of<Real>({1, 2}), true, true));
+        CHECK_FALSE(masses.derive(bodies_of<Real>({1, 1000}), true, true));
         CHECK_FALSE(masses.are_uneven());
         masses.forget();
-        CHECK(masses.derive(bodies_of<Real>({1, 1000}), true));
+        CHECK(masses.derive(bodies_of<Real>({1, 1000}), true, true));
         CHECK(masses.are_uneven());
     }
     TEST_CASE_TEMPLATE("a body that nothing moves makes no masses uneven", Real, float, double) {
         Bodies<Real> bodies = bodies_of<Real>({1, 1000});
         bodies.set_flags(1, kImmovable);
         BodyMasses<Real> masses;
-        masses.derive(bodies, true);
+        masses.derive(bodies, true, true);
         CHECK_FALSE(masses.are_uneven());
     }
 }
