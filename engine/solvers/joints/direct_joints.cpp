@@ -11,6 +11,10 @@ namespace {
 constexpr int kRounds = 2;
 /// As many as it can take to round-off, at most.
 constexpr int kMostRounds = 20;
+/// What joints may give at the end of a step, above what drives do: a share of the energy that their bodies
+/// have, and that of so many times the speed that gravity adds in a substep.
+constexpr double kLeastShareOfEnd = 0.01;
+constexpr double kFallsOfEnd = 8;
 
 }  // namespace
 
@@ -332,9 +336,52 @@ void DirectJoints<Real>::end_step(const JointStep<Real>& step) {
     correct(step);
     system_.pull();
     system_.solve_flat();
+    bound_end(step);
     write_velocities(step);
     for (auto& impulse : last_impulse_)
         for (double& part : impulse) part *= whole;
+}
+
+/// Loops that can hardly be closed, of joints that are torn or stretched, may be solved to impulses that
+/// throw their bodies apart. Those of substeps are bounded with contacts (bound_energy); of the half of one
+/// at the end of a step only the share is given at which bodies have the least energy.
+template <class Real>
+void DirectJoints<Real>::bound_end(const JointStep<Real>& step) {
+    const std::vector<SystemBody> now = system_.bodies;
+    double energy = 0, along = 0, square = 0;  // J; twice the energy of the changes alone
+    for (std::size_t i = 1; i < now.size(); ++i) {
+        if (!(now[i].inverse_mass > 0)) continue;
+        const double mass = 1 / now[i].inverse_mass,
+                     inertia = now[i].inverse_inertia > 0 ? 1 / now[i].inverse_inertia : 0;
+        const Vec2 v = before_[i].velocity, change = now[i].velocity - v;
+        const double spin = before_[i].spin, turn = now[i].spin - spin;
+        energy += 0.5 * (mass * dot(v, v) + inertia * spin * spin);
+        along += mass * dot(v, change) + inertia * spin * turn;
+        square += mass * dot(change, change) + inertia * turn * turn;
+    }
+    const double fall = kFallsOfEnd * step.terms.fall_speed(), gained = along + 0.5 * square,
+                 free = kLeastShareOfEnd * energy + 0.5 * mass_ * fall * fall;
+    if (gained <= free) return;
+    double work = 0;  // J
+    if (may_drive()) {
+        for (std::size_t i = 1; i < now.size(); ++i) {
+            system_.bodies[i].velocity = 0.5 * (before_[i].velocity + now[i].velocity);
+            system_.bodies[i].spin = 0.5 * (before_[i].spin + now[i].spin);
+        }
+        work = system_.work_of_drives();
+    }
+    system_.bodies = now;
+    if (gained - work <= free + kLeastShareOfEnd * std::fabs(work)) return;
+    const double best = (work - along) / square, share = best > 0 ? std::fmin(best, 1) : 0;
+    for (std::size_t i = 1; i < now.size(); ++i) {
+        SystemBody& body = system_.bodies[i];
+        body.velocity = before_[i].velocity, body.spin = before_[i].spin;
+        if (share > 0) {
+            body.velocity += share * (now[i].velocity - before_[i].velocity);
+            body.spin += share * (now[i].spin - before_[i].spin);
+        }
+    }
+    system_.scale(share);
 }
 
 template <class Real>

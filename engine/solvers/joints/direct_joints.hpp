@@ -133,6 +133,7 @@ class DirectJoints {
     void correct(const JointStep<Real>& step);
     void half_kick(const JointStep<Real>& step, double sign);
     void read_velocities(const JointStep<Real>& step);
+    void bound_end(const JointStep<Real>& step);
     bool has_changed(const JointStep<Real>& step) const;
     std::size_t number_of(std::int32_t row) const {
         return static_cast<std::size_t>(std::find(rows_.begin(), rows_.end(), row) - rows_.begin());
