@@ -51,6 +51,18 @@ TEST_SUITE("solvers/substeps/body_masses") {
         CHECK(masses.derive(bodies_of<Real>({1, 1000}), true, true));
         CHECK(masses.are_uneven());
     }
+    TEST_CASE_TEMPLATE(
+        "masses are very uneven from a thousand to one on, without friction from three hundred", Real, float,
+        double) {
+        for (const double ratio : {300.0, 1000.0, 1100.0})
+            for (const bool has_friction : {true, false}) {
+                BodyMasses<Real> masses;
+                masses.derive(bodies_of<Real>({1, ratio}), has_friction, true);
+                CHECK(masses.ratio() == doctest::Approx(ratio).epsilon(1e-6));
+                CHECK(masses.are_very_uneven() == (ratio > (has_friction ? 1000 : 300)));
+                CHECK(masses.are_mixed() == masses.are_very_uneven());
+            }
+    }
     TEST_CASE_TEMPLATE("a body that nothing moves makes no masses uneven", Real, float, double) {
         Bodies<Real> bodies = bodies_of<Real>({1, 1000});
         bodies.set_flags(1, kImmovable);
