@@ -287,7 +287,7 @@ void SoftSolver<Real>::solve_wedged_bodies() {
 template <class Real>
 void SoftSolver<Real>::solve_uneven_contacts(bool is_last) {
     if (masses_.are_uneven()) counters.uneven_sweeps += corrections_.uneven.solve(view(), sweeps_, is_last);
-    corrections_.shape_turns.settle(view(), sweeps_, paths);
+    if (corrections_.shape_turns.may_be_due()) corrections_.shape_turns.settle(view(), sweeps_, paths);
 }
 
 template <class Real>

@@ -115,7 +115,7 @@ bool ShapeTurns<Real>::is_any_loaded(const StepView<Real>& step, const PathSolve
 template <class Real>
 void ShapeTurns<Real>::settle(const StepView<Real>& step, ContactSweeps<Real>& sweeps,
                               PathSolver<Real>& paths) {
-    if (most_ == 0 || (!uneven_.empty() && !is_any_loaded(step, paths))) return;
+    if (!may_be_due() || (!uneven_.empty() && !is_any_loaded(step, paths))) return;
     const auto next = ContactSweeps<Real>::next(step, ContactSweeps<Real>::Blocks::all, 1);
     const bool has_discs = step.graph.pairs.contacts() > 0;
     const auto settled = static_cast<Real>(settled_ * step.terms.fall_speed());

@@ -27,6 +27,8 @@ class ShapeTurns {
                     const BodyMasses<Real>& masses);
     /// Tells that a body was removed or put elsewhere between steps. @param mass  kg
     void note_lost(double mass) { heaviest_lost_ = std::max(heaviest_lost_, mass); }
+    /// Whether contacts of shapes may have to be solved by turns in this step.
+    bool may_be_due() const { return most_ > 0; }
     /// Takes turns after all contacts were solved in a substep, until a sweep over them changes little: none
     /// where no two shapes of uneven masses touch, where light ones hardly move the heavy ones, and no heavy
     /// one has gone. Cost: O(contacts), at most `kMostTurns` times that of a substep.
