@@ -347,14 +347,14 @@ void DirectJoints<Real>::end_step(const JointStep<Real>& step) {
 /// at the end of a step only the share is given at which bodies have the least energy.
 template <class Real>
 void DirectJoints<Real>::bound_end(const JointStep<Real>& step) {
-    const std::vector<SystemBody> now = system_.bodies;
     double energy = 0, along = 0, square = 0;  // J; twice the energy of the changes alone
-    for (std::size_t i = 1; i < now.size(); ++i) {
-        if (!(now[i].inverse_mass > 0)) continue;
-        const double mass = 1 / now[i].inverse_mass,
-                     inertia = now[i].inverse_inertia > 0 ? 1 / now[i].inverse_inertia : 0;
-        const Vec2 v = before_[i].velocity, change = now[i].velocity - v;
-        const double spin = before_[i].spin, turn = now[i].spin - spin;
+    for (std::size_t i = 1; i < before_.size(); ++i) {
+        const SystemBody& body = system_.bodies[i];
+        if (!(body.inverse_mass > 0)) continue;
+        const double mass = 1 / body.inverse_mass,
+                     inertia = body.inverse_inertia > 0 ? 1 / body.inverse_inertia : 0;
+        const Vec2 v = before_[i].velocity, change = body.velocity - v;
+        const double spin = before_[i].spin, turn = body.spin - spin;
         energy += 0.5 * (mass * dot(v, v) + inertia * spin * spin);
         along += mass * dot(v, change) + inertia * spin * turn;
         square += mass * dot(change, change) + inertia * turn * turn;
@@ -362,23 +362,24 @@ void DirectJoints<Real>::bound_end(const JointStep<Real>& step) {
     const double fall = kFallsOfEnd * step.terms.fall_speed(), gained = along + 0.5 * square,
                  free = kLeastShareOfEnd * energy + 0.5 * mass_ * fall * fall;
     if (gained <= free) return;
+    at_end_ = system_.bodies;
     double work = 0;  // J
     if (may_drive()) {
-        for (std::size_t i = 1; i < now.size(); ++i) {
-            system_.bodies[i].velocity = 0.5 * (before_[i].velocity + now[i].velocity);
-            system_.bodies[i].spin = 0.5 * (before_[i].spin + now[i].spin);
+        for (std::size_t i = 1; i < at_end_.size(); ++i) {
+            system_.bodies[i].velocity = 0.5 * (before_[i].velocity + at_end_[i].velocity);
+            system_.bodies[i].spin = 0.5 * (before_[i].spin + at_end_[i].spin);
         }
         work = system_.work_of_drives();
+        system_.bodies = at_end_;
     }
-    system_.bodies = now;
     if (gained - work <= free + kLeastShareOfEnd * std::fabs(work)) return;
     const double best = (work - along) / square, share = best > 0 ? std::fmin(best, 1) : 0;
-    for (std::size_t i = 1; i < now.size(); ++i) {
+    for (std::size_t i = 1; i < at_end_.size(); ++i) {
         SystemBody& body = system_.bodies[i];
         body.velocity = before_[i].velocity, body.spin = before_[i].spin;
         if (share > 0) {
-            body.velocity += share * (now[i].velocity - before_[i].velocity);
-            body.spin += share * (now[i].spin - before_[i].spin);
+            body.velocity += share * (at_end_[i].velocity - before_[i].velocity);
+            body.spin += share * (at_end_[i].spin - before_[i].spin);
         }
     }
     system_.scale(share);

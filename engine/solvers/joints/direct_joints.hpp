@@ -156,6 +156,7 @@ class DirectJoints {
     std::vector<Change> given_;  // by body: what its joints gave it in this substep
     double largest_change_ = 0;
     std::vector<SystemBody> before_;                   // that were read
+    std::vector<SystemBody> at_end_;                   // of a step, where its joints gave too much
     std::vector<std::array<double, 3>> last_impulse_;  // N s, by joint: of the last substep of a step
     std::vector<JointSystem::Blow> blows_;
     std::vector<std::size_t> asked_;
