@@ -30,7 +30,7 @@ class UnevenContacts {
     /// Whether contacts are swept again.
     bool are_swept() const { return !blocks_.empty(); }
     /// To be called when the contacts of a step are found.
-    /// @param are_mixed  whether bodies that differ by more than a hundred times are mixed
+    /// @param are_mixed  whether bodies that differ by more than is swept are mixed
     void begin_step(const StepView<Real>& step, const WorldState<Real>& world, bool are_mixed);
     /// After the sweeps of a substep. Cost: O(contacts), times a few dozen while piles of uneven masses move.
     /// @param is_last  in the last substep contacts at rest are swept again as well
@@ -70,7 +70,7 @@ class UnevenContacts {
     int most_relaxed_ = 0;              // over-relaxed sweeps of a substep
     double enough_ = 0;                 // change of a velocity by the last of them, of what gravity adds
     std::vector<std::uint32_t> deep_;   // of these pairs, those whose overlaps are parted in this step
-    std::vector<std::int32_t> swept_;   // rows that these pairs have, ascending
+    std::vector<std::int32_t> swept_;   // rows that these pairs have
     std::vector<Real> before_;          // [of these][4]: velocity records when they were looked at last
     ContactRelaxation<2> smooth_;
     ContactRelaxation<3> rough_;
