@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include <string>
+#include <utility>
 
 using namespace carom;
 using namespace carom::test;
@@ -63,6 +64,27 @@ std::string refusal(BasicWorld<Real>& world, std::span<const std::byte> state) {
     }
     CHECK(world.state_hash() == before);
     return message;
+}
+
+/// A world and those that its state is restored in, of each instruction set, go on alike for some steps.
+template <class Real>
+void check_goes_on(BasicWorld<Real> whole, int steps) {
+    const std::vector<std::byte> state = saved(whole);
+    run(whole, steps);
+    for (const std::string& isa : runnable_instruction_sets()) {
+        CAPTURE(isa);
+        BasicWorld<Real> other(Scene{}, {.isa = isa, .threads = 2});
+        other.restore_state(state);
+        run(other, steps);
+        CHECK(other.state_hash() == whole.state_hash());
+    }
+}
+/// The same from step `first` of a scene on.
+template <class Real>
+void check_goes_on(const Scene& scene, int first, int steps) {
+    BasicWorld<Real> whole(scene, {.threads = 1});
+    run(whole, first);
+    check_goes_on(std::move(whole), steps);
 }
 
 }  // namespace
@@ -151,16 +173,7 @@ TEST_SUITE("determinism/snapshots") {
         scene.add({.type = BodyType::static_body, .shape = Box{40, 2}, .position = {0, -1}});
         add_pyramid(scene, {.base = 12, .body = {.shape = Box{1, 1}, .material = {.friction = 0.6}}});
         scene.add({.shape = Box{0.5, 0.5}, .position = {-9, 8}, .velocity = {2, 0}});
-        BasicWorld<Real> whole(scene, {.threads = 1});
-        run(whole, 80);
-        const std::vector<std::byte> state = saved(whole);
-        run(whole, 45);
-        for (const std::string& isa : runnable_instruction_sets()) {
-            BasicWorld<Real> other(Scene{}, {.isa = isa, .threads = 2});
-            other.restore_state(state);
-            run(other, 45);
-            CHECK(other.state_hash() == whole.state_hash());
-        }
+        check_goes_on<Real>(scene, 80, 45);
     }
 
     TEST_CASE_TEMPLATE("crates at rest on a chain, whose contacts are carried on, go on alike", Real, float,
@@ -171,16 +184,7 @@ TEST_SUITE("determinism/snapshots") {
         for (int i = 0; i < 12; ++i)
             scene.add(
                 {.shape = Box{0.8, 0.5}, .position = {-6 + 1.1 * i, 1.4}, .material = {.friction = 0.8}});
-        BasicWorld<Real> whole(scene, {.threads = 1});
-        run(whole, 200);
-        const std::vector<std::byte> state = saved(whole);
-        run(whole, 45);
-        for (const std::string& isa : runnable_instruction_sets()) {
-            BasicWorld<Real> other(Scene{}, {.isa = isa, .threads = 2});
-            other.restore_state(state);
-            run(other, 45);
-            CHECK(other.state_hash() == whole.state_hash());
-        }
+        check_goes_on<Real>(scene, 200, 45);
     }
 
     TEST_CASE_TEMPLATE(
@@ -204,16 +208,8 @@ TEST_SUITE("determinism/snapshots") {
         CHECK(whole.profile().contacts > 1024);             // fewer are cut anew in each step
         for (int saved_at = 0; saved_at < 4; ++saved_at) {  // as many steps as a cut is kept for
             CAPTURE(saved_at);
-            const std::vector<std::byte> state = saved(whole);
+            check_goes_on(whole, 11);
             run(whole, 1);
-            BasicWorld<Real> ahead = whole;
-            run(ahead, 10);
-            for (const std::string& isa : runnable_instruction_sets()) {
-                BasicWorld<Real> other(Scene{}, {.isa = isa, .threads = 2});
-                other.restore_state(state);
-                run(other, 11);
-                CHECK(other.state_hash() == ahead.state_hash());
-            }
         }
     }
 
