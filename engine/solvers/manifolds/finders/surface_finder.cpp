@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "constraints/partner.hpp"
 #include "effects/friction.hpp"
@@ -198,7 +197,6 @@ template <class Real>
 void SurfaceFinder<Real>::find_edges(const Inputs& in, ManifoldList<Real>& list) {
     const WorldState<Real>& world = in.world;
     groups_before_.swap(groups_), groups_.clear();
-    if (std::exchange(finds_all_, false) != 0) groups_before_.clear();
     auto before = groups_before_.begin();
     for (std::size_t first = 0, last = 0; first < pairs_.size(); first = last) {
         while (last < pairs_.size() && pairs_[last].row == pairs_[first].row &&

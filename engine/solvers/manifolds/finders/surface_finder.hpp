@@ -25,7 +25,8 @@ class SurfaceFinder {
   public:
     /// Takes the edges over that bodies can touch until candidate pairs change.
     void renew(const WorldState<Real>& world, const EdgeCandidates<Real>& edges);
-    void clear() { pairs_.clear(), finds_all_ = true; }
+    /// Edges are other ones: what touches them is found anew.
+    void clear() { pairs_.clear(), groups_.clear(); }
     /// Adds what came with new margins.
     void add(const WorldState<Real>& world, const EdgeCandidates<Real>& edges);
     /// Whether nothing can be found.
@@ -61,7 +62,7 @@ class SurfaceFinder {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
-        archive(self.pairs_, self.groups_, self.finds_all_);
+        archive(self.pairs_, self.groups_);
     }
 
   private:
@@ -96,8 +97,7 @@ class SurfaceFinder {
                                  double dt, double thickness) const;
 
     std::vector<Near> pairs_;
-    std::vector<Group> groups_;      // of the last list, by row and track
-    std::int32_t finds_all_ = true;  // whether edges are other ones since then
+    std::vector<Group> groups_;  // of the last list, by row and track
     ChunkedList rows_near_walls_;
     // Scratch of one contact after the other.
     std::vector<std::int32_t> near_edges_;
