@@ -113,7 +113,7 @@ void SoftSolver<Real>::find_contacts(WorldState<Real>& world, const EdgeCandidat
     settings_.masses_are_uneven = masses_.are_uneven();
     settings_.sweeps_hits =
         !world.effects.restitution && !settings_.masses_are_uneven && !world.bodies.has_flags;
-    warm_start_.begin_step(graph, terms_.substep_dt, terms_.dt);
+    warm_start_.begin_step(graph, terms_.substep_dt, terms_.dt, longest_substep);
     const bool is_new =
         finder_.pairs.find(view(), world.bodies, masses_, motion,
                            flies_together && !world.bodies.has_shapes && world.joints.empty());

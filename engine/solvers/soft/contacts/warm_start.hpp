@@ -13,7 +13,8 @@ template <class Real>
 class WarmStart {
   public:
     /// Rescales the impulses of the graph to the substeps of this step.
-    void begin_step(ContactGraph<Real>& graph, double substep_dt, double dt);
+    /// @param longest_substep  s, that gravity allows for bodies of the usual radius; 0: any
+    void begin_step(ContactGraph<Real>& graph, double substep_dt, double dt, double longest_substep);
     /// While steps vary in length: what the contacts keep is a mean over time. To be called when the impulses
     /// of the step are in the graph. Cost: O(contacts) then, else nothing.
     void end_step(ContactGraph<Real>& graph);
@@ -56,6 +57,7 @@ class WarmStart {
     double substep_dt_ = 0;  // s, 0: there are no impulses
     double kept_ = 1;
     double dt_ = 0;            // s, of the step
+    double mean_over_ = 0;     // s, while steps vary
     double varying_left_ = 0;  // s, for which steps count as varying
     bool are_known_ = false, is_rebalanced_ = false;
     std::array<Column<Real>, 6> before_;  // N s, impulses at the start of the step, while steps vary
