@@ -24,6 +24,7 @@ constexpr double kOwnSteps = 5;          // steps at the body's own speed that a
 constexpr double kLeastOwnMargin = 0.1;  // own radii, or usual ones if these are less, that every margin has
 constexpr double kLargestSize = 4;       // own radii that count as a body's size beside much larger ones
 constexpr double kFewestSteps = 1.25;    // steps that a margin lasts, even above the largest margin
+constexpr double kFarMargin = 1.25;      // the largest margin of two bodies, beyond which they are a far pair
 constexpr double kFlowSteps = 0.7;       // steps of the flow around the body, because the flow changes
 
 // Share of their distance by which the places of two bodies, one of them slim, may come nearer by their
@@ -322,6 +323,21 @@ void Candidates<Real>::follow_rows(const Bodies<Real>& bodies, std::span<const s
                is_elsewhere[static_cast<std::size_t>(b)];
     });
     std::sort(added_pairs_.begin(), added_pairs_.end());
+}
+
+template <class Real>
+std::size_t Candidates<Real>::count_far_pairs(const Bodies<Real>& bodies) const {
+    if (!is_valid_) return 0;
+    const auto far = [&](std::int32_t of) {
+        const auto row = static_cast<std::size_t>(of);
+        const auto radius = static_cast<double>(bodies.radius[row]);
+        const double size = std::min(radii_.largest, kLargestSize * radius);
+        return static_cast<double>(reach_[row]) - radius - kFarMargin * kLargestOwnMargin * size;
+    };
+    const std::int32_t *a = pair_a(), *b = pair_b();
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < pair_count(); ++i) count += far(a[i]) + far(b[i]) > 0 ? 1 : 0;
+    return count;
 }
 
 template <class Real>

@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <cmath>
 
 #include "solvers/joints/built_in_pairs.hpp"
 #include "solvers/shared/check_energy.hpp"
@@ -7,15 +5,11 @@
 #include "stages/stage.hpp"
 #include "step/make_simulation.hpp"
 
-// THE STEP of solver `soft`: contacts are found once, then solved in substeps. docs/how-a-step-works.md has a
-// paragraph on each line.
+// THE STEP of solver `soft`: contacts are found once a flight, then solved in substeps.
+// docs/how-a-step-works.md has a paragraph on each line.
 
 namespace carom {
 namespace {
-
-/// Substeps are so many that a body falls at most this share of the usual radius from rest in one, because
-/// contacts are looked at once a substep. No more are taken than a scene may ask for.
-constexpr double kLargestFall = 0.005, kMostSubsteps = 1024;
 
 template <class Real>
 class SoftStep final : public SoftSimulation<Real> {
@@ -224,41 +218,39 @@ class SoftStep final : public SoftSimulation<Real> {
                                  kFirstOfEnd = kFirstOfSubstep + std::size(kSubstep);
     static_assert(kFirstOfEnd + std::size(kEnd) <= StageTimes::kMostStages);
 
-    /// Substeps a second that gravity calls for; 0: as few as anything.
-    double rate_against_gravity() const {
-        if (this->soft.joints.is_rattle) return 0;
-        const Radii* known = this->candidates.known_radii();
-        const double usual = known ? known->usual : measure_radii(this->world.bodies).usual;
-        if (!(usual > 0)) return 0;
-        const double gravity = std::sqrt(length_squared(this->world.gravity));
-        return std::sqrt(0.5 * gravity / (kLargestFall * usual));
-    }
-    static int substeps_of(double dt, double rate) {
-        return static_cast<int>(std::fmin(std::ceil(dt * rate), kMostSubsteps));
+    /// @return false if it was interrupted: the world is as it was at the start of the flight
+    template <class Watch>
+    [[gnu::always_inline]] static bool fly(Sim& sim, Watch& watch) {
+        sim.set_flight();
+        sim.keep_start_of_flight();
+        bool goes_on = run_interruptible(kBegin, 0, sim, watch);
+        for (sim.substep = 0; goes_on && sim.substep < sim.substep_count; ++sim.substep)
+            goes_on = run_interruptible(kSubstep, kFirstOfSubstep, sim, watch);
+        if (!goes_on) return false;
+        run_stages(kEnd, kFirstOfEnd, sim, watch);
+        sim.flights.end_flight();
+        return true;
     }
 
     template <class Watch>
     void step(double dt, Watch& watch) {
-        if (this->has_anything_to_move()) {
-            this->flight_dt = dt;
-            const double rate = rate_against_gravity();
-            this->substep_count =
-                std::max({this->substeps_for_drag(dt), substeps_of(dt, rate), this->substeps_for_joints()});
-            this->substep_dt = dt / this->substep_count;
-            this->longest_substep = rate > 0 ? 1 / rate : 0;
-            Sim& sim = *this;
+        Sim& sim = *this;
+        const double start = sim.world.time;
+        if (sim.has_anything_to_move()) {
             if (!sim.can_touch()) sim.drop_contacts();
+            sim.begin_flights(dt);
             watch.start();
-            this->keep_start_of_step();
-            bool goes_on = run_interruptible(kBegin, 0, sim, watch);
-            for (this->substep = 0; goes_on && this->substep < this->substep_count; ++this->substep)
-                goes_on = run_interruptible(kSubstep, kFirstOfSubstep, sim, watch);
-            if (goes_on) run_stages(kEnd, kFirstOfEnd, sim, watch);
+            bool goes_on = true;
+            while (goes_on && !sim.flights.are_done()) {
+                goes_on = fly(sim, watch);
+                sim.world.time = start + sim.flights.elapsed();
+            }
             watch.finish();
-            if (!goes_on) return this->take_back_step();
+            if (!goes_on) return sim.take_back_flight();
+        } else {
+            sim.world.time += dt;
         }
-        this->world.time += dt;
-        ++this->step_count;
+        ++sim.step_count;
     }
 
   public:

@@ -4,11 +4,14 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <optional>
 
 #include "math/random.hpp"
 #include "support/effort.hpp"
+#include "support/other_order.hpp"
 #include "support/report.hpp"
 
 using namespace carom;
@@ -58,6 +61,25 @@ Scene stirred_boxes() {
     return scene;
 }
 
+/// Discs of 4 mm in a shaft of 12 of them, over a height of 1.2 m: they fall onto each other, the last ones
+/// at more than ten diameters in a step of 1/30 s.
+Scene grains_that_fall(int count) {
+    constexpr double kRadius = 0.004, kHeight = 1.2;  // m
+    constexpr int kColumns = 10;
+    const Material material{.friction = 0.1, .restitution = 0.6};
+    Random random(5);
+    Scene scene;
+    scene.gravity = {0, -9.8};
+    scene.walls = Walls{.min = {0, 0}, .max = {0.096, 1.3}, .material = material};
+    const double pitch = kHeight * kColumns / count;  // m, from row to row
+    for (int i = 0; i < count; ++i)
+        scene.add({.shape = Disc{kRadius},
+                   .position = {0.005 + 0.0094 * (i % kColumns) + random.uniform(0, 1e-3),
+                                kRadius + pitch * (i / kColumns)},
+                   .material = material});
+    return scene;
+}
+
 /// The most solves of contacts of shapes in a step.
 template <class Number>
 std::int64_t most_solves(const Scene& scene, int steps) {
@@ -74,6 +96,53 @@ std::int64_t most_solves(const Scene& scene, int steps) {
 }  // namespace
 
 TEST_SUITE("hard cases/stalls") {
+    // A disc may touch whatever it can reach in a step: 130 others here, all of which were contacts that
+    // sweeps go over. docs/decisions/0105-flights-of-a-step.md.
+    TEST_CASE_TEMPLATE("a crowd of grains that falls far in a step has few contacts a body", Number, float,
+                       double) {
+        constexpr double kLongStep = 1.0 / 30;  // s
+        const int count = scaled(1000, 400), steps = 30;
+        const Scene scene = grains_that_fall(count);
+        BasicWorld<Number> world(scene, {.threads = 1}), other(scene, in_other_order({}));
+        std::optional<BasicWorld<Number>> restored;
+        std::int64_t contacts = 0;
+        double overlap = 0;
+        for (int step = 0; step < steps; ++step) {
+            world.step(kLongStep), other.step(kLongStep);
+            if (restored) restored->step(kLongStep);
+            if (step == steps / 4) restored.emplace(world);
+            contacts = std::max(contacts, world.profile().contacts);
+            overlap = std::fmax(overlap, world.overlaps().mean);
+        }
+        report(count, " grains: at most ", contacts, " contacts, mean overlap ", overlap);
+        CHECK(contacts < 8 * count);
+        CHECK(overlap < 0.03);
+        CHECK(world.time() == doctest::Approx(steps * kLongStep).epsilon(1e-12));
+        CHECK(world.quarantined().empty());
+        const BodyView<Number> bodies = world.bodies();
+        for (std::size_t row = 0; row < bodies.count; ++row) {
+            CHECK(std::fabs(static_cast<double>(bodies.position_x[row]) - 0.048) < 0.048);
+            CHECK(std::fabs(static_cast<double>(bodies.position_y[row]) - 0.65) < 0.65);
+        }
+        CHECK(world.state_hash() == other.state_hash());
+        CHECK(world.state_hash() == restored->state_hash());
+    }
+
+    // Shorter flights would make no fewer pairs where bodies lie in one place.
+    TEST_CASE("a step of a crowd in one place finds its pairs once") {
+        constexpr int kDiscs = 120;
+        Scene scene;
+        scene.effects.friction = true;
+        for (int i = 0; i < kDiscs; ++i)
+            scene.add({.shape = Disc{0.5}, .position = {1e-3 * i, 0}, .material = {.friction = 0.3}});
+        World world(scene, {.threads = 1});
+        for (int step = 1; step <= 10; ++step) {
+            world.step(kStep);
+            if (step == 1) CHECK(world.profile().candidate_pairs > 10 * kDiscs);
+            CHECK(world.profile().rebuilds <= step);
+        }
+    }
+
     // A substep solves paths once, and up to five times more where the world has gained energy; each is four
     // solves with rolling resistance. The turns of what is uneven are 31 in a substep and 124 in a step at
     // most, but for rounding, a solve each: docs/decisions/0086-steps-that-stall.md. They were seven.

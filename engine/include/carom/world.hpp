@@ -99,9 +99,9 @@ class BasicWorld {
     /// `WorldOptions::should_stop` said so, or Error (given_up) if solver `event` finds more impacts than a
     /// step may have; the message names the bodies. The step then ends early: the world is as it was at
     /// `time()`, whole, and can go on. Under `event` that is the time of the impact that was next, under
-    /// `impulse` the start of the present substep, under `soft` of the step. (Under these two bodies may have
-    /// woken, and forces of contacts at rest are found anew.) What `parallel_for` throws; the step has been
-    /// taken then.
+    /// `impulse` the start of the present substep, under `soft` of the step, or of the part of it that bodies
+    /// were in where they come so far that it is taken in parts. (Under these two bodies may have woken, and
+    /// forces of contacts at rest are found anew.) What `parallel_for` throws; the step has been taken then.
     /// Cost: O(bodies + candidate pairs); no allocation once the world has reached its largest size and its
     /// busiest step.
     void step(double dt);

@@ -29,10 +29,10 @@ template <class Real>
 void Simulation<Real>::set_iterations(std::optional<int>) {}
 
 template <class Real>
-int Simulation<Real>::substeps_for_drag(double dt) const {
+int Simulation<Real>::substeps_for_drag(double dt, int flights) const {
     // So that the series of effects/flight.hpp stay exact.
     const double largest_drag = std::fmax(world.drag.linear, world.drag.angular);
-    return std::max(substeps_asked_for,
+    return std::max((substeps_asked_for + flights - 1) / flights,
                     static_cast<int>(std::ceil(dt * largest_drag / kLargestDragTimesStep)));
 }
 

@@ -115,9 +115,10 @@ class Simulation {
     std::vector<std::int32_t> row_order;   ///< while rows are sorted
     std::size_t immovable_when_asked = 0;  ///< when it was asked how many bodies stand
 
-    /// Parts that strong drag needs a step of dt [s] to be cut into, or that were asked for, if those are
+    /// Parts that strong drag needs a flight of dt [s] to be cut into, or that were asked for, if those are
     /// more.
-    int substeps_for_drag(double dt) const;
+    /// @param flights  of equal length in a step
+    int substeps_for_drag(double dt, int flights = 1) const;
     /// Whether anything can move, on its own or because something else does.
     bool has_anything_to_move() const;
     /// Whether two things are there that can touch.

@@ -1,10 +1,34 @@
 #include "solvers/soft/soft_simulation.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "solvers/soft/stages.hpp"
 
 namespace carom {
+namespace {
+
+/// Substeps are so many that a body falls at most this share of the usual radius from rest in one, because
+/// contacts are looked at once a substep. No more are taken than a scene may ask for.
+constexpr double kLargestFall = 0.005, kMostSubsteps = 1024;
+
+/// Where a step is cut into flights, a body of root mean square speed travels at most this share of the usual
+/// radius in a substep, unless more substeps than so many would be needed in a flight: what falls into a
+/// crowd faster is stopped too deep in it.
+constexpr double kLargestTravel = 0.5;
+constexpr double kMostSubstepsOfFlight = 16;
+
+/// Far pairs a body (Candidates::count_far_pairs) above which flights are halved, and below which a step
+/// begins with longer ones.
+constexpr double kMostFarPairs = 1;
+constexpr double kFewFarPairs = 0.125;
+/// Candidate pairs a body that crowds have at any speed: where there are no more, far ones are not counted.
+constexpr double kOrdinaryPairs = 5;
+/// Bodies that are counted besides, for a few may all be near each other.
+constexpr double kFewBodies = 64;
+
+}  // namespace
 
 template <class Real>
 void SoftSimulation<Real>::forget_derived_state() {
@@ -12,8 +36,70 @@ void SoftSimulation<Real>::forget_derived_state() {
     soft.forget_rows(), soft.paths.forget_cut(), edge_candidates.forget_rows();
 }
 
+/// Substeps a second that gravity calls for; 0: as few as anything.
 template <class Real>
-void SoftSimulation<Real>::take_back_step() {
+double SoftSimulation<Real>::rate_against_gravity() const {
+    if (soft.joints.is_rattle) return 0;
+    const Radii* known = this->candidates.known_radii();
+    const double usual = known ? known->usual : measure_radii(this->world.bodies).usual;
+    if (!(usual > 0)) return 0;
+    const double gravity = std::sqrt(length_squared(this->world.gravity));
+    return std::sqrt(0.5 * gravity / (kLargestFall * usual));
+}
+
+/// Substeps of a flight of dt [s] among several that speed calls for.
+template <class Real>
+int SoftSimulation<Real>::substeps_for_speed(double dt) const {
+    const Bodies<Real>& bodies = this->world.bodies;
+    double sum = 0;  // m²/s²
+    for (std::size_t row = 0; row < bodies.moving(); ++row)
+        sum += length_squared(Vec2{bodies.velocity_x[row], bodies.velocity_y[row]});
+    const double travel = dt * std::sqrt(sum / static_cast<double>(bodies.moving()));
+    const double substeps = std::ceil(travel / (kLargestTravel * this->candidates.usual_radius()));
+    return static_cast<int>(std::fmin(substeps, kMostSubstepsOfFlight));
+}
+
+template <class Real>
+void SoftSimulation<Real>::set_flight() {
+    const double dt = flights.length(), rate = rate_against_gravity();
+    const auto against_gravity = static_cast<int>(std::fmin(std::ceil(dt * rate), kMostSubsteps));
+    this->flight_dt = dt;
+    substep_count =
+        std::max({this->substeps_for_drag(dt, flights.count()), against_gravity, substeps_for_joints()});
+    if (flights.count() > 1) substep_count = std::max(substep_count, substeps_for_speed(dt));
+    substep_dt = dt / substep_count;
+    longest_substep = rate > 0 ? 1 / rate : 0;
+}
+
+/// Joints go by the step: limits that a program moves, gaps that are closed within it.
+template <class Real>
+bool SoftSimulation<Real>::shorten_flight() {
+    const double bodies = static_cast<double>(this->world.bodies.count) + kFewBodies;
+    if (!this->world.joints.empty() ||
+        static_cast<double>(this->candidates.pair_count()) <= kOrdinaryPairs * bodies ||
+        static_cast<double>(this->candidates.count_far_pairs(this->world.bodies)) <= kMostFarPairs * bodies ||
+        !flights.shorten())
+        return false;
+    set_flight();
+    this->candidates.invalidate_pairs();
+    return true;
+}
+
+template <class Real>
+void SoftSimulation<Real>::begin_flights(double dt) {
+    const auto far_pairs = [&] {
+        return static_cast<double>(this->candidates.count_far_pairs(this->world.bodies));
+    };
+    if (!this->world.joints.empty())
+        flights = {};
+    else if (flights.count() > 1 &&
+             far_pairs() <= kFewFarPairs * static_cast<double>(this->world.bodies.count))
+        flights.lengthen();
+    flights.begin_step(dt);
+}
+
+template <class Real>
+void SoftSimulation<Real>::take_back_flight() {
     this->world.books = start_books_;
     soft.drop_books();
     forget_derived_state();

@@ -6,11 +6,12 @@
 #include "solvers/soft/impacts/shape_tunnelling.hpp"
 #include "solvers/soft/impacts/tunnelling.hpp"
 #include "solvers/soft/soft_solver.hpp"
+#include "solvers/soft/step_flights.hpp"
 
 namespace carom {
 
-/// A world that solver `soft` steps: a step is one flight for the broadphase, cut into substeps for the
-/// contacts.
+/// A world that solver `soft` steps: a step is a flight for the broadphase, or several, each cut into
+/// substeps for the contacts.
 template <class Real>
 class SoftSimulation : public Simulation<Real> {
   public:
@@ -65,14 +66,23 @@ class SoftSimulation : public Simulation<Real> {
         return soft.joints.describe();
     }
 
-    /// Keeps what a step writes before its end, if it may be interrupted: the books alone.
-    void keep_start_of_step() {
+    /// Length and substeps of the present flight.
+    void set_flight();
+    /// Halves the present flight where it would make too many pairs; it then begins anew.
+    /// @return whether it did
+    bool shorten_flight();
+    /// Cuts a step of dt [s] into as many flights as the one before, or half as many where those made few
+    /// pairs.
+    void begin_flights(double dt);
+
+    /// Keeps what a flight writes before its end, if it may be interrupted: the books alone.
+    void keep_start_of_flight() {
         if (this->interruption.question()) start_books_ = this->world.books;
     }
-    /// Gives up the present step: the state is that of its start.
-    void take_back_step();
+    /// Gives up the present flight: the state is that of its start.
+    void take_back_flight();
 
-    /// Where bodies began the present step.
+    /// Where bodies began the present flight.
     StepFlight<Real> flight() const {
         return {motion, this->candidates, edge_candidates, this->flight_dt, this->fastest};
     }
@@ -82,20 +92,23 @@ class SoftSimulation : public Simulation<Real> {
     Tunnelling<Real> tunnelling;
     ShapeTunnelling<Real> shape_tunnelling;
     Sleepers<Real> sleepers;
+    StepFlights flights;
     std::int64_t graph_of_rebuild = -1;  ///< which candidate pairs the contact graph was made of
     std::uint32_t kinds_of_graph = 0;    ///< what columns of contacts it was described with
-    // These members hold for the present step alone.
+    // These members hold for the present flight alone.
     Column<Real> motion;  ///< [rows][4]: x, y [m], vx, vy [m/s] of each body at its start
     int substep = 0, substep_count = 1;
     double substep_dt = 0;       ///< s
     double longest_substep = 0;  ///< s, that gravity allows; 0: any
 
   private:
+    double rate_against_gravity() const;
+    int substeps_for_speed(double dt) const;
     void note_change(bool may_follow);
     bool can_follow(std::size_t row) const;
     void note_leaving(std::size_t row);
 
-    Books start_books_;  // of the present step
+    Books start_books_;  // of the present flight
     // Changes since the last step.
     std::uint64_t changes_ = 0;
     std::vector<BodyId> elsewhere_;           // bodies that were put elsewhere
@@ -105,7 +118,7 @@ class SoftSimulation : public Simulation<Real> {
     static void visit_all(Self& self, Archive& archive) {
         Simulation<Real>::visit_common(self, archive);
         archive(self.edge_candidates, self.soft, self.sleepers, self.graph_of_rebuild);
-        archive(self.kinds_of_graph, self.changes_, self.elsewhere_);
+        archive(self.kinds_of_graph, self.changes_, self.elsewhere_, self.flights);
         if constexpr (!std::is_const_v<Self>) self.sleepers.use(*self.kernels);
     }
 };

@@ -42,7 +42,13 @@ void update_candidates(SoftSimulation<Real>& sim) {
         (sim.world.bodies.has_shapes || sim.world.bodies.asleep > 0 || !sim.edge_candidates.may_add() ||
          !moves_few_contacts(sim)))
         sim.candidates.invalidate_pairs();
+    const std::int64_t former = sim.candidates.rebuild_count();
     find_candidate_pairs(sim, flight_clock_at(sim.flight_dt, 0));
+    while (sim.candidates.rebuild_count() != former && sim.shorten_flight()) {
+        begin_flight(sim);
+        sim.edge_candidates.place(sim.world, sim.flight_dt);
+        find_candidate_pairs(sim, flight_clock_at(sim.flight_dt, 0));
+    }
 }
 
 template <class Real>
