@@ -14,28 +14,33 @@ void ImpactPaths<Real>::begin_substep(const WorldState<Real>& world, const Subst
     movers_.resize(std::max(movers_.size(), bodies.count));
 }
 
+/// How contacts and free flight change the velocity of a body in this substep, and free flight alone [m/s].
+template <class Real>
+VelocityChange<Real> ImpactPaths<Real>::change_of(std::size_t row) const {
+    const Real* record = bodies_->velocity + 4 * row;
+    const Real start_x = bodies_->start.x[row], start_y = bodies_->start.y[row];
+    return {record[0] - start_x, record[1] - start_y, bodies_->decay * start_x + bodies_->gain_x - start_x,
+            bodies_->decay * start_y + bodies_->gain_y - start_y};
+}
+
 /// By which kernels/contacts/advance_bodies.hpp will move a body that is awake.
 template <class Real>
 Mover ImpactPaths<Real>::path_of(std::size_t row) const {
     const Real* record = bodies_->velocity + 4 * row;
-    const Real start_x = bodies_->start.x[row], start_y = bodies_->start.y[row];
     const Vec2 x = Vec2{bodies_->origin[4 * row], bodies_->origin[4 * row + 1]} +
                    Vec2{bodies_->displacement[2 * row], bodies_->displacement[2 * row + 1]};
     const Mover straight{x, {record[0], record[1]}, {}, world_->bodies.radius[row], 0, substep_};
     if (record[3] == 0 || is_joined(row)) return straight;
-    const Real change_x = record[0] - start_x, change_y = record[1] - start_y;
-    const Real fall_x = bodies_->decay * start_x + bodies_->gain_x - start_x,
-               fall_y = bodies_->decay * start_y + bodies_->gain_y - start_y;
-    const Real fall = fall_x * fall_x + fall_y * fall_y;
-    const bool is_smooth = change_x * change_x + change_y * change_y <= fall * Real(1.0001);
-    if (!is_smooth) return straight;
+    const VelocityChange<Real> change = change_of(row);
+    if (!change.is_smooth()) return straight;
     Mover curved = straight;
+    const Real start_x = bodies_->start.x[row], start_y = bodies_->start.y[row];
     curved.v = {start_x, start_y};
     // Bodies that fall alike meet on straight lines: they have the same bits of acceleration.
-    const Real off = std::fabs(change_x - fall_x) + std::fabs(change_y - fall_y),
+    const Real off = std::fabs(change.x - change.fall_x) + std::fabs(change.y - change.fall_y),
                speed = std::fabs(start_x) + std::fabs(start_y);
     const bool falls = bodies_->decay == 1 && off <= Real(8) * std::numeric_limits<Real>::epsilon() * speed;
-    curved.acceleration = falls ? gravity_ : (1 / bodies_->h) * Vec2{change_x, change_y};
+    curved.acceleration = falls ? gravity_ : (1 / bodies_->h) * Vec2{change.x, change.y};
     return curved;
 }
 
@@ -71,7 +76,10 @@ std::array<double, 4> ImpactPaths<Real>::record_of(std::int32_t number, const Mo
     if (row >= bodies_->count) return {};
     const Real* record = bodies_->velocity + 4 * row;
     Vec2 v = mover.velocity_at(time);
-    if (is_joined(row)) v += (time - 0.5 * bodies_->h) * gravity_;
+    if (is_joined(row))
+        v += (time - 0.5 * bodies_->h) * gravity_;
+    else if (goes_straight(row))
+        v += (time - bodies_->h) * gravity_;
     return {v.x, v.y, static_cast<double>(record[2]), static_cast<double>(record[3])};
 }
 
@@ -81,7 +89,10 @@ double ImpactPaths<Real>::change(std::int32_t number, const std::array<double, 3
     if (row >= bodies_->count || bodies_->velocity[4 * row + 3] == 0) return 0;
     Vec2 acceleration = of(number).acceleration;
     double until = bodies_->h;
-    if (is_joined(row)) acceleration = gravity_, until *= 0.5;
+    if (is_joined(row))
+        acceleration = gravity_, until *= 0.5;
+    else if (goes_straight(row))
+        acceleration = gravity_;
     const auto add = [](Real& velocity, Real* start, Real& moved, double added, Real decay, double at) {
         const Real old = velocity;
         velocity = static_cast<Real>(static_cast<double>(old) + added);

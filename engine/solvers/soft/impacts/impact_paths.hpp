@@ -26,6 +26,16 @@ struct SubstepBodies {
     Real decay, spin_decay;    ///< what drag leaves in a substep
 };
 
+/// What a substep does to a velocity [m/s].
+template <class Real>
+struct VelocityChange {
+    Real x, y;            ///< with contacts
+    Real fall_x, fall_y;  ///< without
+
+    /// Whether the body goes by the mean of its velocities; else by that of the end.
+    bool is_smooth() const { return x * x + y * y <= (fall_x * fall_x + fall_y * fall_y) * Real(1.0001); }
+};
+
 /// How a body moves through a substep: by what kernels/contacts/advance_bodies.hpp will move it. A cache
 /// line.
 struct alignas(64) Mover {
@@ -68,8 +78,10 @@ class ImpactPaths {
     }
 
     /// Its velocity record at a time in the substep; zeros if it sleeps. A body that joints hold moves
-    /// straight, with the velocity of the middle of the substep (direct_joints.hpp): before it lacks what
-    /// gravity gives until then.
+    /// straight, with the velocity of the middle of the substep (direct_joints.hpp), one that contacts push
+    /// with that of its end: before it lacks what gravity gives until then, or an impact would turn this,
+    /// too, and a body that bounces would gain its weight times the way that it makes in the rest of the
+    /// substep.
     std::array<double, 4> record_of(std::int32_t row, const Mover& mover, double time) const;
     /// Gives a body its new velocity at a time in the substep: the records are of the substep's end, and the
     /// displacement makes up for the time in which the body did not have it yet.
@@ -82,6 +94,11 @@ class ImpactPaths {
 
   private:
     Mover path_of(std::size_t row) const;
+    VelocityChange<Real> change_of(std::size_t row) const;
+    /// Of a body that moves and has no joints.
+    bool goes_straight(std::size_t row) const {
+        return bodies_->velocity[4 * row + 3] != 0 && !change_of(row).is_smooth();
+    }
     bool is_joined(std::size_t row) const { return joined_ && joined_[row] > 0; }
 
     const WorldState<Real>* world_ = nullptr;
