@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -126,6 +127,37 @@ TEST_SUITE("hard cases/stalls") {
         }
         CHECK(world.state_hash() == other.state_hash());
         CHECK(world.state_hash() == restored->state_hash());
+    }
+
+    TEST_CASE("a step in flights that is interrupted ends with the flight before, and the world goes on") {
+        constexpr double kLongStep = 1.0 / 30;  // s
+        constexpr int kFlights = 64;            // at most in a step: all parts of one are so many of these
+        int asked = 0, patience = std::numeric_limits<int>::max();
+        World world(grains_that_fall(400), {.threads = 1, .should_stop = [&] { return ++asked > patience; }});
+        for (int step = 0; step < 13; ++step) world.step(kLongStep);
+        int parts = 0, ends_within = 0;
+        for (patience = 1; parts < kFlights; ++patience) {
+            World copy(world);
+            asked = 0;
+            try {
+                copy.step(kLongStep);
+            } catch (const Error& error) {
+                CHECK(error.code() == ErrorCode::interrupted);
+            }
+            const double done = kFlights * (copy.time() - world.time()) / kLongStep;
+            const int now = static_cast<int>(std::lround(done));
+            CHECK(done == doctest::Approx(now));
+            CHECK(now >= parts);
+            ends_within += now > 0 && now < kFlights ? 1 : 0;
+            parts = now;
+            const double time = copy.time();
+            asked = -1'000'000;
+            copy.step(kLongStep);
+            CHECK(copy.time() == doctest::Approx(time + kLongStep));
+            CHECK(copy.quarantined().empty());
+        }
+        report("interrupted within the step ", ends_within, " times of ", patience - 1);
+        CHECK(ends_within > 0);
     }
 
     // Shorter flights would make no fewer pairs where bodies lie in one place.

@@ -19,7 +19,7 @@ struct Profile {
     /// Those that have run so far, in the order of the step: one may stand elsewhere in a later profile.
     std::vector<StageTime> stages;
     std::int64_t steps = 0;
-    std::int64_t rebuilds = 0;         ///< steps that built the candidate pairs anew
+    std::int64_t rebuilds = 0;         ///< times that the candidate pairs were found anew
     std::int64_t candidate_pairs = 0;  ///< now
     std::int64_t pair_tests = 0;       ///< pairs looked at; counted by solver `event` alone
     std::int64_t impacts = 0;          ///< collisions resolved, walls included
