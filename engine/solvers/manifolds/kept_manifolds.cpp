@@ -13,7 +13,7 @@ constexpr std::size_t kContactsPerTask = 256;
 
 }  // namespace
 
-/// Keeps what no contact has recalled, if it is of a body that sleeps.
+/// Keeps what no contact has recalled, if it is of a body that sleeps. Called before surfaces are found anew.
 template <class Real>
 void Manifolds<Real>::keep_of_sleepers(const WorldState<Real>& world) {
     asleep_.clear();
@@ -24,9 +24,10 @@ void Manifolds<Real>::keep_of_sleepers(const WorldState<Real>& world) {
         if (!is_recalled_[i] && old_.memory[i].is_loaded() &&
             (sleeps(old_.names[i].a) || sleeps(old_.names[i].b)))
             asleep_.push_back({old_.names[i], 0, old_.memory[i], old_.friction[i]});
-    for (std::size_t i = 0; i < surfaces_.count(); ++i)
-        if (surfaces_.memory[i].is_loaded() && sleeps(surfaces_.names[i].a))
-            asleep_.push_back({surfaces_.names[i], 1, surfaces_.memory[i], surfaces_.friction[i]});
+    const ManifoldList<Real>& then = old_surfaces_;
+    for (std::size_t i = 0; i < then.count(); ++i)
+        if (then.memory[i].is_loaded() && sleeps(then.names[i].a))
+            asleep_.push_back({then.names[i], 1, then.memory[i], then.friction[i]});
 }
 
 template <class Real>

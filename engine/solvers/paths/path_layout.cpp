@@ -85,18 +85,19 @@ void PathSolver<Real>::fill_links(bool found, const WorldState<Real>& world, con
     const auto fill = [&](std::size_t n) {
         const std::int32_t contact = manifolds.live()[n];
         const PathCut::Place place = cut().places()[n];
-        write_link<Real>({links_[place.link], place.lane, place.is_reversed, row_of_far_[n]},
-                         manifolds.list_of(contact), Manifolds<Real>::place_of(contact), found, world.bodies,
-                         records);
+        const LinkPlace<Real> link{links_[place.link], place.lane, place.is_reversed, row_of_far_[n]};
+        ManifoldList<Real>& list = manifolds.list_of(contact);
+        const std::size_t i = Manifolds<Real>::place_of(contact);
+        // What is carried on behind a contact that was found needs its body: found ones are filled later.
+        if (!found && manifolds.is_found(contact)) return link.write_body(list, i);
+        write_link<Real>(link, list, i, found, world.bodies, records);
     };
     if (found) {
         const std::span<const std::int32_t> numbers = manifolds.found();
         for_each_number(numbers.size(), kNanosecondsToFill, *loops.executor,
                         [&](std::size_t i) { fill(static_cast<std::size_t>(numbers[i])); });
     } else {
-        for_each_number(manifolds.live().size(), kNanosecondsToFill, *loops.executor, [&](std::size_t n) {
-            if (!manifolds.is_found(manifolds.live()[n])) fill(n);
-        });
+        for_each_number(manifolds.live().size(), kNanosecondsToFill, *loops.executor, fill);
     }
 }
 

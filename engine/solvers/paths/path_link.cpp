@@ -55,7 +55,7 @@ void write_link(const LinkPlace<Real>& to, ManifoldList<Real>& list, std::size_t
         memory.normal1 += memory.normal2, memory.normal2 = 0;
     }
     const bool back = to.is_reversed;
-    link.body[lane] = back ? list.a[i] : to.far_row;
+    to.write_body(list, i);
     link.normal_x[lane] = back ? -list.normal_x[i] : list.normal_x[i];
     link.normal_y[lane] = back ? -list.normal_y[i] : list.normal_y[i];
     link.near1[lane] = back ? -b1 : a1, link.near2[lane] = back ? -b2 : a2,

@@ -16,6 +16,11 @@ struct LinkPlace {
     std::size_t lane;
     bool is_reversed;      ///< the path goes from b to a
     std::int32_t far_row;  ///< of b in the records
+
+    /// Writes the body that the path comes to with this contact, which is where the next one begins.
+    void write_body(const ManifoldList<Real>& list, std::size_t i) const {
+        link.body[lane] = is_reversed ? list.a[i] : far_row;
+    }
 };
 
 /// Writes a contact, as it was found or as it is carried on, where the kernels look for it. Two points that

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <type_traits>
+
 #include "broadphase/edge_candidates.hpp"
 #include "sleeping/sleepers.hpp"
 #include "solvers/shared/simulation.hpp"
@@ -117,7 +119,10 @@ class SoftSimulation : public Simulation<Real> {
     template <class Self, class Archive>
     static void visit_all(Self& self, Archive& archive) {
         Simulation<Real>::visit_common(self, archive);
-        archive(self.edge_candidates, self.soft, self.sleepers, self.graph_of_rebuild);
+        // It is mutable for plans; a state that is saved forgets nothing of it.
+        std::conditional_t<std::is_const_v<Self>, const SoftSolver<Real>, SoftSolver<Real>>& solver =
+            self.soft;
+        archive(self.edge_candidates, solver, self.sleepers, self.graph_of_rebuild);
         archive(self.kinds_of_graph, self.changes_, self.elsewhere_, self.flights);
         if constexpr (!std::is_const_v<Self>) self.sleepers.use(*self.kernels);
     }
