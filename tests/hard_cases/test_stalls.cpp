@@ -9,8 +9,10 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <vector>
 
 #include "math/random.hpp"
+#include "math/vec2_math.hpp"
 #include "support/effort.hpp"
 #include "support/other_order.hpp"
 #include "support/report.hpp"
@@ -80,6 +82,40 @@ Scene grains_that_fall(int count) {
                    .material = material});
     return scene;
 }
+
+/// Pairs of heavy elastic discs that close on a light one between them, and a gas far away. By Galperin's
+/// billiard a pair and its light disc have some pi / 2 sqrt(M / m) impacts, 50,000, before it turns back.
+struct Traps {
+    static constexpr int kTraps = 3, kDiscs = 60;  // discs of the gas
+    Scene scene;
+    std::vector<BodyId> gas;
+
+    Traps() {
+        scene.walls = Walls{.min = {0, 0}, .max = {40, 100}, .material = {.restitution = 1}};
+        const Material elastic{.restitution = 1};
+        for (int trap = 0; trap < kTraps; ++trap) {
+            const Vec2 middle{20, 10 + 5.0 * trap};
+            for (const double side : {-1.0, 1.0})
+                scene.add({.shape = Disc{1},
+                           .position = middle + Vec2{side * 1.11, 0},
+                           .velocity = {-side, 0},
+                           .mass = 1e9,
+                           .material = elastic});
+            scene.add({.shape = Disc{0.1}, .position = middle, .mass = 1, .material = elastic});
+        }
+        for (int i = 0; i < kDiscs; ++i)
+            gas.push_back(scene.add({.shape = Disc{0.45},
+                                     .position = {1 + i % 10 * 1.0, 90.5 + i / 10 * 1.0},
+                                     .velocity = {30 * std::cos(2.4 * i), 30 * std::sin(2.4 * i)},
+                                     .material = elastic}));
+        scene.accuracy.solver = Solver::soft;
+    }
+    double energy_of_gas(const World64& world) const {
+        double sum = 0;  // times two over the mass, m²/s²
+        for (const BodyId id : gas) sum += length_squared(world.state(id).velocity);
+        return sum;
+    }
+};
 
 /// The most solves of contacts of shapes in a step.
 template <class Number>
@@ -190,6 +226,26 @@ TEST_SUITE("hard cases/stalls") {
                        " solves in a step");
                 CHECK(most <= 6 * substeps * (rolling > 0 ? 4 : 1) + kTurns + substeps);
             }
+    }
+
+    // A step had 14,000 impacts of each trap: docs/decisions/0103-bodies-that-rattle.md has the bound.
+    TEST_CASE("light discs that rattle between heavy ones take no more impacts than a step has for all") {
+        const Traps traps;
+        World64 world(traps.scene, {.threads = 1});
+        const double start = world.ledger().energy.total(), of_gas = traps.energy_of_gas(world);
+        const auto bodies = static_cast<std::int64_t>(traps.scene.bodies.size());
+        std::int64_t most = 0;
+        for (int step = 0; step < 30; ++step) {
+            const std::int64_t before = world.profile().impacts;
+            world.step(kStep);
+            most = std::max(most, world.profile().impacts - before);
+            CHECK(world.ledger().energy.total() <= (1 + 1e-9) * start);
+        }
+        report("three rattling discs and a gas of 60: at most ", most, " impacts in a step");
+        CHECK(most > 4096);  // they do rattle
+        // What rattles has up to 100 more as it leaves, of which each takes .3 of 66.
+        CHECK(most <= ((1 << 17) + 512 * bodies) / 16 + 300 * Traps::kTraps);
+        CHECK(traps.energy_of_gas(world) == doctest::Approx(of_gas).epsilon(1e-12));
     }
 
     // Contacts were solved up to four times more in turns with the joint, and three times without:

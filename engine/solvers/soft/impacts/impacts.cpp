@@ -315,10 +315,13 @@ void Impacts<Real>::look_at_all_of(std::int32_t row, double from) {
     const Mover& self = paths_.of(row);
     for (const auto& entry : of_pairs_.of(static_cast<std::size_t>(row)))
         look_at_pair({entry.contact & kIndexBits, kPair}, self, paths_.of(entry.other), from);
-    for_each_stranger_of(
-        row, [&](Place place, std::int32_t other) { look_at_pair(place, self, paths_.of(other), from); });
+    std::size_t looks = of_pairs_.of(static_cast<std::size_t>(row)).size();
+    for_each_stranger_of(row, [&](Place place, std::int32_t other) {
+        ++looks, look_at_pair(place, self, paths_.of(other), from);
+    });
     for (const auto& entry : of_supports_.of(static_cast<std::size_t>(row)))
-        look_at_support({entry.contact & kIndexBits, kSupport}, from);
+        ++looks, look_at_support({entry.contact & kIndexBits, kSupport}, from);
+    budget_.look(looks);
 }
 
 /// The sweeps of the next substeps see it from now on.
@@ -389,6 +392,7 @@ bool Impacts<Real>::carry_out(Place place, double time, Books& books, double& gr
         const double called_for = restitution_of(place);
         const bool bounces = has_enough && speed > rest_speed_;
         for_each_mover([&](std::int32_t row) { budget_.spend(row, called_for, speed, joints); });
+        budget_.count(lighter_of(place));
         ++counters.impacts;
         counters.of_walls += other.is_wall(), counters.inelastic += !bounces;
         terms.floor = bounces ? called_for * speed : 0;

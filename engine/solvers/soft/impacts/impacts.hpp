@@ -106,6 +106,15 @@ class Impacts {
     bool is_pressed(Place place, double speed = 0) const;
     double restitution_of(Place place) const;
     double smaller_radius(Place place) const;
+    std::int32_t lighter_of(Place place) const {
+        const auto mass_of = [&](std::int32_t row) {
+            return world_->bodies.mass[static_cast<std::size_t>(row)];
+        };
+        const std::int32_t a = row_of(place);
+        if (place.is_support()) return a;
+        const std::int32_t b = partner_of(place).row();
+        return mass_of(b) < mass_of(a) ? b : a;
+    }
     void set_materials(Place place, ContactTerms<double>& terms) const;
     Clearance clearance_of(Place place, const Mover& a) const;
 

@@ -43,4 +43,40 @@ TEST_SUITE("solvers/soft/impact_budget") {
         }
         CHECK(impacts_of(0, 1, 16) >= impacts_of(0, 1, 0) - 3);
     }
+
+    // Row 0 rattles against row 1, row 2 is far away. Looks: 2^17 and 512 a body, of which an impact
+    // takes 16.
+    TEST_CASE("what rattles loses its restitution once a step has had its impacts, and nothing else does") {
+        constexpr int kBodies = 20, kAllowed = ((1 << 17) + 512 * kBodies) / 16, kMost = 20'000;
+        for (const int others : {0, 2000}) {  // impacts of each of the rest: where all have many none rattles
+            CAPTURE(others);
+            ImpactBudget budget;
+            budget.begin_step(kBodies);
+            const auto strike = [&](int row) { budget.spend(row, 1, 1, 0), budget.count(row); };
+            for (int row = 3; row < kBodies; ++row)
+                for (int i = 0; i < others; ++i) strike(row);
+            int impacts = 0;
+            for (; budget.has_enough(0) && impacts < kMost; ++impacts) strike(0), budget.spend(1, 1, 1, 0);
+            for (int i = 0; i < 100; ++i) strike(2);
+            CHECK(impacts == (others == 0 ? kAllowed + 1 : 2049));
+            CHECK(budget.has_enough(1));
+            CHECK(budget.has_enough(2));
+            CHECK(budget.has_enough(3));
+            budget.begin_step(kBodies);
+            strike(0);
+            CHECK(budget.has_enough(0));
+        }
+    }
+
+    TEST_CASE("without restitution an elastic body takes as much of its overdraft as an inelastic one") {
+        const auto inelastic = [](double restitution) {
+            ImpactBudget budget;
+            budget.begin_step(1);
+            while (budget.has_enough(0)) budget.spend(0, restitution, 1, 0);
+            int impacts = 0;
+            for (; !budget.is_exhausted(0, false); ++impacts) budget.spend(0, restitution, 1, 0);
+            return impacts;
+        };
+        CHECK(inelastic(1) <= inelastic(0) + 1);
+    }
 }
