@@ -77,6 +77,7 @@ struct QuestionGaps {
     Real share, fall;    // ContactDistance
     Real beside, swift;  // of the thickness: separations of corners beside each other, ways of what is swift,
     Real passing;        // and how far behind the gap what passes is at least
+    Real far;            // of both radii: gaps of bodies that are far apart
 };
 
 /// Contacts of pairs of convex shapes.

@@ -9,8 +9,8 @@ namespace carom {
 namespace {
 
 /// Tells which contacts of the block that begins at `first` have to be looked at one by one; the others stay
-/// as they were found: their bodies touch, or have a gap that may close where it is and that neither is swift
-/// enough to pass. What rounding leaves open is told, too.
+/// as they were found: their bodies touch, or have a gap that is not long, that may close where it is and
+/// that neither is swift enough to pass. What rounding leaves open is told, too.
 /// @return a bit for each
 /// @see QuestionGaps
 template <class Real, class Isa>
@@ -56,7 +56,9 @@ std::uint32_t question_gaps(const QuestionGaps<Real>& k, std::size_t first) {
             const F closing = vb - va, then1 = s1 * less + dt * (closing + of_b1 - of_a1) - off,
                     then2 = s2 * less + dt * (closing + of_b2 - of_a2) - off;
             const auto passes = min(then1, then2) < -F(k.passing) * thickness * less;
-            bits |= open_bits & static_cast<std::uint32_t>(simd::bitmask(is_swift | passes | !stays));
+            const auto is_far = gap > F(k.far) * (ra + rb);
+            bits |=
+                open_bits & static_cast<std::uint32_t>(simd::bitmask(is_swift | passes | is_far | !stays));
         }
         found |= bits << lane;
     }

@@ -68,7 +68,8 @@ TEST_SUITE("kernels/questions") {
                        double) {
         Gaps<Real> g;
         const auto real = [](double value) { return static_cast<Real>(value); };
-        constexpr double kShare = 0.04, kFall = 0.004, kBeside = 1e-3, kSwift = 0.5, kPassing = 5e-4;
+        constexpr double kShare = 0.04, kFall = 0.004, kBeside = 1e-3, kSwift = 0.5, kPassing = 5e-4,
+                         kFar = 0.3;
         for (const bool turns : {false, true}) {
             CAPTURE(turns);
             const QuestionGaps<Real> k{g.a.data(),
@@ -88,7 +89,8 @@ TEST_SUITE("kernels/questions") {
                                        real(kFall),
                                        real(kBeside),
                                        real(kSwift),
-                                       real(kPassing)};
+                                       real(kPassing),
+                                       real(kFar)};
             std::vector<std::uint32_t> found;
             for (const KernelTables* tables : runnable_kernel_tables()) {
                 std::vector<std::uint32_t> now;
@@ -131,7 +133,8 @@ TEST_SUITE("kernels/questions") {
                     is_beside ||
                     (is_open && ((way > kSwift * thickness && way > gap) ||
                                  !(closes(s1, a1, b1) || closes(s2, a2, b2)) ||
-                                 -std::min(then(s1, a1, b1), then(s2, a2, b2)) > kPassing * thickness));
+                                 -std::min(then(s1, a1, b1), then(s2, a2, b2)) > kPassing * thickness ||
+                                 gap > kFar * (arm(row_a) + arm(row_b))));
                 const bool is_told = (found[i / 16] >> (i % 16) & 1) != 0;
                 if (is_question) REQUIRE(is_told);
                 if (!is_open && !is_beside) REQUIRE_FALSE(is_told);

@@ -14,6 +14,10 @@ namespace {
 template <class Real>
 constexpr double kRoundingOfGaps = 16 * static_cast<double>(std::numeric_limits<Real>::epsilon());
 
+/// Bodies with a gap of more than so many times the sum of their radii are far apart: of all that is so far
+/// away in a crowd whose bodies fly a hundred sizes in a step, each could be in the way of each.
+constexpr double kFar = 4;
+
 }  // namespace
 
 /// Bodies that do not touch yet may meet elsewhere than where they face each other (meeting.hpp), or not at
@@ -51,7 +55,8 @@ QuestionGaps<Real> Gaps<Real>::arguments() const {
             real(in_.near.fall),
             real(kBeside),
             real(kFastThicknesses),
-            real(kPassing)};
+            real(kPassing),
+            real(kFar)};
 }
 
 template <class Real>
@@ -60,9 +65,43 @@ void Gaps<Real>::look_at_one(std::size_t i) {
     const Real gap = std::min(contacts_.separation1[i], contacts_.separation2[i]);
     if (are_corners_beside(i)) contacts_.separation1[i] = none;
     if (!(gap > 0) || !(contacts_.separation1[i] < none)) return;
+    if (are_far_apart(i, gap) && !may_come_together(i)) {
+        contacts_.separation1[i] = contacts_.separation2[i] = none;
+        return;
+    }
     const Manifold<double> facing = contacts_.manifold(i);
     const bool may_touch = find_meeting(i, static_cast<double>(gap)) || can_close(i);
     if (!may_touch || do_pass(i, facing)) contacts_.separation1[i] = contacts_.separation2[i] = none;
+}
+
+template <class Real>
+bool Gaps<Real>::are_far_apart(std::size_t i, Real gap) const {
+    const auto radius = [&](std::int32_t row) {
+        return in_.world.bodies.radius[static_cast<std::size_t>(row)];
+    };
+    return gap > static_cast<Real>(kFar) * (radius(contacts_.a[i]) + radius(contacts_.b[i]));
+}
+
+/// Whether the discs around two bodies come together in the step if both keep their velocities or either of
+/// them is stopped. One that something throws elsewhere may still hit the other, far from where it was: the
+/// next step sees that.
+template <class Real>
+bool Gaps<Real>::may_come_together(std::size_t i) const {
+    const Bodies<Real>& bodies = in_.world.bodies;
+    const auto a = static_cast<std::size_t>(contacts_.a[i]), b = static_cast<std::size_t>(contacts_.b[i]);
+    const Vec2 apart =
+        Vec2{bodies.position_x[b], bodies.position_y[b]} - Vec2{bodies.position_x[a], bodies.position_y[a]};
+    const double reach = static_cast<double>(bodies.radius[a]) + static_cast<double>(bodies.radius[b]) +
+                         in_.near(static_cast<double>(contacts_.thickness[i])) +
+                         static_cast<double>(in_.poses.way_of_motors(a, b));
+    const auto meet_at = [&](Vec2 velocity) {
+        const double closing = -dot(apart, velocity), squared = length_squared(velocity);
+        if (!(closing > 0)) return false;
+        const double time = std::fmin(in_.dt, closing / squared);
+        return length_squared(apart + time * velocity) <= reach * reach;
+    };
+    const Vec2 of_a = velocity_of_a(i), of_b = velocity_of_b(i);
+    return meet_at(of_b - of_a) || meet_at(of_b) || meet_at(-1.0 * of_a);
 }
 
 template <class Real>

@@ -40,6 +40,8 @@ class Gaps {
     bool find_meeting(std::size_t i, double gap);
     bool do_pass(std::size_t i, const Manifold<double>& facing) const;
     bool can_close(std::size_t i) const;
+    bool are_far_apart(std::size_t i, Real gap) const;
+    bool may_come_together(std::size_t i) const;
     /// The velocity of body a of contact i: where b stands still, as far as others that do let it fly.
     Vec2 velocity_of_a(std::size_t i) const {
         const auto a = static_cast<std::size_t>(contacts_.a[i]), b = static_cast<std::size_t>(contacts_.b[i]);
