@@ -191,7 +191,8 @@ struct SubstepColumns {
                 .decay = 1,
                 .spin_decay = 1,
                 .is_last = false,
-                .joined = nullptr};
+                .joined = nullptr,
+                .nothing = 0};
     }
     EndSubsteps<Real> end() {
         return {.velocity = velocity.data(),

@@ -67,7 +67,7 @@ struct KernelTable {
     void (*begin_bundles)(const BeginBundles<Real>&, std::size_t first, std::size_t last);
     void (*sweep_bundles)(const SweepBundles<Real>&, std::size_t first, std::size_t last);
     std::size_t (*close_bundles)(const CloseBundles<Real>&, std::size_t first, std::size_t last);
-    // These four: without and with rotation; then the same where some bodies have joints.
+    // These two or four: without and with rotation; then the same where bodies come to rest or have joints.
     std::array<void (*)(const BeginSubsteps<Real>&, std::size_t first, std::size_t last), 2> begin_substeps;
     std::array<void (*)(const AdvanceBodies<Real>&, std::size_t first, std::size_t last), 4> advance_bodies;
     std::array<EnergyGain (*)(const MeasureGain<Real>&, std::size_t first, std::size_t last), 4> measure_gain;

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -54,6 +55,26 @@ void run(BasicWorld<Real>& world, int steps) {
 }  // namespace
 
 TEST_SUITE("hard cases/shapes on edges at rest") {
+    // Contacts leave round-off of velocities, and round-off of that: docs/decisions/0102-small-scenes.md.
+    TEST_CASE_TEMPLATE("what comes to rest has no velocity that is too small for a normal number", Real,
+                       float, double) {
+        constexpr double kEpsilon = static_cast<double>(std::numeric_limits<Real>::epsilon());
+        const auto inside = inside_of<Real>(terrain(), Solver::soft);
+        auto& sim = static_cast<SoftSimulation<Real>&>(*inside);
+        std::size_t at_rest = 0, tiny = 0;
+        for (int i = 0; i < 600; ++i) {
+            sim.step(kStep);
+            const double nothing = kEpsilon * kEpsilon * kBoxGravity * sim.substep_dt;  // m/s
+            const Bodies<Real>& bodies = sim.world.bodies;
+            for (std::size_t row = 0; row < bodies.count; ++row)
+                for (const Real v : {bodies.velocity_x[row], bodies.velocity_y[row]})
+                    at_rest += v == 0, tiny += v != 0 && std::fabs(static_cast<double>(v)) < 0.99 * nothing;
+        }
+        report("velocities that are zero: ", at_rest, ", and too small: ", tiny);
+        CHECK(at_rest > 600 * kShapes / 2);
+        CHECK(tiny == 0);
+    }
+
     TEST_CASE_TEMPLATE("what lies on a terrain is hardly ever found anew, and is as near as it seems", Real,
                        float, double) {
         const auto inside = inside_of<Real>(terrain(), Solver::soft);

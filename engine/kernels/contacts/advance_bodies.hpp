@@ -23,6 +23,14 @@ struct FreeFlight {
     static auto moves(F inverse_mass) { return simd::abs(inverse_mass) > F(0); }
 };
 
+/// What contacts leave of the velocity of a body that comes to rest is round-off of what they took, and of
+/// that again in the next substep: before long it would be too small for a normal number, and products of
+/// such numbers take a processor a hundred cycles each. What is slower than `nothing` is at rest.
+template <class F>
+F without_round_off(F v, F nothing) {
+    return simd::select(simd::abs(v) < nothing, F(0), v);
+}
+
 /// Moves bodies through a substep, whose velocities are solved, and foresees the next one's: whatever the
 /// contacts did to a velocity in this substep they will do again, because their impulses are nearly the same.
 /// That is the warm start of the next substep, without looking at a contact.
@@ -32,15 +40,21 @@ struct FreeFlight {
 /// rolling, at rest - it is h (v0 + v1) / 2, which is exact under constant acceleration. The turn likewise,
 /// where the rim speed changes by no more than that and angular drag together: in flight, and where a disc
 /// rolls. Bodies that have joints go by h v1 always: their rows ask where that takes them.
-template <bool kTurns, bool kJoined, class Real, class Isa>
+/// @tparam kRests  whether some have joints, or what is slower than k.nothing is at rest
+template <bool kTurns, bool kRests, class Real, class Isa>
 void advance_bodies(const AdvanceBodies<Real>& k, std::size_t first, std::size_t last) {
     using Lanes = simd::LanesOfRuns<simd::Lanes<Real, Isa>>;
     using F = typename Lanes::Batch;
     const FreeFlight<F> free{F(k.gain_x), F(k.gain_y), F(k.decay), F(k.spin_decay)};
-    const F h(k.h), half(Real(0.5));
+    const F h(k.h), half(Real(0.5)), nothing(k.nothing);
     for (std::size_t row = first; row < last; row += Lanes::size) {
         auto v = Lanes::load_rows4(k.velocity + 4 * row, kConsecutive);
         const F start_x = Lanes::load(k.start.x + row), start_y = Lanes::load(k.start.y + row);
+        if constexpr (kRests) {
+            v[0] = without_round_off(v[0], nothing), v[1] = without_round_off(v[1], nothing);
+            if constexpr (kTurns) v[2] = without_round_off(v[2], nothing);
+            if (k.is_last) Lanes::store_rows4(k.velocity + 4 * row, kConsecutive, v);
+        }
         auto moved = Lanes::load_rows2(k.displacement + 2 * row, kConsecutive);
         const F inverse_mass = v[3];
         const F free_x = free.x(start_x, inverse_mass), free_y = free.y(start_y, inverse_mass);
@@ -48,7 +62,7 @@ void advance_bodies(const AdvanceBodies<Real>& k, std::size_t first, std::size_t
         const F fall_x = free_x - start_x, fall_y = free_y - start_y;
         const F fall = fall_x * fall_x + fall_y * fall_y, margin(Real(1.0001));
         auto is_smooth = change_x * change_x + change_y * change_y <= fall * margin;
-        if constexpr (kJoined) is_smooth = is_smooth & !(Lanes::load(k.joined + row) > F(0));
+        if (kRests && k.joined) is_smooth = is_smooth & !(Lanes::load(k.joined + row) > F(0));
         moved[0] += h * (v[0] - simd::select(is_smooth, half * change_x, F(0)));
         moved[1] += h * (v[1] - simd::select(is_smooth, half * change_y, F(0)));
         Lanes::store_rows2(k.displacement + 2 * row, kConsecutive, moved);
@@ -57,7 +71,7 @@ void advance_bodies(const AdvanceBodies<Real>& k, std::size_t first, std::size_t
             start_rim = Lanes::load(k.start.rim + row), free_rim = free.spin(start_rim, inverse_mass);
             const F change = v[2] - start_rim, drag = free_rim - start_rim;
             auto turns_smoothly = change * change <= (fall + drag * drag) * margin;
-            if constexpr (kJoined) turns_smoothly = turns_smoothly & !(Lanes::load(k.joined + row) > F(0));
+            if (kRests && k.joined) turns_smoothly = turns_smoothly & !(Lanes::load(k.joined + row) > F(0));
             const F mean = v[2] - simd::select(turns_smoothly, half * change, F(0));
             Lanes::store(k.turn + row, Lanes::load(k.turn + row) + h * mean);
         }

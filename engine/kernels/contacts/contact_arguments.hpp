@@ -134,6 +134,7 @@ struct AdvanceBodies {
     Real spin_decay;           // rim speed kept under angular drag
     bool is_last;              // no next substep
     const Real* joined;        // [rows], above zero for bodies that have joints; null where there are none
+    Real nothing;              // m/s: what is slower, and loses speed, is at rest
 };
 
 /// The kinetic energy that impulses have added in a substep, and that which free flight left [J].

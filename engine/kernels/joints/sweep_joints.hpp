@@ -28,17 +28,22 @@ typename Lanes::Batch constant(double value) {
     return typename Lanes::Batch(static_cast<typename Lanes::Number>(value));
 }
 
+/// rad, of a substep: the bend of less is below the rounding of any velocity.
+constexpr double kLeastBentTurn = 1e-12;
+
 template <class F>
 struct Pair2 {
     F x, y;
 };
 
 /// cos f - 1 and sin f - f over h, for what a substep turns; beyond kMostBend they grow no faster than the
-/// turn: the series would make of a fast spin a bend, and the bend of a faster one, without end.
+/// turn: the series would make of a fast spin a bend, and the bend of a faster one, without end. Below
+/// kLeastBentTurn there is none: its products would be too small for normal numbers.
 template <class Lanes, class F = typename Lanes::Batch>
 Pair2<F> bend_of_turn(F spin, F h) {
     constexpr auto number = constant<Lanes>;
-    const F f = simd::max(simd::min(spin * h, number(kMostBend)), number(-kMostBend)), q = f * f,
+    const F turn = simd::max(simd::min(spin * h, number(kMostBend)), number(-kMostBend)),
+            f = simd::select(simd::abs(turn) < number(kLeastBentTurn), F(0), turn), q = f * f,
             c2 = number(-0.5), c4 = number(1.0 / 24), s3 = number(-1.0 / 6), s5 = number(1.0 / 120);
     return {spin * f * (c2 + c4 * q), spin * q * (s3 + s5 * q)};
 }

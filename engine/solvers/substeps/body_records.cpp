@@ -1,12 +1,18 @@
 #include "solvers/substeps/body_records.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace carom {
 namespace {
 
 // ns a body on one thread, for the executor: docs/decisions/0012-threads-of-soft.md.
 constexpr double kNanosecondsToBegin = 0.7, kNanosecondsToAdvance = 1, kNanosecondsToMeasure = 0.6;
+
+/// Speed that is none, in shares of what gravity adds in a substep: what rounding leaves of what it leaves.
+template <class Real>
+constexpr double kNoSpeed =
+    static_cast<double>(std::numeric_limits<Real>::epsilon()) * std::numeric_limits<Real>::epsilon();
 
 constexpr std::size_t kRowsToMeasure = 2048;  // of a task: sums have the same bits on any number of threads
 static_assert(kContactBlock == kRowPadding);
@@ -29,6 +35,7 @@ void BodyRecords<Real>::begin(const WorldState<Real>& world, const Column<Real>&
                               const SubstepTerms& terms, const StepLoops<Real>& loops) {
     const Bodies<Real>& bodies = world.bodies;
     count_ = bodies.count, moving_ = bodies.moving(), has_rotation_ = world.effects.rotation;
+    comes_to_rest_ = bodies.has_shapes || !world.joints.empty();
     delays_.clear();
     const std::size_t rows = padded(count_ + padding_rows);
     velocity.resize(4 * rows), displacement.resize(2 * rows);
@@ -109,7 +116,8 @@ void BodyRecords<Real>::advance(bool is_last, const SubstepTerms& terms, const S
     k.gain_x = real(terms.gravity_change.x), k.gain_y = real(terms.gravity_change.y);
     k.decay = real(terms.decay), k.spin_decay = real(terms.spin_decay), k.is_last = is_last;
     k.joined = joined;
-    const auto kernel = loops.kernels->advance_bodies[(has_rotation_ ? 1 : 0) + (joined ? 2 : 0)];
+    if (comes_to_rest_) k.nothing = real(kNoSpeed<Real> * terms.fall_speed());
+    const auto kernel = loops.kernels->advance_bodies[(has_rotation_ ? 1 : 0) + (comes_to_rest_ ? 2 : 0)];
     loops.executor->for_each_chunk(
         moving_, loops.rows_per_task, kNanosecondsToAdvance,
         [&](std::size_t, std::size_t first, std::size_t last) { kernel(k, first, padded(last)); });

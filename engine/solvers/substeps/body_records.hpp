@@ -91,7 +91,7 @@ class BodyRecords {
     std::size_t bytes() const;
 
   private:
-    bool has_rotation_ = false;
+    bool has_rotation_ = false, comes_to_rest_ = false;
     std::size_t count_ = 0, moving_ = 0;
     Column<Real> turn_;                           // m, rim displacement since the start of the step
     Column<Real> start_x_, start_y_, start_rim_;  // m/s, velocities at the start of the substep

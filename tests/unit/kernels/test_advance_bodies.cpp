@@ -68,12 +68,15 @@ struct Rows {
         k.displacement = displacement.data(), k.turn = turns ? turn.data() : nullptr;
         kernels.begin_substeps[turns ? 1 : 0](k, 0, length);
     }
-    void advance(const KernelTable<Real>& kernels, long double linear, long double angular, bool is_last) {
+    /// @param nothing  m/s, below it bodies are at rest; 0: bodies are not asked
+    void advance(const KernelTable<Real>& kernels, long double linear, long double angular, bool is_last,
+                 Real nothing = 0) {
         AdvanceBodies<Real> k{};
+        k.nothing = nothing;
         k.velocity = velocity.data(), k.start = start(), k.displacement = displacement.data();
         k.turn = turns ? turn.data() : nullptr, k.h = static_cast<Real>(kH), k.is_last = is_last;
         set_flight(k, linear, angular);
-        kernels.advance_bodies[turns ? 1 : 0](k, 0, length);
+        kernels.advance_bodies[(turns ? 1 : 0) + (nothing > 0 ? 2 : 0)](k, 0, length);
     }
     std::size_t end(const KernelTable<Real>& kernels, double largest_position = 1e8,
                     double largest_speed = 1e7) {
@@ -227,6 +230,39 @@ TEST_SUITE("kernels/advance bodies") {
             }
             CHECK(worst <= kAllowed);
         });
+    }
+
+    TEST_CASE_TEMPLATE("what is slower than nothing is at rest, and nothing else changes", Real, float,
+                       double) {
+        constexpr Real kNothing = Real(0.125);  // m/s
+        for (const bool is_last : {false, true})
+            for_each_world<Real>([&](const KernelTable<Real>& kernels, Rows<Real>& rows) {
+                rows.begin(kernels, 0, 0);
+                const std::size_t parts = rows.turns ? 3 : 2;
+                // Velocities from zero up, to both sides, some of them just nothing.
+                for (std::size_t i = 0; i < rows.count; ++i)
+                    for (std::size_t part = 0; part < parts; ++part)
+                        rows.velocity[4 * i + part] =
+                            kNothing * static_cast<Real>((i + part) % 5) / 4 * (i % 2 == 0 ? 1 : -1);
+                Rows<Real> plain = rows;
+                std::size_t at_rest = 0;
+                for (std::size_t i = 0; i < rows.length; ++i)  // padding has what gravity gives it
+                    for (std::size_t part = 0; part < parts; ++part) {
+                        Real& v = plain.velocity[4 * i + part];
+                        if (std::fabs(v) < kNothing) v = 0, ++at_rest;
+                    }
+                plain.advance(kernels, 0, 0, is_last);
+                rows.advance(kernels, 0, 0, is_last, kNothing);
+                REQUIRE(at_rest > 0);
+                CHECK(std::equal(plain.velocity.begin(), plain.velocity.end(), rows.velocity.begin()));
+                CHECK(std::equal(plain.start_x.begin(), plain.start_x.end(), rows.start_x.begin()));
+                CHECK(std::equal(plain.start_y.begin(), plain.start_y.end(), rows.start_y.begin()));
+                CHECK(std::equal(plain.displacement.begin(), plain.displacement.end(),
+                                 rows.displacement.begin()));
+                if (!rows.turns) return;
+                CHECK(std::equal(plain.start_rim.begin(), plain.start_rim.end(), rows.start_rim.begin()));
+                CHECK(std::equal(plain.turn.begin(), plain.turn.end(), rows.turn.begin()));
+            });
     }
 
     TEST_CASE_TEMPLATE("rows that leave the limits or are not numbers are reported, and held", Real, float,
