@@ -126,6 +126,38 @@ BenchScene car(std::int64_t bodies) {
     return {"car", std::move(scene), {}, 0, kLong};
 }
 
+BenchScene chain(std::int64_t bodies) {
+    constexpr int kLinks = 20;
+    constexpr double kSpacing = 0.6;  // m, of hinges
+    Scene scene;
+    scene.gravity = {0, -kGravity};
+    scene.walls.emplace();
+    scene.walls->min = {-20, 0}, scene.walls->max = {20, 60};
+    scene.walls->top = false;
+    scene.walls->material.friction = kFriction;
+    const double left = -kSpacing * kLinks / 2;
+    const std::int64_t links = std::min<std::int64_t>(bodies, kLinks);
+    for (std::int64_t i = 0; i < links; ++i) {
+        const double x = left + kSpacing * (static_cast<double>(i) + 0.5);
+        const BodyId link =
+            scene.add({.shape = Capsule{0.5, 0.08}, .position = {x, 4}, .material = {.friction = kFriction}});
+        if (i == 0) continue;
+        scene.add(Joint{.a = BodyId{link.index - 1, 0},
+                        .b = link,
+                        .kind = RevoluteJoint{.anchor = Vec2{x - kSpacing / 2, 4}}});
+    }
+    const std::array<Shape, 4> shapes{Box{0.7, 0.5}, Capsule{0.5, 0.2}, Disc{0.35}, Box{0.6, 0.6}};
+    for (std::int64_t i = 0; i < bodies - links; ++i) {
+        constexpr std::int64_t kInRow = 24;
+        const auto column = static_cast<double>(i % kInRow), row = static_cast<double>(i / kInRow);
+        scene.add({.shape = shapes[static_cast<std::size_t>(i) % shapes.size()],
+                   .position = {-15 + 1.3 * column + 0.4 * row, 7 + 2 * row},
+                   .angle = 0.7 * static_cast<double>(i),
+                   .material = {.friction = kFriction}});
+    }
+    return {"chain", std::move(scene), {}, 0, kLong};
+}
+
 BenchScene stairs(std::int64_t bodies) {
     constexpr int kSteps = 20;
     constexpr double kTread = 2, kRise = 1;  // m

@@ -18,8 +18,11 @@ BenchScene ragdolls(std::int64_t bodies);
 /// `bodies` counts the track, too.
 BenchScene car(std::int64_t bodies);
 
+/// A chain of twenty links that falls to the floor, and boxes, capsules and discs that fall on it.
+BenchScene chain(std::int64_t bodies);
+
 /// A ragdoll of eleven bodies that falls down stairs of chain edges, on which crates, capsules and discs lie;
-/// likewise.
+/// `bodies` counts these, too.
 BenchScene stairs(std::int64_t bodies);
 
 }  // namespace carom::bench

@@ -122,6 +122,7 @@ const std::vector<std::string>& scene_names() {
                                                 "net",
                                                 "ragdolls",
                                                 "car",
+                                                "chain",
                                                 "stairs"};
     return names;
 }
@@ -149,6 +150,7 @@ BenchScene make_scene(const std::string& name, std::int64_t bodies) {
     if (name == "net") return net(bodies);
     if (name == "ragdolls") return ragdolls(bodies);
     if (name == "car") return car(bodies);
+    if (name == "chain") return chain(bodies);
     if (name == "stairs") return stairs(bodies);
     throw std::invalid_argument(measure::joined("no benchmark scene is called ", name));
 }

@@ -10,8 +10,8 @@ namespace carom::bench {
 
 /// The kinds there are: "gas", "rough-gas", "pile", "packed", "tumbler" of discs; "pyramid", "box-pile",
 /// "mixed-pile", "smash", "planks" of other shapes, all but "smash" with "-start", too; "driven-drum" and
-/// "spinner", which motors keep moving; "net" and "ragdolls" of joints; "car" and "stairs" of a single
-/// mechanism among some tens of shapes.
+/// "spinner", which motors keep moving; "net" and "ragdolls" of joints; "car", "chain" and "stairs" of a
+/// single mechanism among some tens of shapes.
 const std::vector<std::string>& scene_names();
 
 /// @param name    one of `scene_names`
