@@ -99,7 +99,7 @@ constexpr Golden kGolden[] = {
     {"net of rods", 0x3b2bf1596fc0c671, 0x0cc473225a7d37df},
     {"net of rods beside centres", 0xaf184cf7d115621, 0x20acc8a1a91d08aa},
     {"net of hinges", 0xb085cbbfb070441c, 0xfe93b67ab4b2f330},
-    {"crowd of ragdolls", 0x2b75f5e6b0215012, 0x215342abe5a531f3},
+    {"crowd of ragdolls", 0xe0ece86f63d8566b, 0xb8181e692c2578bf},
     {"crowd of ropes", 0xf385cf2c85878daa, 0x8dd42173a70ce987},
     {"crowd of cars", 0x2e264d316aaaf528, 0x4dc12466dbb9ab63},
 };

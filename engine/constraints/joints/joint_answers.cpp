@@ -45,7 +45,7 @@ void JointSystem::answer(std::span<const Blow> blows, Drives drives) {
         extra_rhs_[i] = -change_of_row(i);
     }
     solve_bounded(Use::answer);
-    solve(true);
+    if (std::ranges::any_of(solution_, [](double impulse) { return impulse != 0; })) solve(true);
     state_ = kept_state_;
 }
 

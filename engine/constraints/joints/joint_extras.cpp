@@ -286,6 +286,8 @@ void JointSystem::solve_all() {
     if (extras_.empty()) return;
     for (std::size_t i = 0; i < extras_.size(); ++i) extra_rhs_[i] -= change_of_row(i);
     solve_bounded(Use::solve);
+    // Limits that are not reached push nothing: the tree answers as it did.
+    if (std::ranges::all_of(solution_, [](double impulse) { return impulse == 0; })) return;
     std::fill(pushed_.begin(), pushed_.end(), Vector{});
     for (std::size_t i = 0; i < extras_.size(); ++i) push_row(i, solution_[i]);
     solve_tree();

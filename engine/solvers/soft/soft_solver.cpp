@@ -192,13 +192,14 @@ void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
 
 /// Joints, then contacts. @return whether contacts are left as they are, since neither joints nor what
 /// weighs on them have changed a velocity by more than `settled` [m/s]; below zero: never.
-/// @param is_near  whether those of shapes are solved alone that are near bodies which joints have changed by
-/// more than that; in a crowd only those are swept that have anything left to do, where they are few
+/// Of shapes those are solved alone that are near bodies which joints have changed by more than that; in a
+/// crowd only those are swept that have anything left to do, where they are few.
+/// @param is_again  whether a turn of this substep came before
 /// @param sweeps  whether contacts of shapes are swept in place of solved
 template <class Real>
-bool SoftSolver<Real>::solve_turn(WorldState<Real>& world, double settled, bool is_near, bool sweeps) {
+bool SoftSolver<Real>::solve_turn(WorldState<Real>& world, double settled, bool is_again, bool sweeps) {
     const auto next = Sweeps::next(view(), Sweeps::Blocks::all, 1);
-    if (!is_near) paths.begin_restless(records_);
+    if (!is_again) paths.begin_restless(records_);
     if (!world.joints.empty()) {
         double change = joints.solve_again(joint_step(world), loops_);
         if (!heavy_.empty())
@@ -209,13 +210,13 @@ bool SoftSolver<Real>::solve_turn(WorldState<Real>& world, double settled, bool 
         using Bundles = typename PathSolver<Real>::Bundles;
         paths.turns.begin();
         const bool has_asked = joints.ask_turns(settled, paths.turns);
-        const Bundles which = is_near && has_asked ? paths.near_turns() : Bundles::all;
+        const Bundles which = has_asked && settled >= 0 ? paths.near_turns() : Bundles::all;
         const auto restless = static_cast<Real>(kJointsRestless * terms_.fall_speed());
         const bool is_done =
             settled >= 0 && has_asked && !sweeps && paths.sweep_restless(terms_, records_, loops_, restless);
         if (sweeps)
             paths.sweep(terms_, records_, loops_, which);
-        else if (is_near && !is_done)
+        else if (is_again && !is_done)
             paths.solve_again(terms_, records_, loops_, true, which);
         else if (!is_done)
             paths.solve(terms_, records_, loops_, 1, true, which);
@@ -224,8 +225,8 @@ bool SoftSolver<Real>::solve_turn(WorldState<Real>& world, double settled, bool 
     return false;
 }
 
-/// The first turn brings the contacts of all bodies to hold what joints have made of them; the others are for
-/// what presses.
+/// Turns are for what presses near bodies that joints have changed; other contacts hold as they would
+/// without.
 template <class Real>
 void SoftSolver<Real>::solve_joints_and_contacts(WorldState<Real>& world) {
     const double settled = kJointsSettled * terms_.fall_speed();

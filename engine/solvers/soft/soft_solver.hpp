@@ -239,12 +239,14 @@ class SoftSolver {
         return !world.bodies.has_shapes && world.joints.empty() && world.immovable_rows.empty();
     }
     void share_with_joints(WorldState<Real>& world, Books& books, double before);
-    bool solve_turn(WorldState<Real>& world, double settled, bool is_near, bool sweeps);
+    bool solve_turn(WorldState<Real>& world, double settled, bool is_again, bool sweeps);
     /// Whether turns of joints and contacts sweep over contacts of shapes in place of solving them: where
-    /// contacts are so many that paths are short, in a crowd of mechanisms that are swept, too, and where
-    /// contacts come and go. docs/decisions/0090-crowds-of-mechanisms.md, 0091-wild-and-restless-crowds.md.
+    /// free mechanisms are swept, too, and where contacts are so many that paths are short; not beside a
+    /// group that is solved exactly, unless contacts come and go.
+    /// docs/decisions/0090-crowds-of-mechanisms.md, 0091-wild-and-restless-crowds.md,
+    /// 0104-what-rests-takes-no-time.md.
     bool sweeps_turns() const {
-        return joints.touches() && paths.manifolds.is_crowd() &&
+        return joints.touches() && (joints.has_free_crowd() || paths.manifolds.is_crowd()) &&
                (!joints.touches_exactly() || paths.is_wild_crowd());
     }
     JointStep<Real> joint_step(WorldState<Real>& world) {

@@ -137,6 +137,7 @@ void SoftJoints<Real>::find_groups(const WorldState<Real>& world) {
         if (world.gravity == Vec2{} || !are_enough) crowd.clear();
     }
     crowd_groups_ = crowd.size();
+    crowd_hangs_ = std::any_of(crowd.begin(), crowd.end(), [](const Candidate& c) { return c.hangs; });
     std::vector<std::vector<std::size_t>> of_crowd;  // slots of each of its groups
     for (std::size_t i = crowd.size(); i-- > 0;)
         direct_.erase(direct_.begin() + static_cast<std::ptrdiff_t>(crowd[i].group));

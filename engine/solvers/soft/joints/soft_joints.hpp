@@ -61,6 +61,8 @@ class SoftJoints {
     bool touches() const { return touches_ || crowd_groups_ > 0; }
     /// Whether there are so many small groups that they are swept.
     bool has_crowd() const { return crowd_groups_ > 0; }
+    /// Whether there are, and none of them hangs: nothing that lies on them has its weight from them alone.
+    bool has_free_crowd() const { return has_crowd() && !crowd_hangs_; }
     /// Whether a group that is solved exactly touches something.
     bool touches_exactly() const { return touches_; }
     /// Whether hinges of a good part of a crowd were open at the end of the last step: it falls on a heap, or
@@ -144,6 +146,7 @@ class SoftJoints {
     std::vector<std::uint8_t> group_touches_, is_pressed_;
     JoinedContacts contacts_;  // of the step
     ForeseenBlows<Real> blows_;
+    bool crowd_hangs_ = false;
     double open_share_ = 0;  // of the mechanisms of a crowd, that were open at the end of the last step
 };
 
