@@ -72,6 +72,9 @@ TEST_SUITE("hard cases/flying shapes") {
                        .position = {random.uniform(0, 20), random.uniform(0, 20)},
                        .angle = random.uniform(0, 1.5),
                        .velocity = {random.uniform(-1200, 1200), random.uniform(-1200, 1200)}});
+        // A world with a joint takes a step in one flight (docs/decisions/0105-flights-of-a-step.md).
+        const BodyId bob = scene.add({.shape = Disc{kSize}, .position = {1000, 1000}});
+        scene.add(Joint{.b = bob, .kind = DistanceJoint{.anchor_a = {1000, 1001}}});
         std::int64_t least = 0, most = 0;
         for (int i = 0; i < kCount; ++i)
             for (int k = 0; k < i; ++k) {
