@@ -120,8 +120,12 @@ void check_energy(WorldState<Real>& world, int substeps, const KeptEnergyRules& 
 
     const double brought = world.outside.energy.total() - watch.outside;
     if (!watch.is_set || brought != 0) {
-        watch.allowed = watch.energy + brought + books.overlap_worth, watch.round_off = 0,
-        watch.is_set = true;
+        watch.allowed = watch.energy + brought + books.overlap_worth, watch.is_set = true;
+        // What calls have brought is a sum, from which that of the bodies may differ by its rounding: of
+        // bodies that are all gone it leaves what is no energy.
+        watch.round_off =
+            kRoundings * std::numeric_limits<double>::epsilon() *
+            (std::fabs(watch.energy) + std::fabs(world.outside.energy.total()) + std::fabs(watch.outside));
         // A body that is quarantined is taken with what the step gave it, and stays where it was before.
         if (brought != 0 && world.quarantined_count > 0) watch.allowed = std::fmax(watch.allowed, energy);
     }
