@@ -49,6 +49,7 @@ void SweptJoints<Real>::begin_step(const JointStep<Real>& step, const StepLoops<
         is_loaded_ && !has_springs_ && settings_ == step.world.joints.settings && substep_of_drives_ == h;
     settings_ = ends_move_ ? -1 : step.world.joints.settings, substep_of_drives_ = h;
     if (!is_loaded_) load(step.world);
+    longest_ = 0;  // a state that is restored knows nothing of how arms were turned before
     arguments_.assign(kKinds, {});
     stiffness_.begin(static_cast<std::size_t>(first_beyond_));
     for (std::size_t kind = 0; kind < kKinds; ++kind) {
