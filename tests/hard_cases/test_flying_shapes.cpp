@@ -59,8 +59,8 @@ TEST_SUITE("hard cases/flying shapes") {
             CHECK(world.profile().contacts == 0);
         }
     }
-    // Of those that fly 200 times their size in the step each could be in the way of each, along the line
-    // between them: 3,236 contacts of 200 boxes, 179 now (docs/decisions/0103-bodies-that-rattle.md).
+    // Boxes that fly 200 times their size in a step could each be in the way of each, along the line between
+    // them: 3,236 contacts of 200 boxes, 179 now (docs/decisions/0103-bodies-that-rattle.md).
     TEST_CASE_TEMPLATE("shapes far apart are contacts if they come together as they fly or one is stopped",
                        Real, float, double) {
         constexpr int kCount = 200;

@@ -192,8 +192,8 @@ void SoftSolver<Real>::solve_contacts(int number, bool is_last) {
 
 /// Joints, then contacts. @return whether contacts are left as they are, since neither joints nor what
 /// weighs on them have changed a velocity by more than `settled` [m/s]; below zero: never.
-/// Of shapes those are solved alone that are near bodies which joints have changed by more than that; in a
-/// crowd only those are swept that have anything left to do, where they are few.
+/// Contacts of shapes are solved near bodies alone that joints have changed by more than that; in a crowd
+/// only those are swept that have anything left to do, where they are few.
 /// @param is_again  whether a turn of this substep came before
 /// @param sweeps  whether contacts of shapes are swept in place of solved
 template <class Real>

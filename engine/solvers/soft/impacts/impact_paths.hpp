@@ -95,7 +95,7 @@ class ImpactPaths {
   private:
     Mover path_of(std::size_t row) const;
     VelocityChange<Real> change_of(std::size_t row) const;
-    /// Of a body that moves and has no joints.
+    /// Whether a body that has no joints moves by its velocity at the end of the substep.
     bool goes_straight(std::size_t row) const {
         return bodies_->velocity[4 * row + 3] != 0 && !change_of(row).is_smooth();
     }
