@@ -81,7 +81,9 @@ bool is_driven(const WorldState<Real>& world) {
             return bodies.velocity_x[row] != 0 || bodies.velocity_y[row] != 0 ||
                    (bodies.has_rotation && bodies.angular_velocity[row] != 0);
         });
-    bool is_moved = is_pushed || world.joints.may_move_limits();
+    // A joint that broke in this step has brought what its gap was worth, or its motor.
+    bool is_moved =
+        is_pushed || world.joints.may_move_limits() || world.joints.have_broken_behind(world.time);
     if (!is_moved && !world.joints.empty())
         world.joints.for_each([&](std::size_t, const StoredJoint& joint) {
             is_moved = is_moved || joint.has_motor || joint.is_spring() || joint.type == JointType::target;
@@ -118,6 +120,9 @@ void check_energy(WorldState<Real>& world, int substeps, const KeptEnergyRules& 
     note("restitution gives energy", given, round_off, kept.restitution, 0, watch.largest.restitution);
     note("pushes lift bodies", lifted, worth + round_off, kept.correction, 0, watch.largest.correction);
 
+    // What is left by steps that need not keep the rule is where those begin that do.
+    if (kept.passive && !watch.was_kept) watch.is_set = false;
+    watch.was_kept = kept.passive;
     const double brought = world.outside.energy.total() - watch.outside;
     if (!watch.is_set || brought != 0) {
         watch.allowed = watch.energy + brought + books.overlap_worth, watch.is_set = true;

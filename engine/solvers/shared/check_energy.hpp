@@ -23,7 +23,8 @@ struct KeptEnergyRules {
 ///
 /// *A passive world has no more energy than at its start*, or than a call or the last step that was not
 /// passive has left it with; and what the overlaps are worth that it begins with then. Passive is a world
-/// without motors, targets, springs, limits that move and kinematic bodies that do.
+/// without motors, targets, springs, limits that move and kinematic bodies that do, and in whose step no
+/// joint breaks. Where the solver begins to keep the rule, as when the last joint is gone, it starts anew.
 ///
 /// Each may be exceeded by rounding: a velocity is rounded kRoundings times a substep, each time by half the
 /// distance to the next number of the world's precision, which changes an energy by twice that share of it.

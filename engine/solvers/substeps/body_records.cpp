@@ -25,11 +25,6 @@ StartColumns<Real> BodyRecords<Real>::start_columns() {
 }
 
 template <class Real>
-Real* BodyRecords<Real>::turn() {
-    return turn_.empty() ? nullptr : turn_.data();
-}
-
-template <class Real>
 void BodyRecords<Real>::begin(const WorldState<Real>& world, const Column<Real>& motion,
                               const BodyMasses<Real>& masses, std::size_t written, std::size_t padding_rows,
                               const SubstepTerms& terms, const StepLoops<Real>& loops) {

@@ -45,9 +45,9 @@ class BodyRecords {
     void end(Bodies<Real>& bodies, ChunkedList& lost_rows, std::vector<std::int32_t>& lost,
              const StepLoops<Real>& loops);
     StartColumns<Real> start_columns();
-    /// m, by row: rim displacement since the start of the step; null without rotation.
-    Real* turn();
-    const Real* turn() const { return has_rotation_ ? turn_.data() : nullptr; }
+    /// m, by row: rim displacement since the start of the step; null in worlds of discs without rotation.
+    Real* turn() { return turn_.empty() ? nullptr : turn_.data(); }
+    const Real* turn() const { return turn_.empty() ? nullptr : turn_.data(); }
     /// Rows behind all others, of bodies that nothing moves: at rest until the next `begin`.
     void add_still_rows(std::size_t rows);
     /// Changes the velocity of a body by dv [m/s] and du [m/s] of its rim at once: at the start of the
