@@ -30,6 +30,8 @@ class RowRenaming {
         if (!has_moved_) return row < rows_ ? static_cast<std::int32_t>(row) : kGone;
         return row < old_row_.size() ? old_row_[row] : kGone;
     }
+    /// Rows at the start.
+    std::size_t rows() const { return rows_; }
     /// Whether any row may have gone elsewhere.
     bool has_moved() const { return has_moved_; }
     /// Today's row of each row at the start, or kGone, [rows at the start]. Cost: O(rows).

@@ -364,10 +364,11 @@ bool Sleepers<Real>::put_to_sleep(WorldState<Real>& world, ContactGraph<Real>& g
 }
 
 template <class Real>
-void Sleepers<Real>::forget_contacts(ContactGraph<Real>& graph, const WorldState<Real>& world) {
+void Sleepers<Real>::forget_contacts(ContactGraph<Real>& graph) {
     ContactRows<Real>& supports = graph.supports;
+    const std::size_t awake = graph.trail.rows();  // when its rows were named; calls may have added some
     supports.for_each([&](std::size_t i) {
-        if (supports.partner(i).is_sleeper(world.bodies.count))
+        if (supports.partner(i).is_sleeper(awake))
             supports.b[i] = supports.a[i], supports.normal_impulse[i] = 0;
     });
 }

@@ -38,7 +38,7 @@ class Sleepers {
     bool is_near_any(const WorldState<Real>& world, const Candidates<Real>& candidates,
                      std::span<const std::int32_t> rows);
     /// To be called before rows get another order: contacts with sleepers keep no impulses.
-    static void forget_contacts(ContactGraph<Real>& graph, const WorldState<Real>& world);
+    static void forget_contacts(ContactGraph<Real>& graph);
     /// Marks the islands that something is about to hit in this step, and those that these hit in turn.
     /// @return whether there are any.
     bool mark_hit(const WorldState<Real>& world, double dt, double substep);

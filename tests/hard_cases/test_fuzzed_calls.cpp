@@ -274,4 +274,78 @@ TEST_SUITE("hard cases/fuzzed calls") {
         for (int step = 0; step < 3; ++step) world.step(kStep);
         CHECK(world.ledger().energy_excess.passive == gained);
     }
+
+    TEST_CASE_TEMPLATE("what touches a sleeper follows it when bodies are added and removed", Real, float,
+                       double) {
+        Scene scene;
+        scene.accuracy.solver = Solver::soft;
+        scene.effects.sleep = true;
+        const BodyId asleep = scene.add(disc(0.5, 1, {0, 0}));
+        scene.add(disc(0.5, 1, {10, 0}));
+        BasicWorld<Real> world(scene);
+        for (int step = 0; step < 200; ++step) world.step(kStep);
+        REQUIRE(world.is_asleep(asleep));
+        const BodyId beside = world.add(disc(0.5, 1, {1.05, 0}, {0, 2}));
+        world.step(kStep);
+        REQUIRE(world.profile().contacts == 1);
+        REQUIRE(world.is_asleep(asleep));
+        // The row of the sleeper was that behind the one that is awake.
+        for (int more = 0; more < 3; ++more) {
+            const BodyId gone = world.add(disc(0.5, 1, {5.0 + more, 5}));
+            world.add(disc(0.5, 1, {5.0 + more, 10}));
+            world.remove(gone);
+            world.step(kStep);
+        }
+        CHECK(world.is_asleep(asleep));
+        CHECK(world.state(beside).velocity == Vec2{0, 2});
+        CHECK(world.state(asleep).position == Vec2{});
+    }
+
+    TEST_CASE_TEMPLATE("a world restored to a time without contacts has none of those it had since", Real,
+                       float, double) {
+        Scene scene;
+        scene.accuracy.solver = Solver::soft;
+        scene.gravity = {0, -10};
+        scene.effects.ledger = true;
+        scene.add({.type = BodyType::kinematic_body, .shape = Box{4, 1}, .velocity = {0, 1}});
+        BasicWorld<Real> world(scene), other(scene);
+        std::vector<std::byte> start(world.state_bytes());
+        world.save_state(start);
+        for (const double x : {-1.0, 0.2, 1.4}) world.add(disc(0.5, 1, {x, 0.99}));
+        for (int step = 0; step < 10; ++step) world.step(kStep);
+        REQUIRE(world.ledger().energy_by_cause.drive > 1);
+        world.restore_state(start);
+        for (int step = 0; step < 10; ++step) world.step(kStep), other.step(kStep);
+        CHECK(world.ledger().energy_by_cause.drive == 0);
+        CHECK(world.ledger().momentum_by_cause.immovable == Vec2{});
+        CHECK(world.state_hash() == other.state_hash());
+    }
+
+    TEST_CASE_TEMPLATE("blows of a short step are none of a long one", Real, float, double) {
+        // Discs that lie in each other and press themselves into a corner, without gravity; then a step is
+        // late. What stopped them is no force that the long step would have to expect.
+        double worst = 0;
+        for (const double late : {0.05, 0.1, 0.288}) {
+            for (int before = 1; before < 6; ++before) {
+                CAPTURE(late);
+                CAPTURE(before);
+                Scene scene;
+                scene.accuracy.solver = Solver::soft, scene.accuracy.substeps = 8;
+                scene.walls = Walls{.min = {-4, -10}, .max = {4, 4}};
+                for (int i = 0; i < 5; ++i) {
+                    Body rough =
+                        disc(i == 3 ? 0.424 : 0.344, 1.72, {-3.44, -3.44}, {-3.44, i == 3 ? 1.68 : -3.44});
+                    rough.material.friction = 0.344;
+                    scene.add(rough);
+                }
+                BasicWorld<Real> world(scene);
+                for (int step = 0; step < before; ++step) world.step(kStep);
+                const double energy = world.ledger().energy.total();
+                world.step(late);
+                worst = std::max(worst, world.ledger().energy.total() / energy - 1);
+            }
+        }
+        report("a late step gave ", worst, " of the energy");
+        CHECK(worst < 1e-3);
+    }
 }

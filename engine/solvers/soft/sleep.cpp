@@ -27,7 +27,7 @@ bool do_edges_move(const WorldState<Real>& world) {
 
 template <class Real>
 bool wake_marked(SoftSimulation<Real>& sim) {
-    Sleepers<Real>::forget_contacts(sim.soft.graph, sim.world);
+    Sleepers<Real>::forget_contacts(sim.soft.graph);
     if (sim.sleepers.wake_marked(sim.world) == 0) return false;
     rows_changed(sim);
     return true;
@@ -71,7 +71,7 @@ void put_to_sleep(SoftSimulation<Real>& sim) {
     }
     if (do_edges_move(world)) return;
     if (!sim.sleepers.put_to_sleep(world, sim.soft.graph, others, sim.flight_dt, sim.substep_dt)) return;
-    Sleepers<Real>::forget_contacts(sim.soft.graph, world);
+    Sleepers<Real>::forget_contacts(sim.soft.graph);
     rows_changed(sim);
 }
 

@@ -224,8 +224,9 @@ class SoftSolver {
     static void visit_state(Self& self, Archive& archive) {
         archive(self.graph, self.paths, self.counters, self.impacts.counters, self.warm_start_,
                 self.corrections_, self.joints);
+        // Contacts that were found before are of another world, which may have none to find.
         if constexpr (!std::is_const_v<Self>)
-            self.forget_rows(), self.records_.forget(), self.impacts.forget();
+            self.forget_rows(), self.records_.forget(), self.impacts.forget(), self.supports_ = {};
     }
 
   private:

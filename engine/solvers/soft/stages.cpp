@@ -58,7 +58,7 @@ void update_contacts(SoftSimulation<Real>& sim) {
     const Walls* walls = sim.world.walls ? &*sim.world.walls : nullptr;
     sim.soft.graph.sleepers = sim.sleepers.pairs();
     if (sim.graph_of_rebuild != sim.candidates.rebuild_count() && sim.world.effects.sleeping)
-        Sleepers<Real>::forget_contacts(sim.soft.graph, sim.world);
+        Sleepers<Real>::forget_contacts(sim.soft.graph);
     if (sim.graph_of_rebuild == sim.candidates.rebuild_count()) {
         sim.edge_candidates.add_strays(sim.world, sim.candidates);
         sim.soft.graph.add(sim.candidates, sim.edge_candidates, sim.world.bodies, walls);

@@ -1,6 +1,7 @@
 #include "solvers/soft/contacts/warm_start.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace carom {
 namespace {
@@ -16,12 +17,14 @@ constexpr double kMeansOfVarying = 10;
 }  // namespace
 
 /// What lasts from step to step is force: after substeps of another length the impulses are of another size.
+/// Without gravity they are those of blows, mostly, which are no larger for a longer substep.
 template <class Real>
 void WarmStart<Real>::begin_step(ContactGraph<Real>& graph, double substep_dt, double dt,
                                  double longest_substep) {
     is_rebalanced_ = false;
     are_known_ = substep_dt_ > 0;
     kept_ = are_known_ ? substep_dt / substep_dt_ : 0;
+    if (longest_substep == 0) kept_ = std::fmin(kept_, 1);
     dt_ = dt, mean_over_ = kFallsOfMean * longest_substep;
     if (substep_dt == substep_dt_ && varying_left_ == 0) return;
     varying_left_ = are_known_ && substep_dt != substep_dt_ ? kMeansOfVarying * mean_over_
