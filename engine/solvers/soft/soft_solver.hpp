@@ -222,11 +222,12 @@ class SoftSolver {
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
+        // Contacts that were found, and what was listed of them, are of another world, which may have none.
+        if constexpr (!std::is_const_v<Self>) self.supports_ = {}, self.corrections_ = {};
         archive(self.graph, self.paths, self.counters, self.impacts.counters, self.warm_start_,
                 self.corrections_, self.joints);
-        // Contacts that were found before are of another world, which may have none to find.
         if constexpr (!std::is_const_v<Self>)
-            self.forget_rows(), self.records_.forget(), self.impacts.forget(), self.supports_ = {};
+            self.forget_rows(), self.records_.forget(), self.impacts.forget();
     }
 
   private:

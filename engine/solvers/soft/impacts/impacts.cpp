@@ -411,9 +411,9 @@ bool Impacts<Real>::carry_out(Place place, double time, Books& books, double& gr
         if (!bounces) make_contact(place, n, gap, time);
 
         const ContactImpulses<double>& j = blow.impulses;
-        assert(blow.by_normal <= kRoundOff * j.normal * speed && "an impact never adds energy");
+        assert(blow.by_normal <= j.normal * (kRoundOff * speed + noise) && "an impact never adds energy");
         assert(blow.by_friction <=
-                   kRoundOff * j.normal * (speed + std::fabs(before[1]) + std::fabs(before[2])) &&
+                   j.normal * (kRoundOff * (speed + std::fabs(before[1]) + std::fabs(before[2])) + noise) &&
                "friction never adds energy");
         if (other.is_wall()) books.wall_impulse += j.normal;
         if (!books.is_open) return true;
