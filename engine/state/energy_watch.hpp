@@ -13,6 +13,7 @@ struct EnergyWatch {
     bool was_kept = false;         ///< whether the last step had to keep the rule of passive worlds
     double energy = 0;             ///< J, behind the last step; likewise below
     double outside = 0;            ///< J, that calls had brought in
+    double brought = 0;            ///< J, by calls since the last step, all as positive
     double restitution = 0;        ///< J, in the books
     double correction = 0;         ///< J, in the books
     double taken_by_contacts = 0;  ///< J, in the books: by restitution, friction and joints

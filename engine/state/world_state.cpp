@@ -156,7 +156,7 @@ EdgeStore::Removed WorldState<Real>::remove(std::size_t row) {
     if (bodies.has_shapes && bodies.shape[row] >= 0) shapes.remove(bodies.shape[row]);
     if (!joints.empty()) joints.remove_of(bodies.id[row]);
     if (bodies.flags_of(row) & kSensor) std::erase(sensing.sensors, bodies.id[row]);
-    outside = outside - sums_of(row);
+    bring(Sums{} - sums_of(row));
     if (!bodies.is_immovable(row)) dynamic_mass -= static_cast<double>(bodies.mass[row]);
     handles.remove(bodies.id[row]);
     const std::size_t last_awake = bodies.count - 1, last = bodies.rows() - 1;
@@ -190,7 +190,7 @@ template <class Real>
 void WorldState<Real>::quarantine(std::size_t row, const Sums& taken) {
     if (!bodies.is_immovable(row)) dynamic_mass -= static_cast<double>(bodies.mass[row]);
     const double size = taken.energy.total() + length_squared(taken.momentum);
-    outside = outside - (size - size == 0 ? taken : sums_of(row));  // NaN and infinity fail
+    bring(Sums{} - (size - size == 0 ? taken : sums_of(row)));  // NaN and infinity fail
     bodies.set_flags(
         row, static_cast<std::uint8_t>((bodies.flags_of(row) & ~kKinematic) | kImmovable | kDisabled));
     bodies.velocity_x[row] = 0, bodies.velocity_y[row] = 0;

@@ -4,6 +4,7 @@
 #include <carom/scene.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -79,6 +80,11 @@ struct WorldState {
     }
 
     std::size_t bytes() const;
+
+    /// Books what a call, or quarantine, has brought in.
+    void bring(const Sums& more) {
+        outside = outside + more, energy_watch.brought += std::fabs(more.energy.total());
+    }
 
     /// Energy and momentum of one row; zero if it is not dynamic.
     Sums sums_of(std::size_t row) const;

@@ -125,7 +125,7 @@ struct BasicWorld<Real>::Implementation : WorldSettings {
     void change_row(std::size_t row, const Change& change) {
         const Sums before = world().sums_of(row);
         change();
-        world().outside = world().outside + (world().sums_of(row) - before);
+        world().bring(world().sums_of(row) - before);
     }
 
     Mobility mobility_of(std::size_t row) const {

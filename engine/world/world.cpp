@@ -214,7 +214,7 @@ BodyId BasicWorld<Real>::add(const Body& body) {
         implementation_->sim().wake_all();
     WorldState<Real>& world = implementation_->world();
     const BodyId id = world.append(body);
-    world.outside = world.outside + world.sums_of(world.handles.row_of_slot(id.index));
+    world.bring(world.sums_of(world.handles.row_of_slot(id.index)));
     implementation_->sim().note_added(world.handles.row_of_slot(id.index));
     implementation_->undo_if_refused("World::add", [&] {
         world.remove(world.handles.row_of_slot(id.index));

@@ -348,4 +348,29 @@ TEST_SUITE("hard cases/fuzzed calls") {
         report("a late step gave ", worst, " of the energy");
         CHECK(worst < 1e-3);
     }
+
+    TEST_CASE_TEMPLATE("a disc that is stuck in a gap too narrow for it falls nowhere and gains nothing",
+                       Real, float, double) {
+        double worst = 0;
+        for (const double dt : {kStep, 0.05, 0.208}) {
+            CAPTURE(dt);
+            Scene scene;
+            scene.gravity = {0, -10};
+            scene.effects.ledger = true;
+            for (const double x : {1.6, 2.944})
+                for (const double y : {-5.68, -4.576, -3.472})
+                    scene.add({.type = BodyType::static_body,
+                               .shape = Segment{{1.28, -0.08}, {-5.6, 5.92}},
+                               .position = {x, y},
+                               .angle = -0.72});
+            scene.add(disc(0.6, 1, {2.16, -3.76}));
+            BasicWorld<Real> world(scene);
+            for (int step = 0; step < 60; ++step) {
+                world.step(dt);
+                worst = std::max(worst, world.ledger().energy_excess.passive);
+            }
+        }
+        report("a disc that is stuck gains ", worst, " J");
+        CHECK(worst < 0.04);  // a thousandth of its potential
+    }
 }

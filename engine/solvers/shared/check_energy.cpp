@@ -128,9 +128,8 @@ void check_energy(WorldState<Real>& world, int substeps, const KeptEnergyRules& 
         watch.allowed = watch.energy + brought + books.overlap_worth, watch.is_set = true;
         // What calls have brought is a sum, from which that of the bodies may differ by its rounding: of
         // bodies that are all gone it leaves what is no energy.
-        watch.round_off =
-            kRoundings * std::numeric_limits<double>::epsilon() *
-            (std::fabs(watch.energy) + std::fabs(world.outside.energy.total()) + std::fabs(watch.outside));
+        watch.round_off = kRoundings * std::numeric_limits<double>::epsilon() *
+                          (std::fabs(watch.energy) + std::fabs(watch.outside) + watch.brought);
         // A body that is quarantined is taken with what the step gave it, and stays where it was before.
         if (brought != 0 && world.quarantined_count > 0) watch.allowed = std::fmax(watch.allowed, energy);
     }
@@ -141,7 +140,7 @@ void check_energy(WorldState<Real>& world, int substeps, const KeptEnergyRules& 
         note("a passive world has gained", energy - watch.allowed, watch.round_off, kept.passive,
              kLargestRise * size, watch.largest.passive);
 
-    watch.energy = energy, watch.outside = world.outside.energy.total();
+    watch.energy = energy, watch.outside = world.outside.energy.total(), watch.brought = 0;
     watch.restitution = books.restitution, watch.correction = books.correction;
     watch.taken_by_contacts = contacts;
     books.overlap_worth = 0;

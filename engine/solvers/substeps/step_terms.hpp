@@ -47,6 +47,7 @@ struct StepFlight {
     double fastest;  ///< m/s, of all bodies at the start
 
     Vec2 start_of(std::size_t row) const { return {motion[4 * row], motion[4 * row + 1]}; }
+    Vec2 start_velocity_of(std::size_t row) const { return {motion[4 * row + 2], motion[4 * row + 3]}; }
 };
 
 }  // namespace carom

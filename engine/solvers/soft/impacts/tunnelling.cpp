@@ -149,7 +149,14 @@ void Tunnelling<Real>::put_back(WorldState<Real>& world, const StepFlight<Real>&
     const Vec2 surface = (1 / flight.dt) * (pose.end_position - pose.position) + spin * Vec2{-arm.y, arm.x};
     const Vec2 v{bodies.velocity_x[row], bodies.velocity_y[row]};
     const double leaving = dot(v - surface, n);
-    const Vec2 held = leaving < 0 ? v - leaving * n : v;
+    Vec2 held = leaving < 0 ? v - leaving * n : v;
+    // What stays where it was has fallen nowhere, and is no faster than it was: in a gap that is too narrow
+    // for it a disc is put back in every step.
+    if (to_start || is_slow) {
+        const double most = length_squared(flight.start_velocity_of(row) - surface),
+                     speed = length_squared(held - surface);
+        if (speed > most) held = surface + std::sqrt(most / speed) * (held - surface);
+    }
     bodies.position_x[row] = static_cast<Real>(x.x), bodies.position_y[row] = static_cast<Real>(x.y);
     bodies.velocity_x[row] = static_cast<Real>(held.x), bodies.velocity_y[row] = static_cast<Real>(held.y);
     if (!world.books.is_open) return;
