@@ -372,4 +372,26 @@ TEST_SUITE("hard cases/fuzzed calls") {
         report("a disc that is stuck gains ", worst, " J");
         CHECK(worst < 0.04);  // a thousandth of its potential
     }
+
+    TEST_CASE_TEMPLATE("what lay on a body that is gone falls, where nothing is left to meet", Real, float,
+                       double) {
+        Scene scene;
+        scene.accuracy.solver = Solver::impulse;
+        scene.gravity = {0, -10};
+        scene.effects.ledger = true;
+        const BodyId below =
+            scene.add({.type = BodyType::static_body, .shape = Disc{0.5}, .position = {0, 0}});
+        const BodyId middle = scene.add(disc(0.5, 1, {0, 1})), top = scene.add(disc(0.5, 1, {0, 2}));
+        BasicWorld<Real> world(scene);
+        for (int step = 0; step < 10; ++step) world.step(kStep);
+        REQUIRE(world.profile().touching == 2);
+        for (const BodyId gone : {middle, below}) world.remove(gone);
+        const double from = world.state(top).velocity.y;
+        const double lost = world.ledger().energy_by_cause.restitution;
+        for (int step = 1; step <= 6; ++step) {
+            world.step(kStep);
+            CHECK(world.state(top).velocity.y == doctest::Approx(from - 10 * step * kStep).epsilon(1e-5));
+        }
+        CHECK(world.ledger().energy_by_cause.restitution == lost);
+    }
 }

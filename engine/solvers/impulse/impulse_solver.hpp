@@ -103,14 +103,14 @@ class ImpulseSolver {
     const std::vector<std::int32_t>& held_rows() const { return held_; }
 
     /// Forgets contacts at rest, e.g. because bodies were moved or removed from outside.
-    void forget_contacts() { outcome_.resting.clear(); }
+    void forget_contacts() { outcome_.resting.clear(), held_.clear(); }
 
     std::size_t bytes() const;
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {
         archive(self.counters, self.outcome_.resting);
-        if constexpr (!std::is_const_v<Self>) self.columns.accelerations.clear();
+        if constexpr (!std::is_const_v<Self>) self.columns.accelerations.clear(), self.held_.clear();
     }
 
   private:
