@@ -366,7 +366,7 @@ bool Sleepers<Real>::put_to_sleep(WorldState<Real>& world, ContactGraph<Real>& g
 template <class Real>
 void Sleepers<Real>::forget_contacts(ContactGraph<Real>& graph) {
     ContactRows<Real>& supports = graph.supports;
-    const std::size_t awake = graph.trail.rows();  // when its rows were named; calls may have added some
+    const std::size_t awake = graph.trail.rows();  // those when its rows were named: calls may add some
     supports.for_each([&](std::size_t i) {
         if (supports.partner(i).is_sleeper(awake))
             supports.b[i] = supports.a[i], supports.normal_impulse[i] = 0;
