@@ -34,10 +34,10 @@ constexpr Golden kGolden[] = {
     {"falling sizes", 0x4fe0c9b61ea50e9c, 0xc84f698047eb650e},
     {"moving obstacles", 0x9450532e75523df8, 0x81f8d27062c9d725},
     {"stack at rest", 0xa436021f760768ad, 0xfd75b447dc578a50},
-    {"rough sizes", 0xbcb81659436e5535, 0x28b6e3ebe4405768},
-    {"rolling sizes", 0xae2176e2b0fd3488, 0x7b0600b17183bef5},
+    {"rough sizes", 0x978ce39c4b2a828d, 0x47a831af8e9e43fa},
+    {"rolling sizes", 0xdd32abbb7b454e76, 0xd5c23181496b0a46},
     {"turning chain", 0x23d48a3c8e08a612, 0x279669f7e07a9a72},
-    {"woken sleepers", 0x4a097a5e5e860e93, 0xe6b0cf2e09ab2674},
+    {"woken sleepers", 0x77fa00849de7a9ee, 0xe5c36c16593eee67},
     {"falling compounds", 0x3fba9fac5562a5f8, 0xbbafc864b2858d77},
 };
 

@@ -8,7 +8,7 @@
 
 namespace carom {
 
-/// Keeps contacts of discs from doing work, in worlds of crowds that bounce.
+/// Keeps contacts of discs from doing work, in crowds that bounce, are hit or lie deep in each other.
 ///
 /// A substep begins with the impulses of the one before, which are too large where a crowd has come apart or
 /// was struck, and sweeps do not take all of that back. Where all contacts together have done work at the end

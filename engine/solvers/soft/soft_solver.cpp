@@ -111,8 +111,8 @@ void SoftSolver<Real>::find_contacts(WorldState<Real>& world, const EdgeCandidat
     motion.resize(4 * padded(records_.count() + ContactGraph<Real>::padding_rows(graph.groups)));
     settings_.set_lengths(terms_, longest_substep);
     settings_.masses_are_uneven = masses_.are_uneven();
-    settings_.sweeps_hits =
-        !world.effects.restitution && !settings_.masses_are_uneven && !world.bodies.has_flags;
+    const bool bounces = has_restitution(world);
+    settings_.sweeps_hits = !bounces && !settings_.masses_are_uneven && !world.bodies.has_flags;
     warm_start_.begin_step(graph, terms_.substep_dt, terms_.dt, longest_substep);
     const bool is_new =
         finder_.pairs.find(view(), world.bodies, masses_, motion,
@@ -133,15 +133,16 @@ void SoftSolver<Real>::find_contacts(WorldState<Real>& world, const EdgeCandidat
     counters.colours = static_cast<std::int64_t>(graph.pairs.count.size());
     counters.overflow = static_cast<std::int64_t>(graph.pairs.overflow());
     sweeps_.begin_step(counters.contacts);
-    takes_gains_ = is_bouncing_crowd(world);
+    takes_gains_ = is_crowd_in_touch(world) &&
+                   (bounces || corrections_.deep.expects_hits() || finder_.pairs.has_deep_pairs());
 }
 
-/// Discs of which several may move and some may touch, and something that bounces.
+/// Discs of which several may move and some may touch.
 template <class Real>
-bool SoftSolver<Real>::is_bouncing_crowd(const WorldState<Real>& world) const {
+bool SoftSolver<Real>::is_crowd_in_touch(const WorldState<Real>& world) const {
     return records_.moving() >= kFewestOfCrowd &&
-           counters.contacts > static_cast<std::int64_t>(supports_.contacts()) && settles_crowds(world) &&
-           has_restitution(world);
+           counters.contacts > static_cast<std::int64_t>(supports_.contacts()) && !world.bodies.has_shapes &&
+           world.joints.empty();
 }
 
 template <class Real>
@@ -252,11 +253,16 @@ void SoftSolver<Real>::bound_energy(WorldState<Real>& world) {
         }
         passive_.bound(solved, true);
     };
-    if (!is_crowd_of_discs(world)) bound_passive();
-    if (!takes_gains_ || !ContactGains<Real>::does_work(solved)) return;
-    // What more sweeps mend is not taken from what bears a heap.
-    const auto more = Sweeps::next(contacts, Sweeps::Blocks::all, kSweepsOfGain);
-    sweeps_.run(contacts, {more.data(), more.size()});
+    const bool are_uneven = masses_.are_uneven();
+    if (!is_crowd_of_discs(world) || (takes_gains_ && are_uneven)) bound_passive();
+    // A heap of uneven discs that is lifted out of itself would sink: what bears it would be taken.
+    if (!takes_gains_ || (are_uneven && world.effects.gravity) || !ContactGains<Real>::does_work(solved))
+        return;
+    if (!are_uneven) {  // there sweeps would undo what corrections have done
+        // What more sweeps mend is not taken from what bears a heap.
+        const auto more = Sweeps::next(contacts, Sweeps::Blocks::all, kSweepsOfGain);
+        sweeps_.run(contacts, {more.data(), more.size()});
+    }
     gains_.take(solved);
 }
 

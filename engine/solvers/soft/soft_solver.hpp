@@ -232,11 +232,12 @@ class SoftSolver {
 
   private:
     using Sweeps = ContactSweeps<Real>;
-    bool is_bouncing_crowd(const WorldState<Real>& world) const;
+    bool is_crowd_in_touch(const WorldState<Real>& world) const;
     /// Not where masses differ much, for sweeps would undo what corrections of uneven ones do, nor where
     /// there are contacts or joints that these sweeps do not know: docs/decisions/0093-crowds-that-bounce.md.
     bool settles_crowds(const WorldState<Real>& world) const;
-    /// Whether there is nothing but discs that move, and walls: these gain too little to be solved anew.
+    /// Whether there is nothing but discs that move, and walls: of even masses these gain too little to be
+    /// solved anew.
     static bool is_crowd_of_discs(const WorldState<Real>& world) {
         return !world.bodies.has_shapes && world.joints.empty() && world.immovable_rows.empty();
     }
