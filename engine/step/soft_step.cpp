@@ -96,7 +96,7 @@ class SoftStep final : public SoftSimulation<Real> {
          "position, candidate pairs", "coloured candidates, impulses"},
         {"begin_substeps",
          [](Sim& sim) {
-             sim.soft.begin_substeps(sim.world, sim.motion, sim.flight_dt, sim.substep_dt, sim.world.gravity,
+             sim.soft.begin_substeps(sim.world, sim.motion, sim.flights, sim.substep_dt, sim.world.gravity,
                                      *sim.kernels, sim.executor);
          },
          always, KernelChoice::isa, "motion, angular velocity, mass, radius",
@@ -124,7 +124,7 @@ class SoftStep final : public SoftSimulation<Real> {
          "contacts, impulses", "velocity records"},
         {"warm_start_paths", [](Sim& sim) { sim.soft.warm_start_paths(sim.world); }, has_shapes,
          KernelChoice::isa, "paths of contacts", "velocity records"},
-        {"begin_joints", [](Sim& sim) { sim.soft.begin_joints(sim.world, sim.flight_dt); }, has_joints,
+        {"begin_joints", [](Sim& sim) { sim.soft.begin_joints(sim.world, sim.flights); }, has_joints,
          KernelChoice::scalar_f64, "joints, position, angle, velocity, contacts", "joints, velocity records"},
     };
     static constexpr Stage<Sim> kSubstep[] = {

@@ -205,7 +205,7 @@ void DirectJoints<Real>::write_velocities(const JointStep<Real>& step) {
 template <class Real>
 void DirectJoints<Real>::solve_first(const JointStep<Real>& step, int substep) {
     read_poses(step);
-    system_.set_until_end(step.terms.dt - step.terms.elapsed);
+    system_.set_until_end(step.terms.until_end());
     for (std::size_t i = 1; i < rows_.size(); ++i) {
         const Real* record = &step.records.velocity[4 * static_cast<std::size_t>(rows_[i])];
         SystemBody& body = system_.bodies[i];
@@ -320,7 +320,7 @@ void DirectJoints<Real>::end_step(const JointStep<Real>& step) {
     if (touches_) return;
     half_kick(step, 1);
     read_poses(step);
-    system_.set_until_end(0);
+    system_.set_until_end(step.terms.behind);
     for (std::size_t i = 1; i < rows_.size(); ++i) {
         const Real* record = &step.records.velocity[4 * static_cast<std::size_t>(rows_[i])];
         system_.bodies[i].velocity = Vec2{record[0], record[1]};

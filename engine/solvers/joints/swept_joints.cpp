@@ -199,7 +199,7 @@ void SweptJoints<Real>::sweep(const JointStep<Real>& step, const StepLoops<Real>
     for (SweepJoints<Real>& k : arguments_) {
         k.velocity = step.records.velocity.data(), k.displacement = step.records.displacement.data();
         k.turn = turn_of(step.records);
-        k.until_end = static_cast<Real>(step.terms.dt - step.terms.elapsed), k.ends_move = ends_move_;
+        k.until_end = static_cast<Real>(step.terms.until_end()), k.ends_move = ends_move_;
     }
     if (!bundles_.empty()) sweep_bundles(loops, begin);
     if (!has_joints_of_groups_) return;

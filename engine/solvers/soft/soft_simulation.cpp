@@ -71,12 +71,10 @@ void SoftSimulation<Real>::set_flight() {
     longest_substep = rate > 0 ? 1 / rate : 0;
 }
 
-/// Joints go by the step: limits that a program moves, gaps that are closed within it.
 template <class Real>
 bool SoftSimulation<Real>::shorten_flight() {
     const double bodies = static_cast<double>(this->world.bodies.count) + kFewBodies;
-    if (!this->world.joints.empty() ||
-        static_cast<double>(this->candidates.pair_count()) <= kOrdinaryPairs * bodies ||
+    if (static_cast<double>(this->candidates.pair_count()) <= kOrdinaryPairs * bodies ||
         static_cast<double>(this->candidates.count_far_pairs(this->world.bodies)) <= kMostFarPairs * bodies ||
         !flights.shorten())
         return false;
@@ -90,10 +88,7 @@ void SoftSimulation<Real>::begin_flights(double dt) {
     const auto far_pairs = [&] {
         return static_cast<double>(this->candidates.count_far_pairs(this->world.bodies));
     };
-    if (!this->world.joints.empty())
-        flights = {};
-    else if (flights.count() > 1 &&
-             far_pairs() <= kFewFarPairs * static_cast<double>(this->world.bodies.count))
+    if (flights.count() > 1 && far_pairs() <= kFewFarPairs * static_cast<double>(this->world.bodies.count))
         flights.lengthen();
     flights.begin_step(dt);
 }

@@ -83,9 +83,9 @@ std::size_t SoftSolver<Real>::rows_per_task() const {
 }
 
 template <class Real>
-void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Column<Real>& motion, double dt,
-                                      double h, const Vec2 gravity, const KernelTable<Real>& kernels,
-                                      const Executor& executor) {
+void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Column<Real>& motion,
+                                      const StepFlights& flights, double h, const Vec2 gravity,
+                                      const KernelTable<Real>& kernels, const Executor& executor) {
     read_effects(world, settings_);
     settings_.iterations = iterations(world);
     const bool has_friction = settings_.effects.friction && !settings_.is_smooth_heap,
@@ -95,7 +95,7 @@ void SoftSolver<Real>::begin_substeps(const WorldState<Real>& world, const Colum
     takes_gains_ = false, gains_.begin_step();
     loops_ = {&kernels, &settings_.kernels_of(kernels, masses_.some_are_fixed()), &executor, rows_per_task()};
     const FlightClock clock = flight_clock_at(h, world.drag.linear);
-    terms_.dt = dt, terms_.substep_dt = h, terms_.elapsed = 0;
+    terms_.dt = flights.length(), terms_.substep_dt = h, terms_.elapsed = 0, terms_.behind = flights.left();
     terms_.gravity_change = clock.s * gravity, terms_.decay = clock.u;
     terms_.spin_decay = flight_clock_at(h, world.drag.angular).u;
     if (world.effects.joints) joints.find_groups(world);

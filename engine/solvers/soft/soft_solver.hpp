@@ -67,8 +67,10 @@ class SoftSolver {
     }
 
     /// Reads what holds for the step; velocity records of all bodies at its start.
-    void begin_substeps(const WorldState<Real>& world, const Column<Real>& motion, double dt, double h,
-                        const Vec2 gravity, const KernelTable<Real>& kernels, const Executor& executor);
+    /// @param h  s, a substep of the present flight
+    void begin_substeps(const WorldState<Real>& world, const Column<Real>& motion, const StepFlights& flights,
+                        double h, const Vec2 gravity, const KernelTable<Real>& kernels,
+                        const Executor& executor);
     /// Contacts that can touch in this step, by colour.
     /// @param motion  [rows][4] at the start of the step; gets rows for the padding of groups
     /// @param flies_together  whether a good part of the bodies are fast together
@@ -149,8 +151,8 @@ class SoftSolver {
 
     // Joints: solvers/soft/joints/.
 
-    void begin_joints(WorldState<Real>& world, double dt) {
-        joints.begin_step(joint_step(world), view(), paths, dt);
+    void begin_joints(WorldState<Real>& world, const StepFlights& flights) {
+        joints.begin_step(joint_step(world), view(), paths, flights);
         paths.pushes_twice = sweeps_turns();
         impacts.held.begin_joints(joints);
         heavy_.find(held_contacts(), joint_step(world), joints);
@@ -174,8 +176,8 @@ class SoftSolver {
         books_.work_of_joints = books.joints - before;
     }
     /// @return whether a joint broke
-    bool end_joints(WorldState<Real>& world, Books& books, double dt) {
-        return joints.end_step(joint_step(world), view(), paths, books, dt);
+    bool end_joints(WorldState<Real>& world, Books& books, const StepFlights& flights) {
+        return joints.end_step(joint_step(world), view(), paths, books, flights);
     }
 
     /// The impulses back to the candidates.

@@ -78,7 +78,7 @@ void update_contacts(SoftSimulation<Real>& sim) {
 
 template <class Real>
 void end_joints(SoftSimulation<Real>& sim) {
-    if (sim.soft.end_joints(sim.world, sim.world.books, sim.flight_dt)) sim.forget_derived_state();
+    if (sim.soft.end_joints(sim.world, sim.world.books, sim.flights)) sim.forget_derived_state();
 }
 
 template <class Real>

@@ -27,6 +27,12 @@ class StepFlights {
     int count() const { return count_; }
     /// s, of a flight
     double length() const { return dt_ / count_; }
+    /// s, of the step
+    double length_of_step() const { return dt_; }
+    /// s, of the step behind the present flight
+    double left() const { return dt_ * (static_cast<double>(kMost - parts_done_ - kMost / count_) / kMost); }
+    bool is_first() const { return parts_done_ == 0; }
+    bool is_last() const { return parts_done_ + kMost / count_ == kMost; }
     /// s since the start of the step
     double elapsed() const { return dt_ * (static_cast<double>(parts_done_) / kMost); }
     bool are_done() const { return parts_done_ == kMost; }

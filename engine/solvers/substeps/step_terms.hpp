@@ -30,9 +30,12 @@ struct SubstepTerms {
     double dt = 0;                     ///< s, of the step
     double substep_dt = 0;             ///< s
     double elapsed = 0;                ///< s, from the start of the step to that of the substep
+    double behind = 0;                 ///< s, of the step of which this is a part, behind it
     Vec2 gravity_change;               ///< m/s, what gravity adds in a substep
     double decay = 1, spin_decay = 1;  ///< share of velocity and spin that drag leaves in a substep
 
+    /// To where limits that move in the step come to rest [s].
+    double until_end() const { return dt - elapsed + behind; }
     /// Speed that gravity adds in a substep [m/s].
     double fall_speed() const { return std::sqrt(length_squared(gravity_change)); }
 };

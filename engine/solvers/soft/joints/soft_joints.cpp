@@ -244,9 +244,9 @@ void SoftJoints<Real>::find_pressed(const StepView<Real>& contacts, const PathSo
 
 template <class Real>
 void SoftJoints<Real>::begin_step(const JointStep<Real>& step, const StepView<Real>& contacts,
-                                  const PathSolver<Real>& paths, double dt) {
-    step.world.joints.begin_limits(dt);
-    find_touching(step, contacts, paths, dt);
+                                  const PathSolver<Real>& paths, const StepFlights& flights) {
+    if (flights.is_first()) step.world.joints.begin_limits(flights.length_of_step());
+    find_touching(step, contacts, paths, flights.length());
     touches_ = false;
     springs_.begin_step(step.terms.substep_dt);
     for (std::size_t i = 0; i < direct_.size(); ++i) {
@@ -337,8 +337,9 @@ void SoftJoints<Real>::end_substep(const JointStep<Real>& step, Books& books) {
 
 template <class Real>
 bool SoftJoints<Real>::end_step(const JointStep<Real>& step, const StepView<Real>& contacts,
-                                const PathSolver<Real>& paths, Books& books, double dt) {
+                                const PathSolver<Real>& paths, Books& books, const StepFlights& flights) {
     JointStore& joints = step.world.joints;
+    const double dt = flights.length();
     if (touches_) {
         find_pressed(contacts, paths, is_pressed_);
         for (std::size_t i = 0; i < first_beside_; ++i)
@@ -354,7 +355,9 @@ bool SoftJoints<Real>::end_step(const JointStep<Real>& step, const StepView<Real
     }
     open_share_ = swept_.empty() ? 0 : swept_.close_gaps(step, contacts.loops);
     if (!swept_.empty()) swept_.store(joints, step.terms.substep_dt, dt, *contacts.loops.executor);
-    joints.end_limits(dt);
+    if (flights.count() > 1) add_to_means(joints, flights);
+    if (!flights.is_last()) return false;
+    joints.end_limits(flights.length_of_step());
     const std::size_t before = joints.broken.size();
     for (const std::size_t slot : breakable_) {
         const StoredJoint& joint = joints[slot];
@@ -367,6 +370,19 @@ bool SoftJoints<Real>::end_step(const JointStep<Real>& step, const StepView<Real
     for (std::size_t i = before; i < joints.broken.size(); ++i)
         if (joints.is_alive(joints.broken[i].joint)) joints.remove(joints.broken[i].joint.index);
     return joints.broken.size() > before;
+}
+
+/// Forces that the store has of the present flight become those of the step so far, each flight by its part
+/// of the step.
+template <class Real>
+void SoftJoints<Real>::add_to_means(JointStore& joints, const StepFlights& flights) {
+    if (flights.is_first()) means_.assign(joints.slots(), {});
+    const double share = flights.length() / flights.length_of_step();
+    joints.for_each([&](std::size_t slot, const StoredJoint& joint) {
+        Mean& mean = means_[slot];
+        mean.force += share * joint.force, mean.torque += share * joint.torque;
+        joints[slot].force = mean.force, joints[slot].torque = mean.torque;
+    });
 }
 
 template <class Real>
@@ -419,7 +435,7 @@ std::size_t SoftJoints<Real>::bytes() const {
     std::size_t bytes = swept_.bytes() + springs_.bytes() + joined_.bytes() + blows_.bytes() +
                         contacts_.bytes() +
                         (group_of_.capacity() + first_of_group_.capacity()) * sizeof(std::int32_t) +
-                        group_touches_.capacity();
+                        group_touches_.capacity() + means_.capacity() * sizeof(Mean);
     for (const DirectJoints<Real>& group : direct_) bytes += group.bytes() + sizeof(group);
     return bytes;
 }

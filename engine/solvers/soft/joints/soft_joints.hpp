@@ -11,6 +11,7 @@
 #include "solvers/soft/contacts/step_view.hpp"
 #include "solvers/soft/joints/foreseen_blows.hpp"
 #include "solvers/soft/joints/joined_contacts.hpp"
+#include "solvers/soft/step_flights.hpp"
 
 namespace carom {
 
@@ -34,8 +35,9 @@ class SoftJoints {
 
     /// @param contacts  of this step: groups that touch something are told from those that fly freely
     /// @param paths  the contacts of shapes
+    /// @param flights  of which the present one begins
     void begin_step(const JointStep<Real>& step, const StepView<Real>& contacts,
-                    const PathSolver<Real>& paths, double dt);
+                    const PathSolver<Real>& paths, const StepFlights& flights);
     void solve(const JointStep<Real>& step, const StepLoops<Real>& loops, int substep);
     /// Takes back what contacts foresaw where that gives a group energy, after `solve`.
     void forget_blows(const JointStep<Real>& step, const StepView<Real>& contacts, PathSolver<Real>& paths);
@@ -69,10 +71,11 @@ class SoftJoints {
     /// is squeezed in one.
     bool are_torn() const;
     void end_substep(const JointStep<Real>& step, Books& books);
-    /// @return whether a joint broke
+    /// @return whether a joint broke, by the mean of its force in the step: at the end of its last flight
     /// @param contacts, paths  as they are after the last substep
+    /// @param flights  of which the present one ends
     bool end_step(const JointStep<Real>& step, const StepView<Real>& contacts, const PathSolver<Real>& paths,
-                  Books& books, double dt);
+                  Books& books, const StepFlights& flights);
 
     /// Calls fn(row, row, work, bend) for what springs or drives, and for joints on paths that bend: works in
     /// this substep [J].
@@ -131,6 +134,13 @@ class SoftJoints {
                 groups[static_cast<std::size_t>(group_of_[static_cast<std::size_t>(row)])] = 1;
     }
 
+    /// The force and torque of a joint over the flights of a step that have ended.
+    struct Mean {
+        Vec2 force;         // N
+        double torque = 0;  // N m
+    };
+    void add_to_means(JointStore& joints, const StepFlights& flights);
+
     bool is_known_ = false, touches_ = false;
     std::int64_t version_ = -1;  // of the store
     std::vector<DirectJoints<Real>> direct_;
@@ -139,6 +149,7 @@ class SoftJoints {
     SpringLoads springs_;
     std::size_t swept_groups_ = 0, crowd_groups_ = 0;
     std::vector<std::size_t> breakable_;  // slots of joints that can break
+    std::vector<Mean> means_;             // [slots], where a step has several flights
     Column<Real> joined_;
     std::vector<std::int32_t> first_of_group_;  // [rows]
     // The next members are of groups that are solved exactly, in the order of direct_.
