@@ -63,18 +63,19 @@ TEST_SUITE("hard cases/flying shapes") {
     // them: 3,236 contacts of 200 boxes, 179 now (docs/decisions/0103-bodies-that-rattle.md).
     TEST_CASE_TEMPLATE("shapes far apart are contacts if they come together as they fly or one is stopped",
                        Real, float, double) {
-        constexpr int kCount = 200;
+        constexpr int kCount = 60;
         constexpr double kSize = 0.1, kOuter = 0.7072 * kSize, kInner = 0.5 * kSize;  // m, of a box
         Random random(3);
         Scene scene;
         for (int i = 0; i < kCount; ++i)
             scene.add({.shape = Box{kSize, kSize},
-                       .position = {random.uniform(0, 20), random.uniform(0, 20)},
+                       .position = {random.uniform(0, 8), random.uniform(0, 8)},
                        .angle = random.uniform(0, 1.5),
                        .velocity = {random.uniform(-1200, 1200), random.uniform(-1200, 1200)}});
-        // A world with a joint takes a step in one flight (docs/decisions/0105-flights-of-a-step.md).
-        const BodyId bob = scene.add({.shape = Disc{kSize}, .position = {1000, 1000}});
-        scene.add(Joint{.b = bob, .kind = DistanceJoint{.anchor_a = {1000, 1001}}});
+        // A world with fewer far pairs than bodies takes a step in one flight
+        // (docs/decisions/0105-flights-of-a-step.md): there are 1,770 pairs of what flies.
+        for (int i = 0; i < 1800; ++i)
+            scene.add({.type = BodyType::static_body, .shape = Disc{kSize}, .position = {1000.0 + i, 1000}});
         std::int64_t least = 0, most = 0;
         for (int i = 0; i < kCount; ++i)
             for (int k = 0; k < i; ++k) {
@@ -97,7 +98,7 @@ TEST_SUITE("hard cases/flying shapes") {
         CHECK(least > 20);
         CHECK(contacts >= least);
         CHECK(contacts <= most);
-        CHECK(most < 1500);
+        CHECK(most < 300);
     }
     TEST_CASE_TEMPLATE("what flies far behind another body is stopped by it in the step in which that is",
                        Real, float, double) {

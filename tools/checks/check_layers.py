@@ -26,7 +26,7 @@ LAYER_OF_FOLDER = {
     "sleeping": 7,
     "solvers/shared": 8,
     "solvers/contact_sets": 8,  # contacts that are solved apart from the sweeps
-    "solvers/substeps": 8.2,  # the bodies over the substeps of a step
+    "solvers/substeps": 8.2,  # what a step is cut into, and the bodies over the substeps of a step
     "solvers/joints": 8.3,  # joints over those substeps: trees solved exactly, nets swept
     "solvers/manifolds": 8.3,  # contacts of convex shapes: what touches
     "solvers/paths": 8.4,  # their exact solve along paths

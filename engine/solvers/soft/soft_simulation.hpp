@@ -8,7 +8,7 @@
 #include "solvers/soft/impacts/shape_tunnelling.hpp"
 #include "solvers/soft/impacts/tunnelling.hpp"
 #include "solvers/soft/soft_solver.hpp"
-#include "solvers/soft/step_flights.hpp"
+#include "solvers/substeps/step_flights.hpp"
 
 namespace carom {
 

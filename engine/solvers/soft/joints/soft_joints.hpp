@@ -11,7 +11,7 @@
 #include "solvers/soft/contacts/step_view.hpp"
 #include "solvers/soft/joints/foreseen_blows.hpp"
 #include "solvers/soft/joints/joined_contacts.hpp"
-#include "solvers/soft/step_flights.hpp"
+#include "solvers/substeps/step_flights.hpp"
 
 namespace carom {
 
