@@ -135,8 +135,8 @@ class JointStore {
     void add_built_in(std::span<const BuiltInPair> pairs);
 
     std::vector<JointBreak> broken;  ///< in the last step, or since events were cleared
-    /// Whether any has broken later than a time [s].
-    bool have_broken_behind(double time) const { return !broken.empty() && broken.back().time > time; }
+    /// Whether any has broken since a time [s].
+    bool have_broken_since(double time) const { return !broken.empty() && broken.back().time > time; }
 
     template <class Self, class Archive>
     static void visit_state(Self& self, Archive& archive) {

@@ -82,8 +82,7 @@ bool is_driven(const WorldState<Real>& world) {
                    (bodies.has_rotation && bodies.angular_velocity[row] != 0);
         });
     // A joint that broke in this step has brought what its gap was worth, or its motor.
-    bool is_moved =
-        is_pushed || world.joints.may_move_limits() || world.joints.have_broken_behind(world.time);
+    bool is_moved = is_pushed || world.joints.may_move_limits() || world.joints.have_broken_since(world.time);
     if (!is_moved && !world.joints.empty())
         world.joints.for_each([&](std::size_t, const StoredJoint& joint) {
             is_moved = is_moved || joint.has_motor || joint.is_spring() || joint.type == JointType::target;
