@@ -48,7 +48,7 @@ TEST_SUITE("hard cases/size ratios") {
     TEST_CASE_TEMPLATE(
         "B6: a rain of small discs, fifty of their radii a step, on one a thousand times larger", Real, float,
         double) {
-        check_cases<Real>(torture::rains_on_a_large_disc(extent()), Twin::other_order);
+        check_cases<Real>(torture::rains_on_a_large_disc(extent_of_draws<Real>()), Twin::other_order);
     }
 
     TEST_CASE_TEMPLATE("B20: five thousand discs carry one of a hundred times their radius", Real, float,

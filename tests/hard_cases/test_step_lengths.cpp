@@ -61,7 +61,7 @@ TEST_SUITE("hard cases/step lengths") {
 
     TEST_CASE_TEMPLATE("B35: of 24 piles at rest few move under long and changing steps", Real, float,
                        double) {
-        check_cases<Real>(torture::changing_steps_of_many_piles(extent()));
+        check_cases<Real>(torture::changing_steps_of_many_piles(extent_of_draws<Real>()));
     }
 
     TEST_CASE("B35: a pile falls asleep under random steps of 1 to 50 ms") {
