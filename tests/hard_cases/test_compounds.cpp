@@ -1,4 +1,5 @@
 // Concave bodies: they rest, roll and stack as exact physics says.
+#include "support/effort.hpp"
 #include "support/rms_speed.hpp"
 
 #include <carom/carom.hpp>
@@ -244,7 +245,7 @@ TEST_SUITE("hard cases: compounds") {
             drum.pieces.push_back(box(kThickness, 2 * kRadius * std::tan(kPi / kSides) + 0.1,
                                       {middle * std::cos(angle), middle * std::sin(angle)}, angle));
         }
-        for (const double spin : {2.0, 4.0}) {
+        for (const double spin : test::scaled<std::vector<double>>({2, 4}, {4})) {
             Scene scene;
             scene.gravity = {0, -10};
             Body body{.type = BodyType::kinematic_body, .shape = drum, .material = {.friction = 0.5}};

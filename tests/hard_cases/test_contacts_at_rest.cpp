@@ -2,6 +2,7 @@
 // (docs/decisions/0035-contacts-at-rest.md): what they have come since must not be lost, and no body may be
 // held by a contact that is gone.
 #include "support/box_scenes.hpp"
+#include "support/effort.hpp"
 #include "support/report.hpp"
 #include "support/rms_speed.hpp"
 
@@ -97,7 +98,7 @@ TEST_SUITE("hard cases/contacts at rest") {
         for (const bool is_mixed : {false, true}) {
             const Scene scene = falling_heap(is_mixed, 7);
             BasicWorld<Real> world(scene);
-            run(world, 1500);
+            run(world, scaled(1500, 900));
             const auto bodies = static_cast<std::uint32_t>(scene.bodies.size());
             std::vector<Vec2> from;
             for (std::uint32_t i = 0; i < bodies; ++i) from.push_back(world.state({i, 0}).position);

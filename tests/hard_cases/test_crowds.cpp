@@ -224,8 +224,10 @@ TEST_SUITE("hard cases/crowds") {
 
     // With impacts alone up to .14 of the smaller radius.
     TEST_CASE("a crowd that falls on itself is not pressed into each other, whatever bounces") {
+        int number = 0;
         for (const double friction : {0.0, 0.3})
             for (const double restitution : {0.1, 0.3, 0.6, 0.8, 0.95}) {
+                if (number++ % scaled(1, 3) > 0) continue;
                 CAPTURE(restitution);
                 CAPTURE(friction);
                 const double overlap = overlap_of_falling(falling(restitution, friction, 1));
@@ -237,7 +239,7 @@ TEST_SUITE("hard cases/crowds") {
 
     // With impacts alone up to .15 of the smaller radius.
     TEST_CASE("nor is one that falls on what does not move, or goes its way") {
-        for (const double restitution : {0.1, 0.3, 0.6, 0.9}) {
+        for (const double restitution : scaled<std::vector<double>>({0.1, 0.3, 0.6, 0.9}, {0.3, 0.9})) {
             CAPTURE(restitution);
             Scene scene = falling(restitution, 0.3, 1);
             add_obstacles(scene);
@@ -250,6 +252,7 @@ TEST_SUITE("hard cases/crowds") {
     TEST_CASE("what a crowd that bounces presses is in the books, to round-off") {
         for (const double friction : {0.0, 0.3})
             for (const double restitution : {0.3, 0.9}) {
+                if (is_effort_reduced() && (friction > 0) != (restitution == 0.3)) continue;
                 CAPTURE(restitution);
                 CAPTURE(friction);
                 Scene scene = falling(restitution, friction, 2);

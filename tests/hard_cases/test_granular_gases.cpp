@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "support/effort.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"
 
@@ -30,8 +31,10 @@ double work_of(const Profile& before, const Profile& now, int substeps) {
 
 TEST_SUITE("hard cases/granular gases") {
     TEST_CASE("B31: of a gas that cools no step has ten times the work of the first one") {
+        int number = 0;
         for (const double friction : {0.0, 0.3})
             for (const double restitution : {0.1, 0.3, 0.5, 0.7, 0.9, 0.95}) {
+                if (number++ % scaled(1, 5) > 0) continue;
                 CAPTURE(friction);
                 CAPTURE(restitution);
                 Scene scene = gas_scene({.count = kDiscs,

@@ -92,6 +92,7 @@ TEST_SUITE("hard cases: joints") {
     TEST_CASE_TEMPLATE("a rope that slides over a pulley stays in one piece", Real, float, double) {
         for (const double link : {0.1, 0.2})
             for (const double mass : {3.0, 10.0}) {
+                if (is_effort_reduced() && (link == 0.1) != (mass == 3)) continue;
                 BasicWorld<Real> world(rope_over_a_pulley(link, mass));
                 double gap = 0;
                 for (int i = 0; i < 150; ++i) {
@@ -128,7 +129,7 @@ TEST_SUITE("hard cases: joints") {
         // half a minute until the sweeps have found the loads. They may neither strain the grid nor shake it.
         BasicWorld<Real> world(hinged_grid(25));
         const double weight = 625 * 10;
-        const int steps = scaled(10'000, 3'000);
+        const int steps = scaled(10'000, 2'000);
         for (int i = 0; i < 300; ++i) world.step(kStep);
         const double before = world.joint_errors().max;
         double worst = 0, strain = 0;

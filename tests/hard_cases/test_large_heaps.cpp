@@ -89,7 +89,7 @@ TEST_SUITE("hard cases/large heaps") {
     // of a heap that settles: docs/decisions/0083-cuts-that-are-kept.md.
     TEST_CASE("a heap of many boxes that settles keeps its paths while few contacts come and go") {
         constexpr int kFalls = 450, kSettles = 150;  // steps
-        World world(falling_boxes(1600, 0.7, 0.5, 12), {.threads = 1});
+        World world(falling_boxes(scaled(1600, 800), 0.7, 0.5, 12), {.threads = 1});
         for (int step = 0; step < kFalls; ++step) world.step(kStep);
         const std::int64_t before = world.profile().path_cuts;
         double slowest = 1e30;  // m/s

@@ -48,14 +48,14 @@ TEST_SUITE("hard cases/size ratios") {
     TEST_CASE_TEMPLATE(
         "B6: a rain of small discs, fifty of their radii a step, on one a thousand times larger", Real, float,
         double) {
-        check_cases<Real>(torture::rains_on_a_large_disc(extent()), Twin::other_order);
+        check_cases<Real>(torture::rains_on_a_large_disc(extent_of_draws<Real>()), Twin::other_order);
     }
 
     TEST_CASE_TEMPLATE("B20: five thousand discs carry one of a hundred times their radius", Real, float,
                        double) {
         constexpr double kLarge = 50, kSmall = 0.5, kGravity = 10, kPitch = 0.9;
         constexpr int kColumns = 100, kRows = 50;
-        const double kSettling = scaled(40.0, 4.0), kMeasured = scaled(20.0, 2.0);  // s
+        const double kSettling = scaled(40.0, 2.5), kMeasured = scaled(20.0, 1.0);  // s
         Scene scene;
         scene.gravity = {0, -kGravity};
         const Material rough{.friction = 0.5};
@@ -193,7 +193,7 @@ TEST_SUITE("hard cases/size ratios") {
     TEST_CASE_TEMPLATE("B6: a few discs of a hundredth of the size come to rest in a pile of large ones",
                        Real, float, double) {
         constexpr int kLarge = 200, kSmall = 12;
-        const int steps = scaled(900, 500), rest = scaled(600, 400);
+        const int steps = scaled(900, 400), rest = scaled(600, 300);
         for (const int substeps : {4, 8}) {
             if (substeps == 8 && is_effort_reduced()) continue;
             double deepest = 0, at_rest = 0;

@@ -7,6 +7,7 @@
 
 #include <doctest/doctest.h>
 
+#include "support/effort.hpp"
 #include "support/joints.hpp"
 #include "support/report.hpp"
 
@@ -27,7 +28,7 @@ double stretch_energy(double stiffness, double length, double rest) {
     return 0.5 * stiffness * (length - rest) * (length - rest);
 }
 
-/// The largest energy of a disc in the midst of `count` springs, of that at its start, in ten seconds; at
+/// The largest energy of a disc in the midst of `count` springs, of that at its start, in some seconds; at
 /// the end.
 struct Energies {
     double most = 0, end = 0;
@@ -58,7 +59,7 @@ Energies energies_on_springs(int count, double frequency, double ratio) {
     };
     const double start = energy();
     Energies found;
-    for (int i = 0; i < 600; ++i) {
+    for (int i = 0; i < scaled(600, 150); ++i) {
         world.step(kStep);
         found.end = energy() / start, found.most = std::max(found.most, found.end);
         if (!std::isfinite(found.end)) found.most = found.end;
@@ -95,7 +96,7 @@ TEST_SUITE("hard cases: springs") {
     // together, which is below 1.
     TEST_CASE_TEMPLATE("springs that meet at a light body do not make it explode", Real, float, double) {
         double most = 0;
-        for (const int count : {2, 20, 40, 60, 100, 200})
+        for (const int count : scaled<std::vector<int>>({2, 20, 40, 60, 100, 200}, {2, 40, 200}))
             for (const double frequency : {10.0, 38.0})
                 for (const double ratio : {0.0, 0.05}) {
                     CAPTURE(count);
@@ -120,6 +121,7 @@ TEST_SUITE("hard cases: springs") {
     TEST_CASE("a jelly that is dropped bounces, gains no energy and keeps its shape") {
         for (const double frequency : {30.0, 38.0})
             for (const double ratio : {0.0, 0.1}) {
+                if (is_effort_reduced() && (frequency == 38) == (ratio > 0)) continue;
                 CAPTURE(frequency);
                 CAPTURE(ratio);
                 const Scene scene = jelly(frequency, ratio);

@@ -6,7 +6,7 @@ using namespace carom::test;
 
 TEST_SUITE("hard cases/squeezes") {
     TEST_CASE_TEMPLATE("B37: shapes that a plate squeezes are not shot out", Real, float, double) {
-        check_cases<Real>(torture::shapes_under_a_plate(extent()));
+        check_cases<Real>(torture::shapes_under_a_plate(extent_of_draws<Real>()));
     }
     TEST_CASE_TEMPLATE("B37: shapes that are pressed against the walls of a closed room do not leave it",
                        Real, float, double) {
@@ -14,13 +14,13 @@ TEST_SUITE("hard cases/squeezes") {
     }
     TEST_CASE_TEMPLATE("B37: nothing that kinematic bodies and lines press against segments gets through",
                        Real, float, double) {
-        check_cases<Real>(torture::rooms_that_many_leave(extent()));
+        check_cases<Real>(torture::rooms_that_many_leave(extent_of_draws<Real>()));
     }
     TEST_CASE_TEMPLATE("B37: discs get no energy from a paddle but its work", Real, float, double) {
-        check_cases<Real>(torture::discs_that_a_paddle_stirs(extent()));
+        check_cases<Real>(torture::discs_that_a_paddle_stirs(extent_of_draws<Real>()));
     }
     TEST_CASE_TEMPLATE("B37: shapes that a cross stirs are not shot out", Real, float, double) {
-        check_cases<Real>(torture::shapes_that_a_cross_stirs(extent()));
+        check_cases<Real>(torture::shapes_that_a_cross_stirs(extent_of_draws<Real>()));
     }
     TEST_CASE_TEMPLATE("B37: discs leave a wedge that closes at its limit speed", Real, float, double) {
         check_cases<Real>(torture::discs_in_closing_wedges(extent()));

@@ -61,7 +61,7 @@ TEST_SUITE("hard cases/step lengths") {
 
     TEST_CASE_TEMPLATE("B35: of 24 piles at rest few move under long and changing steps", Real, float,
                        double) {
-        check_cases<Real>(torture::changing_steps_of_many_piles(extent()));
+        check_cases<Real>(torture::changing_steps_of_many_piles(extent_of_draws<Real>()));
     }
 
     TEST_CASE("B35: a pile falls asleep under random steps of 1 to 50 ms") {
@@ -74,7 +74,7 @@ TEST_SUITE("hard cases/step lengths") {
     TEST_CASE_TEMPLATE("discs of any size bear what falls onto them under changing steps", Real, float,
                        double) {
         for (const double length : {1.0, 0.01})
-            for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+            for (std::uint64_t seed = 1; seed <= scaled(3u, 1u); ++seed) {
                 const double even = overlap_of_fall<Real>(length, seed, false),
                              changing = overlap_of_fall<Real>(length, seed, true);
                 report("discs of ", 0.35 * length, " m, seed ", seed, ": mean overlap ", even,

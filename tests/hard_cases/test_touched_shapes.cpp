@@ -2,6 +2,7 @@
 // are touched in every step. docs/decisions/0031-touched-worlds.md.
 #include "math/random.hpp"
 #include "math/vec2_math.hpp"
+#include "support/effort.hpp"
 #include "support/report.hpp"
 #include "support/touches.hpp"
 
@@ -115,7 +116,7 @@ TEST_SUITE("hard cases/touched worlds of shapes") {
     TEST_CASE("B39: what is done to one body far away costs no search for the pairs of the others") {
         for (const Scene& scene : {touched_pile(false), touched_pile(true), touched_mechanisms()}) {
             World world(scene, {.threads = 1});
-            for (int i = 0; i < 900; ++i) world.step(kStep);
+            for (int i = 0; i < scaled(900, 500); ++i) world.step(kStep);
             const auto rebuilds_of = [&](const auto& touch) {
                 const std::int64_t before = world.profile().rebuilds;
                 for (int i = 0; i < 60; ++i) {
@@ -145,17 +146,17 @@ TEST_SUITE("hard cases/touched worlds of shapes") {
     TEST_CASE_TEMPLATE("B39: shapes that come, go and are thrown in every step meet all others", Real, float,
                        double) {
         for (const bool with_compounds : {false, true})
-            for (const std::uint64_t seed : {3u, 4u}) {
+            for (std::uint64_t seed = 3; seed <= scaled(4u, 3u); ++seed) {
                 CAPTURE(with_compounds);
                 CAPTURE(seed);
                 BasicWorld<Real> world(touched_pile(with_compounds), {.threads = 1});
-                for (int i = 0; i < 400; ++i) world.step(kStep);
+                for (int i = 0; i < scaled(400, 200); ++i) world.step(kStep);
                 auto touches = touches_of<Real>(seed, with_compounds);
-                for (int i = 0; i < 300; ++i) {
+                for (int i = 0; i < scaled(300, 200); ++i) {
                     touches.touch(world);
                     world.step(kStep);
                 }
-                for (int i = 0; i < 600; ++i) world.step(kStep);
+                for (int i = 0; i < scaled(600, 400); ++i) world.step(kStep);
                 const double overlap = world.overlaps().max;
                 report("shapes that come and go", with_compounds ? ", with compounds" : "", ", seed ", seed,
                        ": overlap in the end ", overlap, " inradii");

@@ -1,6 +1,7 @@
 // B39 of docs/hard-cases.md: worlds that are touched in every step.
 #include "math/random.hpp"
 #include "math/vec2_math.hpp"
+#include "support/effort.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"
 #include "support/touches.hpp"
@@ -69,10 +70,10 @@ TEST_SUITE("hard cases/touched worlds") {
         for (const double restitution : {0.0, 0.3}) {
             CAPTURE(restitution);
             BasicWorld<Real> world(touched_pile(restitution), {.threads = 1});
-            for (int i = 0; i < 600; ++i) world.step(kStep);
+            for (int i = 0; i < scaled(600, 300); ++i) world.step(kStep);
             auto touches = touches_of<Real>(3);
             double deepest = 0;
-            for (int i = 0; i < 400; ++i) {
+            for (int i = 0; i < scaled(400, 200); ++i) {
                 touch(world, touches, i);
                 world.step(kStep);
                 if (i % 4 == 0) deepest = std::max(deepest, world.overlaps().max);
@@ -80,7 +81,7 @@ TEST_SUITE("hard cases/touched worlds") {
             report("restitution ", restitution, ": overlap ", deepest);
             CHECK(deepest < 0.1);
             world.set_velocity({kSegment, 0}, {});  // else it goes on into the pile
-            for (int i = 0; i < 600; ++i) world.step(kStep);
+            for (int i = 0; i < scaled(600, 400); ++i) world.step(kStep);
             CHECK(world.overlaps().max < 0.005);
             CHECK(world.quarantined().empty());
         }

@@ -1,4 +1,5 @@
 // Crowds of shapes of uneven sizes: docs/decisions/0098-turns-around-what-is-restless.md.
+#include "support/effort.hpp"
 #include "support/report.hpp"
 
 #include <algorithm>
@@ -45,14 +46,15 @@ TEST_SUITE("hard cases: uneven crowds") {
     // step.
     TEST_CASE("turns of uneven masses end where they change little, and heaps hold as well") {
         double solves = 0, overlap = 0, largest = 0;
-        constexpr int kDraws = 3, kSteps = 200;
-        for (unsigned seed = 1; seed <= kDraws; ++seed) {
-            World world(stones(seed));
+        constexpr int kSteps = 200;
+        const int draws = scaled(3, 1);
+        for (int seed = 1; seed <= draws; ++seed) {
+            World world(stones(static_cast<unsigned>(seed)));
             for (int i = 0; i < 350; ++i) world.step(kStep);
             const std::int64_t before = world.profile().path_solves;
             for (int i = 0; i < kSteps; ++i) world.step(kStep);
-            solves += static_cast<double>(world.profile().path_solves - before) / (kDraws * kSteps);
-            overlap += world.overlaps().mean / kDraws;
+            solves += static_cast<double>(world.profile().path_solves - before) / (draws * kSteps);
+            overlap += world.overlaps().mean / draws;
             largest = std::max(largest, static_cast<double>(world.overlaps().max));
         }
         report("uneven crowds: ", solves, " solves a step, overlap in the mean ", overlap, ", largest ",

@@ -66,7 +66,7 @@ class TortureTest(ProgramTest):
 
     def test_worlds_that_once_went_on_otherwise_from_a_saved_state_do_so_no_more(self):
         # Contacts of what sleeps were a step old (125); corrections of torn hinges had a limit by the longest arm ever seen (74).
-        for index in (74, 125):
+        for index in scaled((74, 125), (125,)):
             found = self.torture("random", "--scenes", 300, "--seed", 77, "--only", index, "--solver", "auto")
             self.assertIn("restored", found["rows"][0]["scene"])
             self.assertEqual(numbers_of(found["rows"][0])["other bits"], 0)

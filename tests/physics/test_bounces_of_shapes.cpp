@@ -1,5 +1,7 @@
 // How high boxes, capsules and discs bounce on boxes, segments and walls: exactly, wherever in a step they
 // meet.
+#include "support/effort.hpp"
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -52,7 +54,7 @@ TEST_CASE_TEMPLATE("shapes bounce as high as they should", W, World, World64) {
         for (const Shape& shape : {Shape{Box{1, 1}}, Shape{Capsule{1, 0.5}}, Shape{Disc{0.5}}})
             for (const double restitution : {0.2, 0.5, 0.8, 1.0})
                 for (const double step : {1.0 / 30, 1.0 / 60, 1.0 / 120})
-                    for (int i = 0; i < 8; ++i) {
+                    for (int i = 0; i < test::scaled(8, 3); ++i) {
                         const double drop = 0.6 + 0.531 * i;
                         const Bounce found = bounce<W>(shape, floor, drop, restitution, step);
                         INFO("restitution ", restitution, ", steps of ", step, " s, dropped by ", drop, " m");

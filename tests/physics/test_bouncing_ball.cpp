@@ -1,6 +1,7 @@
 // A4 and A5 of docs/exact-cases.md: balls dropped onto a floor. Until a ball comes to rest every bounce
 // happens at its exact time, whatever the step; it comes to rest about a step off the exact time.
 #include "support/convergence.hpp"
+#include "support/effort.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"
 #include "support/trial.hpp"
@@ -107,6 +108,7 @@ TEST_SUITE("physics/bouncing ball") {
         for (const int rate : {30, 60, 120, 240, 480, 960}) {
             // In float, below that, the last bounces are lower than places can be told apart.
             if (sizeof(Real) == sizeof(float) && rate > 480) break;
+            if (is_effort_reduced() && rate > 240) break;
             CAPTURE(rate);
             const RestError error = rest_error<Real>(rate);
             CHECK(error.largest <= 2.0 / rate);

@@ -255,7 +255,7 @@ TEST_SUITE("physics/boxes") {
     }
     TEST_CASE_TEMPLATE("A33: a wave of dominoes runs at one speed over sqrt(g l) at three sizes", Real, float,
                        double) {
-        for (const int rate : {60, 240}) {  // steps a second
+        for (const int rate : scaled<std::vector<int>>({60, 240}, {60})) {  // steps a second
             double slowest = 1e9, fastest = 0;
             for (const double length : {0.5, 1.0, 2.0}) {
                 const double speed = wave_speed<Real>(length, 1.0 / rate);

@@ -1,5 +1,6 @@
 // Segments and chains under solver `soft`: A10 of docs/exact-cases.md on a line that is tilted itself, B29 of
 // docs/hard-cases.md, conveyors, joints of chains.
+#include "support/effort.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"
 #include "support/trial.hpp"
@@ -174,7 +175,7 @@ TEST_SUITE("physics/edges") {
                 scene.bodies[1].angular_velocity = -speed / kRadius;
                 Trial<Real> trial(scene);
                 double worst = 0;
-                for (int i = 0; i < static_cast<int>(50 / speed * 60); ++i) {
+                for (int i = 0; i < static_cast<int>(scaled(50, 15) / speed * 60); ++i) {
                     trial.step(kStep);
                     const BodyState s = trial.state(1);
                     worst = std::max({worst, std::abs(s.velocity.y), std::abs(s.velocity.x - speed),

@@ -1,4 +1,5 @@
 // Gears of solver `soft` against exact mechanics.
+#include "support/effort.hpp"
 #include "support/joints.hpp"
 
 #include <algorithm>
@@ -43,7 +44,7 @@ TEST_SUITE("physics: gears") {
                 CAPTURE(of_joints);
                 BasicWorld<Real> world(geared_wheels(kRatio, gears, of_joints));
                 double worst = 0;
-                for (int i = 0; i < 10'000; ++i) {
+                for (int i = 0; i < scaled(10'000, 2'000); ++i) {
                     world.step(kStep);
                     worst = std::max(
                         worst, std::fabs(world.state({1, 0}).angle - kRatio * world.state({0, 0}).angle));

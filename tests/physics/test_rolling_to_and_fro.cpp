@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/effort.hpp"
 #include "support/report.hpp"
 #include "support/scenes.hpp"
 
@@ -140,7 +141,7 @@ Watched watch(const Roller& roller, double seconds, double step, bool by_angle) 
 template <class Real>
 void check(const char* name, const Roller& roller, bool is_small, double left, bool by_angle) {
     CAPTURE(name);
-    for (const double step : {kStep, kStep / 2}) {
+    for (const double step : scaled<std::vector<double>>({kStep, kStep / 2}, {kStep})) {
         CAPTURE(step);
         const Watched seen = watch<Real>(roller, 20, step, by_angle);
         report(name, ": ", seen.frequency, " rad/s, exact ", roller.frequency, "; energy up to ", seen.most,

@@ -189,7 +189,7 @@ TEST_SUITE("physics/rough gas") {
                        float, double) {
         const int kCount = scaled(20'000, 4000);  // the share fluctuates by 5 % with 4,000 discs
         constexpr double kStep = 1.0 / 60;
-        for (const double friction : {0.05, 0.3}) {
+        for (const double friction : scaled<std::vector<double>>({0.05, 0.3}, {0.3})) {
             const Scene soft_scene = rough_gas(kCount, friction, 5, Solver::soft);
             BasicWorld<Real> soft(soft_scene, {.threads = 1});
             World64 event(rough_gas(kCount, friction, 5, Solver::event), {.threads = 1});

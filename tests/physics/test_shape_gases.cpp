@@ -1,6 +1,7 @@
 // A14 of docs/exact-cases.md for many bodies: elastic, smooth gases of shapes, where each impact has its
 // formula and all of them together keep the energy.
 #include "support/box_scenes.hpp"
+#include "support/effort.hpp"
 #include "support/report.hpp"
 
 #include <doctest/doctest.h>
@@ -48,7 +49,7 @@ TEST_SUITE("physics/shape gases") {
         for (const auto& shapes : {std::vector{kDisc, kBox, kCapsule, kTriangle}, std::vector{kCapsule}})
             for (const double spacing : {0.95, 1.5})
                 for (const double rate : {60.0, 120.0})
-                    for (int number = 1; number < 4; ++number) {
+                    for (int number = 1; number < scaled(4, 2); ++number) {
                         CAPTURE(shapes.size());
                         CAPTURE(spacing);
                         CAPTURE(rate);

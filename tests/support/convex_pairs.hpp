@@ -201,7 +201,7 @@ void draw_pairs(ConvexPairs<Real>& pairs, ShapeKind of_a, ShapeKind of_b, double
         for (int k = 0; k < 8; ++k) {
             const double middle = 0.5 * (near + far);
             pairs.put(2 * i + 1, placed.centre + middle * way, turn_b);
-            (signed_distance(placed, pairs.placed(2 * i + 1)) < wanted ? near : far) = middle;
+            (signed_distance(placed, pairs.placed(2 * i + 1), wanted) < wanted ? near : far) = middle;
         }
         if (i % 16 == 15) pairs.put(2 * i + 1, placed.centre, turn_b);
         if (i % 16 == 3) {  // a vertex of both at the same place

@@ -10,6 +10,7 @@ import unittest
 import check_exact_operations
 import check_file_length
 import check_format
+import check_includes
 import check_isa_symbols
 import check_layers
 import check_names
@@ -182,6 +183,46 @@ class CheckNames(WithFolder):
         self.write("engine/b.cpp", "constexpr int kMost = 2;\n")
         self.write("engine/c.cpp", "constexpr int kMost = 3;\n")
         self.assertEqual(check_names.check(self.root), [])
+
+
+class CheckIncludes(WithFolder):
+    def setUp(self):
+        super().setUp()
+        self.write("engine/include/carom/body.hpp", "#include <vector>\nnamespace carom {\nstruct Body {};\n}\n")
+        self.write("engine/state/rows.hpp", "namespace carom {\ninline constexpr int kRows = 8;\nint rows_of(int bodies);\n"
+                                            "struct alignas(64) Row {};\ntemplate <class T>\nclass Rows {};\nusing Pair = int;\n}\n")
+        self.write("engine/state/all.hpp", '#include "state/rows.hpp"\n#include <carom/body.hpp>\n')
+
+    def findings(self, text, path="engine/state/rows.cpp"):
+        self.write(path, text)
+        return check_includes.check(self.root)
+
+    def test_what_comes_by_way_of_project_headers_is_fine(self):
+        uses = "std::vector<Body> v;\nstd::size_t n;\nRows<Row> r[kRows];\nPair p = rows_of(3);\n"
+        self.assertEqual(self.findings('#include "all.hpp"\n' + uses), [])
+        self.assertEqual(self.findings('#include "state/rows.hpp"\n#include <carom/body.hpp>\n' + uses), [])
+
+    def test_a_name_of_the_library_without_its_header(self):
+        findings = self.findings("#include <algorithm>\n\nstd::vector<int> v;  // std::map\nauto x = std::min(1, 2);\n")
+        self.assertEqual(findings, ["engine/state/rows.cpp:3: std::vector without <vector>"])
+
+    def test_headers_of_the_library_bring_no_others(self):
+        self.assertEqual(len(self.findings("#include <functional>\nauto x = std::move(y);\n")), 1)
+
+    def test_a_name_of_the_library_that_the_table_has_not(self):
+        self.assertIn("is not in the table", self.findings("#include <map>\nstd::map<int, int> m;\n")[0])
+
+    def test_each_kind_of_name_of_a_project_header(self):
+        for use in ("Body b;", "f(Rows<int>());", "Row r;", "Pair p;", "int a[kRows];", "return rows_of(3);", "x = rows_of(y);"):
+            self.assertEqual(len(self.findings(f"void f() {{\n{use}\n}}\n")), 1, use)
+
+    def test_own_names_and_members_need_no_header(self):
+        for use in ("struct Row {};\nRow r;", "using Pair = long;\nPair p;", "constexpr int kRows = 3;\nint a[kRows];",
+                    "int rows_of(int);\nint x = rows_of(3);", "x = y.rows_of(3) + z->rows_of(4) + other::rows_of(5);", "x = Kind::Body;"):
+            self.assertEqual(self.findings(use + "\n"), [], use)
+
+    def test_a_public_header(self):
+        self.assertEqual(len(self.findings("struct World {\n    Body body;\n};\n", "engine/include/carom/world.hpp")), 1)
 
 
 class CheckFormat(WithFolder):

@@ -5,6 +5,7 @@
 
 #include "kernels/paths/part_paths.hpp"
 #include "kernels/paths/path_lanes.hpp"
+#include "narrowphase/manifold.hpp"
 
 namespace carom {
 namespace {

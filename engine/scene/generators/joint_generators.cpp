@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "scene/validation/limits.hpp"
 #include "scene/validation/validation.hpp"

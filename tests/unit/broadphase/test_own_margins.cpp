@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "isa/select_isa.hpp"
+#include "support/effort.hpp"
 
 using namespace carom;
 
@@ -179,9 +180,8 @@ TEST_SUITE("broadphase/own margins") {
         };
         const auto layers = [](Vec2 p, int) { return Vec2{p.y < 20 ? 3.0 : -3.0, 0}; };
         const auto sideways = [](Vec2, int) { return Vec2{4, 0}; };
-        for (const auto& flow :
-             {std::function<Vec2(Vec2, int)>(turn), std::function<Vec2(Vec2, int)>(heave),
-              std::function<Vec2(Vec2, int)>(layers), std::function<Vec2(Vec2, int)>(sideways)}) {
+        using Flows = std::vector<std::function<Vec2(Vec2, int)>>;
+        for (const auto& flow : test::scaled<Flows>({turn, heave, layers, sideways}, {turn, layers})) {
             Swarm<Real> swarm(kCount);
             swarm.fastest = 1.5, swarm.usual = 0.2;
             for (std::size_t row = 0; row < kCount; ++row) swarm.kick(row);

@@ -16,6 +16,7 @@
 #include "state/world_state.hpp"
 #include "support/convex_oracle.hpp"
 #include "support/convex_pairs.hpp"
+#include "support/effort.hpp"
 
 using namespace carom;
 using namespace carom::test;
@@ -170,9 +171,9 @@ TEST_SUITE("broadphase/slim bodies") {
         const auto turns = [](Vec2 p) { return Vec2{-0.4 * (p.y - 8), 0.4 * (p.x - 8)}; };
         const auto shears = [](Vec2 p) { return Vec2{0.5 * p.y, 0}; };
         const auto closes = [](Vec2 p) { return Vec2{0, 0.4 * (8 - p.y)}; };
-        for (const auto& flow : {std::function<Vec2(Vec2)>(still), std::function<Vec2(Vec2)>(falls),
-                                 std::function<Vec2(Vec2)>(turns), std::function<Vec2(Vec2)>(shears),
-                                 std::function<Vec2(Vec2)>(closes)}) {
+        using Flows = std::vector<std::function<Vec2(Vec2)>>;
+        for (const auto& flow :
+             scaled<Flows>({still, falls, turns, shears, closes}, {still, turns, closes})) {
             const Counts counts = fly<Real>(flow);
             CHECK(counts.meetings > 1000);
             CHECK(counts.rebuilds < 80);

@@ -75,7 +75,7 @@ TEST_SUITE("kernels/find manifolds") {
         for (const PairClass& kind : kClasses) {
             CAPTURE(kind.name);
             ConvexPairs<Real> pairs(
-                static_cast<std::size_t>(scaled(sizeof(Real) == 4 ? 100'000 : 20'000, 5'000)));
+                static_cast<std::size_t>(scaled(sizeof(Real) == 4 ? 100'000 : 20'000, 2'000)));
             draw_pairs(pairs, kind.a, kind.b, kind.ratio, 7);
             find(pairs, *runnable_kernel_tables().back(), kind.by_box_kernel);
             std::size_t wrong_life = 0, bad_unit = 0, bad_gap = 0, bad_distance = 0, inexact = 0;

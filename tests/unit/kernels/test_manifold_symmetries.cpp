@@ -1,5 +1,6 @@
 // Manifolds of the same pairs named the other way round, seen in a mirror and turned as a whole.
 #include "support/convex_pairs.hpp"
+#include "support/effort.hpp"
 
 #include <doctest/doctest.h>
 
@@ -11,7 +12,7 @@ namespace {
 using enum ShapeKind;
 
 constexpr ShapeKind kKinds[] = {disc, capsule, box, rounded_box, polygon, octagon};
-constexpr std::size_t kCount = 1500;
+const std::size_t kCount = scaled<std::size_t>(1500, 500);
 
 void find(ConvexPairs<double>& pairs) {
     runnable_kernel_tables().back()->of<double>().convex->find_manifolds(pairs.arguments(), 0,

@@ -1,4 +1,5 @@
 #include "narrowphase/disc_edge.hpp"
+#include "support/effort.hpp"
 
 #include <doctest/doctest.h>
 
@@ -42,7 +43,7 @@ TEST_SUITE("narrowphase/disc_edge") {
         std::uniform_real_distribution<double> place(-3, 3);
         constexpr int kPlaces = 5'000;
         int met = 0;
-        for (int i = 0; i < 1500; ++i) {
+        for (int i = 0; i < test::scaled(1500, 1000); ++i) {
             const Vec2 p0{place(random), place(random)}, way{place(random), place(random)};
             const Vec2 a{place(random), place(random)}, b{place(random), place(random)};
             CAPTURE(i);

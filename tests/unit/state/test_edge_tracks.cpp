@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "narrowphase/disc_edge.hpp"
+#include "support/effort.hpp"
 
 using namespace carom;
 
@@ -157,7 +158,7 @@ TEST_SUITE("state/edge_tracks") {
     TEST_CASE_TEMPLATE("joining what has changed makes what joining all anew does, bit by bit", Real, float,
                        double) {
         int most = 0, joined = 0;
-        for (unsigned seed = 1; seed <= 12; ++seed) {
+        for (unsigned seed = 1; seed <= test::scaled(12u, 4u); ++seed) {
             CAPTURE(seed);
             std::mt19937 random(seed);
             const auto any = [&](int count) {

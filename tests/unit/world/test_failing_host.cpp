@@ -1,5 +1,6 @@
 // An embedding program's parallel-for that throws: the world finishes its step without it, and the exception
 // comes out of the call.
+#include "support/effort.hpp"
 #include "support/scenes.hpp"
 
 #include <doctest/doctest.h>
@@ -99,7 +100,7 @@ void check_failures(const Scene& scene, int fewest_loops) {
     const int loops = sound.loops() - before;
     REQUIRE(loops >= fewest_loops);
     for (const Failure failure : {Failure::before_all, Failure::in_the_middle, Failure::after_all})
-        for (int failing = 0; failing < loops; failing += 1 + loops / 8) {
+        for (int failing = 0; failing < loops; failing += 1 + loops / scaled(8, 4)) {
             CAPTURE(static_cast<int>(failure));
             CAPTURE(failing);
             CHECK(check_failure(scene, untouched, after_first, failure, before, failing));

@@ -66,7 +66,7 @@ TEST_SUITE("solvers/soft/uneven_contacts") {
     // docs/decisions/0064-uneven-masses-in-sweeps.md.
     TEST_CASE_TEMPLATE("a pile of uneven masses is swept as often as it has need, and light discs hold", Real,
                        float, double) {
-        for (const double ratio : {30.0, 100.0, 300.0}) {
+        for (const double ratio : scaled<std::vector<double>>({30, 100, 300}, {100})) {
             const double most = std::max(9.0, (ratio - 50) / 5) + 1;  // sweeps a substep
             double at_first = 0, at_rest = 0;                         // likewise, of all seeds
             for (std::uint64_t seed = 1; seed <= scaled<std::uint64_t>(3, 1); ++seed) {
