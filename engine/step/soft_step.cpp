@@ -181,7 +181,8 @@ class SoftStep final : public SoftSimulation<Real> {
              sim.soft.advance_bodies(sim.substep, sim.substep + 1 == sim.substep_count,
                                      !sim.world.joints.empty());
          },
-         always, KernelChoice::isa, "velocity records", "velocity records, displacements"},
+         always, KernelChoice::isa, "velocity records, impulses",
+         "velocity records, displacements, impulses"},
     };
     static constexpr Stage<Sim> kEnd[] = {
         {"end_joints", [](Sim& sim) { end_joints(sim); }, has_joints, KernelChoice::scalar_f64,

@@ -39,6 +39,8 @@ constexpr Golden kGolden[] = {
     {"turning chain", 0x23d48a3c8e08a612, 0x279669f7e07a9a72},
     {"woken sleepers", 0x77fa00849de7a9ee, 0xe5c36c16593eee67},
     {"falling compounds", 0x3fba9fac5562a5f8, 0xbbafc864b2858d77},
+    {"discs about one place", 0x42b99e272e415c71, 0x064f8cc5da90374b},
+    {"uneven discs about one place", 0x73f23059a3b733ca, 0xbf7d43822caca4fd},
 };
 
 }  // namespace

@@ -111,8 +111,8 @@ void SoftSolver<Real>::find_contacts(WorldState<Real>& world, const EdgeCandidat
     motion.resize(4 * padded(records_.count() + ContactGraph<Real>::padding_rows(graph.groups)));
     settings_.set_lengths(terms_, longest_substep);
     settings_.masses_are_uneven = masses_.are_uneven();
-    const bool bounces = has_restitution(world);
-    settings_.sweeps_hits = !bounces && !settings_.masses_are_uneven && !world.bodies.has_flags;
+    bounces_ = has_restitution(world);
+    settings_.sweeps_hits = !bounces_ && !settings_.masses_are_uneven && !world.bodies.has_flags;
     warm_start_.begin_step(graph, terms_.substep_dt, terms_.dt, longest_substep);
     const bool is_new =
         finder_.pairs.find(view(), world.bodies, masses_, motion,
@@ -134,7 +134,7 @@ void SoftSolver<Real>::find_contacts(WorldState<Real>& world, const EdgeCandidat
     counters.overflow = static_cast<std::int64_t>(graph.pairs.overflow());
     sweeps_.begin_step(counters.contacts);
     takes_gains_ = is_crowd_in_touch(world) &&
-                   (bounces || corrections_.deep.expects_hits() || finder_.pairs.has_deep_pairs());
+                   (bounces_ || corrections_.deep.expects_hits() || finder_.pairs.has_deep_pairs());
 }
 
 /// Discs of which several may move and some may touch.
@@ -256,8 +256,8 @@ void SoftSolver<Real>::bound_energy(WorldState<Real>& world) {
     const bool are_uneven = masses_.are_uneven();
     if (!is_crowd_of_discs(world) || (takes_gains_ && are_uneven)) bound_passive();
     // A heap of uneven discs that is lifted out of itself would sink: what bears it would be taken.
-    if (!takes_gains_ || (are_uneven && world.effects.gravity) || !ContactGains<Real>::does_work(solved))
-        return;
+    const bool bears_loads = !(terms_.gravity_change == Vec2{});
+    if (!takes_gains_ || (are_uneven && bears_loads) || !ContactGains<Real>::does_work(solved)) return;
     if (!are_uneven) {  // there sweeps would undo what corrections have done
         // What more sweeps mend is not taken from what bears a heap.
         const auto more = Sweeps::next(contacts, Sweeps::Blocks::all, kSweepsOfGain);
@@ -321,7 +321,7 @@ void SoftSolver<Real>::carry_out_impacts(const WorldState<Real>& world, const Co
     const bool has_taken = gains_.has_taken();
     if (has_taken) gains_.give_back(view());
     impacts.carry_out_all(bodies, books, books_.gravity_work, interruption);
-    if (!has_taken) return;
+    if (!has_taken || !bounces_) return;
     gains_.for_each_cut(view(), world.bodies,
                         [&](std::int32_t row) { impacts.left_closing.add(graph.groups, row); });
 }

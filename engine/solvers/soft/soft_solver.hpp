@@ -144,6 +144,8 @@ class SoftSolver {
     void settle_struck_contacts(const WorldState<Real>& world, const Column<Real>& motion, Books& books);
     /// Moves the bodies through substep `number`, which was solved.
     void advance_bodies(int number, bool is_last, bool has_joints) {
+        // Where there are impacts, what was taken is given back before them.
+        if (gains_.has_taken()) gains_.give_back(view());
         paths.advance(terms_, records_);
         records_.advance(is_last, terms_, loops_, has_joints ? joints.joined() : nullptr);
         terms_.elapsed = (number + 1) * terms_.substep_dt;
@@ -261,7 +263,7 @@ class SoftSolver {
     StepView<Real> view() { return {graph, supports_, records_, settings_, terms_, loops_}; }
 
     // What holds for the present step.
-    bool takes_gains_ = false;
+    bool bounces_ = false, takes_gains_ = false;
     StepLoops<Real> loops_;
     SubstepTerms terms_;
     ContactSettings settings_;

@@ -115,7 +115,7 @@ TEST_SUITE("solvers/check energy") {
         inside.world().bodies.velocity_x[0] = 1;  // 8 J are lost
         inside.check();
         inside.world().bodies.velocity_x[0] = 2;
-        inside.world().bring({.energy = {.kinetic = 3}});  // as World::set_velocity books it
+        inside.world().bring({.energy = {.kinetic = 3}, .momentum = {}});  // as World::set_velocity books it
         inside.check();
         CHECK(inside.excess().passive == 0);
         inside.world().bodies.velocity_x[0] = Real(2.5);  // less than at the start, but 2.25 J more than then
@@ -127,11 +127,12 @@ TEST_SUITE("solvers/check energy") {
         Inside<Real> inside;
         inside.world().bodies.velocity_x[0] = 0;
         inside.check();
-        inside.world().bring({.energy = {.kinetic = 1e6}});
-        inside.world().bring({.energy = {.kinetic = -1e6 - 1e-10}});
+        inside.world().bring({.energy = {.kinetic = 1e6}, .momentum = {}});
+        inside.world().bring({.energy = {.kinetic = -1e6 - 1e-10}, .momentum = {}});
         inside.check();
         CHECK(inside.excess().passive == 0);
-        inside.world().bring({.energy = {.kinetic = -1e-10}});  // much is of the last step's calls alone
+        inside.world().bring(
+            {.energy = {.kinetic = -1e-10}, .momentum = {}});  // much is of the last step's calls alone
         inside.check();
         CHECK(inside.excess().passive == doctest::Approx(1e-10).epsilon(0.01));
     }
