@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "math/random.hpp"
@@ -262,32 +264,39 @@ struct Outcome {
     std::size_t quarantined = 0;
 };
 
+/// The world of a scene, or none where it is refused.
+template <class Real>
+std::optional<BasicWorld<Real>> world_of(const Scene& scene, const WorldOptions& options) {
+    try {
+        return std::optional<BasicWorld<Real>>(std::in_place, scene, options);
+    } catch (const Error&) {
+        return std::nullopt;
+    }
+}
+
 template <class Real>
 Outcome run(const Scene& scene, const WorldOptions& options) {
+    std::optional<BasicWorld<Real>> world = world_of<Real>(scene, options);
+    if (!world) return {.is_refused = true};
     Outcome outcome;
-    if (scene.find_problem()) return {.is_refused = true};
-    try {
-        BasicWorld<Real> world(scene, options), other(scene, options);
-        std::vector<std::byte> state;
-        for (int step = 0; step < kSteps; ++step) {
-            touch(world, scene, step);
-            world.step(scene.step.dt);
-            if (step + 1 != kSaved) continue;
-            state.resize(world.state_bytes());
-            world.save_state(state);
-        }
-        for (std::uint32_t i = 0; i < kBodies; ++i)
-            if (i != 2 && i != 3)  // removed
-
-                outcome.is_finite = outcome.is_finite && is_finite(world.state(body(i)));
-        other.step(scene.step.dt);
-        other.restore_state(state);
-        for (int step = kSaved; step < kSteps; ++step) touch(other, scene, step), other.step(scene.step.dt);
-        outcome.goes_on_alike = other.state_hash() == world.state_hash();
-        outcome.quarantined = world.quarantined().size();
-    } catch (const Error&) {
-        return {.is_refused = true};
+    BasicWorld<Real> other(scene, options);
+    std::vector<std::byte> state;
+    for (int step = 0; step < kSteps; ++step) {
+        touch(*world, scene, step);
+        world->step(scene.step.dt);
+        if (step + 1 != kSaved) continue;
+        state.resize(world->state_bytes());
+        world->save_state(state);
     }
+    for (std::uint32_t i = 0; i < kBodies; ++i) {
+        if (i == 2 || i == 3) continue;  // removed
+        outcome.is_finite = outcome.is_finite && is_finite(world->state(body(i)));
+    }
+    other.step(scene.step.dt);
+    other.restore_state(state);
+    for (int step = kSaved; step < kSteps; ++step) touch(other, scene, step), other.step(scene.step.dt);
+    outcome.goes_on_alike = other.state_hash() == world->state_hash();
+    outcome.quarantined = world->quarantined().size();
     return outcome;
 }
 
