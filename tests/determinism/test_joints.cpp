@@ -9,6 +9,8 @@
 
 #include <doctest/doctest.h>
 
+namespace test_joints {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -148,3 +150,5 @@ TEST_SUITE("determinism: joints") {
         }
     }
 }
+
+}  // namespace test_joints

@@ -6,6 +6,8 @@
 #include <array>
 #include <cstddef>
 
+namespace test_rounding {
+
 namespace {
 
 struct Pair {
@@ -53,3 +55,5 @@ TEST_SUITE("determinism/rounding") {
         check_count<100>();
     }
 }
+
+}  // namespace test_rounding

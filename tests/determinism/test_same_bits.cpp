@@ -19,6 +19,8 @@
 
 #include <doctest/doctest.h>
 
+namespace test_same_bits {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -133,3 +135,5 @@ TEST_SUITE("determinism/same bits") {
         for (const Scene& scene : golden_scenes()) check_golden(scene, kGolden, kSteps);
     }
 }
+
+}  // namespace test_same_bits

@@ -11,6 +11,8 @@
 
 #include "math/random.hpp"
 
+namespace test_snapshots {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -335,3 +337,5 @@ TEST_SUITE("determinism/snapshots") {
         CHECK(small == std::vector<std::byte>(state.size() - 1, std::byte{7}));
     }
 }
+
+}  // namespace test_snapshots

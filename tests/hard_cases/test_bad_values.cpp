@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+namespace test_bad_values {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -167,3 +169,5 @@ TEST_SUITE("hard cases/bad values") {
         CHECK(world.quarantined().empty());
     }
 }
+
+}  // namespace test_bad_values

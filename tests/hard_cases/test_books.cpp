@@ -12,6 +12,8 @@
 #include <random>
 #include <vector>
 
+namespace test_books {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -323,3 +325,5 @@ TEST_SUITE("hard cases/books") {
         }
     }
 }
+
+}  // namespace test_books

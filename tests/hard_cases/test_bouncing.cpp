@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+namespace test_bouncing {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -345,3 +347,5 @@ TEST_SUITE("hard cases/bouncing") {
         check_books_close(world, 3);
     }
 }
+
+}  // namespace test_bouncing

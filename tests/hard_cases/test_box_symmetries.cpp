@@ -9,6 +9,8 @@
 #include <cmath>
 #include <numbers>
 
+namespace test_box_symmetries {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -92,3 +94,5 @@ TEST_SUITE("hard cases/box symmetries") {
         CHECK(of_permuted < 1e-9);
     }
 }
+
+}  // namespace test_box_symmetries

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <random>
 
+namespace test_boxes {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -199,3 +201,5 @@ TEST_SUITE("hard cases/boxes") {
         check_cases<Real>(torture::discs_between_a_box_and_a_post(extent()));
     }
 }
+
+}  // namespace test_boxes

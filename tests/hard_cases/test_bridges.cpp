@@ -10,6 +10,8 @@
 #include <doctest/doctest.h>
 #include <carom/carom.hpp>
 
+namespace test_bridges {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -140,3 +142,5 @@ TEST_SUITE("hard cases: bridges") {
         }
     }
 }
+
+}  // namespace test_bridges

@@ -8,6 +8,8 @@
 
 #include <carom/carom.hpp>
 
+namespace test_built_in_pairs {
+
 using namespace carom;
 
 namespace {
@@ -240,3 +242,5 @@ TEST_SUITE("hard cases: built-in pairs") {
                   doctest::Approx(0.5 + static_cast<double>(i)).epsilon(0.01));
     }
 }
+
+}  // namespace test_built_in_pairs

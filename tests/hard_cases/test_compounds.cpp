@@ -11,6 +11,8 @@
 #include <numbers>
 #include <vector>
 
+namespace test_compounds {
+
 using namespace carom;
 using carom::test::rms_speed;
 
@@ -305,3 +307,5 @@ TEST_SUITE("hard cases: compounds") {
         CHECK(other.state_hash() == one.state_hash());
     }
 }
+
+}  // namespace test_compounds

@@ -14,6 +14,8 @@
 #include <cstdint>
 #include <vector>
 
+namespace test_contacts_at_rest {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -166,3 +168,5 @@ TEST_SUITE("hard cases/contacts at rest") {
         CHECK(world.overlaps().max < 0.01);
     }
 }
+
+}  // namespace test_contacts_at_rest

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+namespace test_crowds {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -345,3 +347,5 @@ TEST_SUITE("hard cases/crowds") {
         CHECK(lowest > 0);  // no disc is pressed through the mouth
     }
 }
+
+}  // namespace test_crowds

@@ -9,6 +9,8 @@
 #include "support/report.hpp"
 #include "support/scenes.hpp"
 
+namespace test_curved_tracks {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -178,3 +180,5 @@ TEST_SUITE("hard cases/curved tracks") {
         }
     }
 }
+
+}  // namespace test_curved_tracks

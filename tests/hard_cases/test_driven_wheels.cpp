@@ -9,6 +9,8 @@
 #include <doctest/doctest.h>
 #include <carom/carom.hpp>
 
+namespace test_driven_wheels {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -149,3 +151,5 @@ TEST_SUITE("hard cases: driven wheels") {
         CHECK(std::fabs(world.state(plate).velocity.y - exact) < 3e-3 * std::fabs(exact));
     }
 }
+
+}  // namespace test_driven_wheels

@@ -9,6 +9,8 @@
 #include <numbers>
 #include <random>
 
+namespace test_edges {
+
 using namespace carom;
 
 namespace {
@@ -149,3 +151,5 @@ TEST_SUITE("hard cases/edges") {
                 }
     }
 }
+
+}  // namespace test_edges

@@ -15,6 +15,8 @@
 #include "support/scenes.hpp"
 #include "support/trial.hpp"
 
+namespace test_energy_rules {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -261,3 +263,5 @@ TEST_SUITE("hard cases/energy rules") {
             }
     }
 }
+
+}  // namespace test_energy_rules

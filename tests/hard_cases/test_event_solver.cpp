@@ -9,6 +9,8 @@
 #include <cmath>
 #include <string>
 
+namespace test_event_solver {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -176,3 +178,5 @@ TEST_SUITE("hard cases/event solver") {
         CHECK(world.overlaps().max < 1e-9);
     }
 }
+
+}  // namespace test_event_solver

@@ -1,6 +1,8 @@
 // B11 of docs/hard-cases.md: worlds far from their origin.
 #include "support/hard_case.hpp"
 
+namespace test_far_from_origin {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -15,3 +17,5 @@ TEST_SUITE("hard cases/far from the origin") {
         check_cases<float>(with_mark);
     }
 }
+
+}  // namespace test_far_from_origin

@@ -15,6 +15,8 @@
 #include "support/effort.hpp"
 #include "support/report.hpp"
 
+namespace test_features_together {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -329,3 +331,5 @@ TEST_SUITE("hard cases/features together") {
         CHECK(refused < runs / 3);
     }
 }
+
+}  // namespace test_features_together

@@ -7,6 +7,8 @@
 
 #include <carom/carom.hpp>
 
+namespace test_flippers {
+
 using namespace carom;
 
 namespace {
@@ -85,3 +87,5 @@ TEST_CASE("a flipper strikes in a world that its state was restored in, too") {
     CHECK(world.state({1, 0}).velocity.y > 0.6 * 20 * kArm);
     CHECK(other.state_hash() == world.state_hash());
 }
+
+}  // namespace test_flippers

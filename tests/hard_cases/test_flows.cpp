@@ -10,6 +10,8 @@
 
 #include <cmath>
 
+namespace test_flows {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -87,3 +89,5 @@ TEST_SUITE("hard cases/flows") {
                 }
     }
 }
+
+}  // namespace test_flows

@@ -12,6 +12,8 @@
 #include <cmath>
 #include <cstdint>
 
+namespace test_flying_shapes {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -146,3 +148,5 @@ TEST_SUITE("hard cases/flying shapes") {
         report("deepest overlap of rows that are stopped: ", deepest, " of the half side");
     }
 }
+
+}  // namespace test_flying_shapes

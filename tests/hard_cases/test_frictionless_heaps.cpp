@@ -13,6 +13,8 @@
 #include <numbers>
 #include <random>
 
+namespace test_frictionless_heaps {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -232,3 +234,5 @@ TEST_SUITE("hard cases/frictionless heaps") {
         CHECK(World(rough).plan().iterations == 2);
     }
 }
+
+}  // namespace test_frictionless_heaps

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+namespace test_fuzzed_calls {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -395,3 +397,5 @@ TEST_SUITE("hard cases/fuzzed calls") {
         CHECK(world.ledger().energy_by_cause.restitution == lost);
     }
 }
+
+}  // namespace test_fuzzed_calls

@@ -10,6 +10,8 @@
 #include "support/report.hpp"
 #include "support/scenes.hpp"
 
+namespace test_granular_gases {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -68,3 +70,5 @@ TEST_SUITE("hard cases/granular gases") {
             }
     }
 }
+
+}  // namespace test_granular_gases

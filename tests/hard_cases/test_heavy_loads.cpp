@@ -11,6 +11,8 @@
 #include <doctest/doctest.h>
 #include <carom/carom.hpp>
 
+namespace test_heavy_loads {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -265,3 +267,5 @@ TEST_SUITE("hard cases: heavy loads") {
         for (std::uint32_t i : {0u, 2u}) CHECK(std::isfinite(world.state({i, 0}).position.x));
     }
 }
+
+}  // namespace test_heavy_loads

@@ -8,6 +8,8 @@
 
 #include <cmath>
 
+namespace test_heavy_on_light {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -90,3 +92,5 @@ TEST_SUITE("hard cases/heavy on light") {
         }
     }
 }
+
+}  // namespace test_heavy_on_light

@@ -12,6 +12,8 @@
 #include <doctest/doctest.h>
 #include <carom/carom.hpp>
 
+namespace test_hung_crowds {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -335,3 +337,5 @@ TEST_SUITE("hard cases: crowds that hang") {
         }
     }
 }
+
+}  // namespace test_hung_crowds

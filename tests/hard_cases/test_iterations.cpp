@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+namespace test_iterations {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -150,3 +152,5 @@ TEST_SUITE("hard cases/iterations") {
         }
     }
 }
+
+}  // namespace test_iterations

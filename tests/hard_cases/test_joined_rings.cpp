@@ -12,6 +12,8 @@
 #include <random>
 #include <vector>
 
+namespace test_joined_rings {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -128,3 +130,5 @@ TEST_CASE_TEMPLATE("rings of joined boxes that fall on each other gain no energy
 }
 
 TEST_SUITE_END();
+
+}  // namespace test_joined_rings

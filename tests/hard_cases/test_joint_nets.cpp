@@ -12,6 +12,8 @@
 
 #include "support/report.hpp"
 
+namespace test_joint_nets {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -449,3 +451,5 @@ TEST_SUITE("hard cases: nets of joints") {
         }
     }
 }
+
+}  // namespace test_joint_nets

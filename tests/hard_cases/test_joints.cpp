@@ -14,6 +14,8 @@
 
 #include <doctest/doctest.h>
 
+namespace test_joints {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -427,3 +429,5 @@ TEST_SUITE("hard cases: joints") {
         }
     }
 }
+
+}  // namespace test_joints

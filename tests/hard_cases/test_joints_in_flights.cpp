@@ -14,6 +14,8 @@
 #include "support/other_order.hpp"
 #include "support/report.hpp"
 
+namespace test_joints_in_flights {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -145,3 +147,5 @@ TEST_SUITE("hard cases/joints in flights") {
         CHECK(cut.count() > 0);
     }
 }
+
+}  // namespace test_joints_in_flights

@@ -13,6 +13,8 @@
 #include "support/effort.hpp"
 #include "support/rms_speed.hpp"
 
+namespace test_large_heaps {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -101,3 +103,5 @@ TEST_SUITE("hard cases/large heaps") {
         CHECK(world.profile().path_cuts - before < kSettles / 4);
     }
 }
+
+}  // namespace test_large_heaps

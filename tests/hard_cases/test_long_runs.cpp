@@ -9,6 +9,8 @@
 
 #include <cmath>
 
+namespace test_long_runs {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -46,3 +48,5 @@ TEST_SUITE("hard cases/long runs") {
         CHECK(world.overlaps().max < 0.01);
     }
 }
+
+}  // namespace test_long_runs

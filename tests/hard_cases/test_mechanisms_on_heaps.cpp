@@ -14,6 +14,8 @@
 #include <doctest/doctest.h>
 #include <carom/carom.hpp>
 
+namespace test_mechanisms_on_heaps {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -168,3 +170,5 @@ TEST_SUITE("hard cases: mechanisms on heaps") {
         CHECK(world.overlaps().max < 0.05);
     }
 }
+
+}  // namespace test_mechanisms_on_heaps

@@ -11,6 +11,8 @@
 
 #include <carom/carom.hpp>
 
+namespace test_moving_limits {
+
 using namespace carom;
 
 namespace {
@@ -241,3 +243,5 @@ TEST_CASE("a step that ends early is taken again with the limits that it had") {
     }
     REQUIRE(latest > 2);  // behind the start of the joints
 }
+
+}  // namespace test_moving_limits

@@ -11,6 +11,8 @@
 #include <cmath>
 #include <vector>
 
+namespace test_overlaps {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -247,3 +249,5 @@ TEST_SUITE("hard cases/overlaps") {
             }
     }
 }
+
+}  // namespace test_overlaps

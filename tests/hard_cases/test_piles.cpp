@@ -14,6 +14,8 @@
 #include <cmath>
 #include <numbers>
 
+namespace test_piles {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -203,3 +205,5 @@ TEST_SUITE("hard cases/piles") {
         }
     }
 }
+
+}  // namespace test_piles

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+namespace test_quarantine {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -214,3 +216,5 @@ TEST_SUITE("hard cases/quarantine") {
         CHECK(world.body_count() == 1);
     }
 }
+
+}  // namespace test_quarantine

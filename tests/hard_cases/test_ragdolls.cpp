@@ -10,6 +10,8 @@
 
 #include <doctest/doctest.h>
 
+namespace test_ragdolls {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -259,3 +261,5 @@ TEST_SUITE("hard cases: joints") {
         if (draws == kDraws) CHECK(2 * others < draws);
     }
 }
+
+}  // namespace test_ragdolls

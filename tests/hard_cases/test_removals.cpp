@@ -11,6 +11,8 @@
 #include <cmath>
 #include <random>
 
+namespace test_removals {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -242,3 +244,5 @@ TEST_SUITE("hard cases/removals") {
         CHECK(rms < 0.1);
     }
 }
+
+}  // namespace test_removals

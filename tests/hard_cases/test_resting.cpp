@@ -10,6 +10,8 @@
 #include <cmath>
 #include <vector>
 
+namespace test_resting {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -122,3 +124,5 @@ TEST_SUITE("hard cases/resting") {
             }
     }
 }
+
+}  // namespace test_resting

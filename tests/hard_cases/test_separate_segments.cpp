@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+namespace test_separate_segments {
+
 using namespace carom;
 
 namespace {
@@ -170,3 +172,5 @@ TEST_SUITE("hard cases/separate segments") {
         CHECK(energy_left<Real>(Slider::smooth_disc, floor, Filters::apart_later) == parted);
     }
 }
+
+}  // namespace test_separate_segments

@@ -17,6 +17,8 @@
 #include <numeric>
 #include <vector>
 
+namespace test_shapes_on_edges_at_rest {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -219,3 +221,5 @@ TEST_SUITE("hard cases/shapes on edges at rest") {
         CHECK(std::abs(world.state({1, 0}).angle) < 1e-3);
     }
 }
+
+}  // namespace test_shapes_on_edges_at_rest

@@ -12,6 +12,8 @@
 #include <random>
 #include <vector>
 
+namespace test_size_ratios {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -241,3 +243,5 @@ TEST_SUITE("hard cases/size ratios") {
         CHECK(world.quarantined().empty());
     }
 }
+
+}  // namespace test_size_ratios

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+namespace test_sleeping {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -386,3 +388,5 @@ TEST_SUITE("hard cases/sleeping") {
         }
     }
 }
+
+}  // namespace test_sleeping

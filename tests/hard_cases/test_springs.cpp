@@ -11,6 +11,8 @@
 #include "support/joints.hpp"
 #include "support/report.hpp"
 
+namespace test_springs {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -182,3 +184,5 @@ TEST_SUITE("hard cases: springs") {
         report("a body that is shot through its spring: at most ", most, " times the energy of the start");
     }
 }
+
+}  // namespace test_springs

@@ -1,6 +1,8 @@
 // B37 of docs/hard-cases.md: what a kinematic body squeezes against what stands is not shot out.
 #include "support/hard_case.hpp"
 
+namespace test_squeezes {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -29,3 +31,5 @@ TEST_SUITE("hard cases/squeezes") {
         check_cases<Real>(torture::discs_thrown_into_wedges(extent()));
     }
 }
+
+}  // namespace test_squeezes

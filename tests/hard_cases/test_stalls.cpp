@@ -18,6 +18,8 @@
 #include "support/other_order.hpp"
 #include "support/report.hpp"
 
+namespace test_stalls {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -253,3 +255,5 @@ TEST_SUITE("hard cases/stalls") {
         CHECK(world.overlaps().mean < 0.1);
     }
 }
+
+}  // namespace test_stalls

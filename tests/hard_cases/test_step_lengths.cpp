@@ -9,6 +9,8 @@
 
 #include <doctest/doctest.h>
 
+namespace test_step_lengths {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -127,3 +129,5 @@ TEST_SUITE("hard cases/step lengths") {
         check_cases<Real>(torture::stacks_dropped_into_a_shaft(extent()), Twin::all_effects);
     }
 }
+
+}  // namespace test_step_lengths

@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+namespace test_strangers {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -369,3 +371,5 @@ TEST_SUITE("hard cases/strangers") {
         }
     }
 }
+
+}  // namespace test_strangers

@@ -8,6 +8,8 @@
 
 #include <cmath>
 
+namespace test_symmetric_hits {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -168,3 +170,5 @@ TEST_SUITE("hard cases/symmetric hits") {
         trial.check();
     }
 }
+
+}  // namespace test_symmetric_hits

@@ -13,6 +13,8 @@
 #include <numeric>
 #include <vector>
 
+namespace test_symmetries {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -168,3 +170,5 @@ TEST_SUITE("hard cases/symmetries") {
         CHECK(largest_difference(start, end) < kTolerance);
     }
 }
+
+}  // namespace test_symmetries

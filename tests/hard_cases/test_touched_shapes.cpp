@@ -16,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+namespace test_touched_shapes {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -266,3 +268,5 @@ TEST_SUITE("hard cases/touched worlds of shapes") {
         }
     }
 }
+
+}  // namespace test_touched_shapes

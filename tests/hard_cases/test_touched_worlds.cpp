@@ -15,6 +15,8 @@
 #include <variant>
 #include <vector>
 
+namespace test_touched_worlds {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -179,3 +181,5 @@ TEST_SUITE("hard cases/touched worlds") {
         CHECK(rms < 0.05);
     }
 }
+
+}  // namespace test_touched_worlds

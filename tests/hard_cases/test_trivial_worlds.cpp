@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <string>
 
+namespace test_trivial_worlds {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -143,3 +145,5 @@ TEST_SUITE("hard cases/trivial worlds") {
         trial.check();
     }
 }
+
+}  // namespace test_trivial_worlds

@@ -3,6 +3,8 @@
 
 #include "support/hard_case.hpp"
 
+namespace test_tunnelling {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -52,3 +54,5 @@ TEST_SUITE("hard cases/tunnelling") {
                 }
     }
 }
+
+}  // namespace test_tunnelling

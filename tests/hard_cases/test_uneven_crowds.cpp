@@ -10,6 +10,8 @@
 #include <doctest/doctest.h>
 #include <carom/carom.hpp>
 
+namespace test_uneven_crowds {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -64,3 +66,5 @@ TEST_SUITE("hard cases: uneven crowds") {
         CHECK(largest < 0.8);
     }
 }
+
+}  // namespace test_uneven_crowds

@@ -14,6 +14,8 @@
 
 #include "torture/hard/uneven_pile.hpp"
 
+namespace test_uneven_piles {
+
 using namespace carom;
 using namespace carom::test;
 using torture::UnevenPile;
@@ -106,3 +108,5 @@ TEST_SUITE("hard cases/uneven piles") {
         CHECK(world.state_hash() == restored.state_hash());
     }
 }
+
+}  // namespace test_uneven_piles

@@ -7,6 +7,8 @@
 
 #include <carom/carom.hpp>
 
+namespace test_units {
+
 using namespace carom;
 
 namespace {
@@ -100,3 +102,5 @@ TEST_CASE_TEMPLATE("what an edge that turns throws does not depend on the unit o
     }
     CHECK(stirred_heap<W>({.kilogram = 0x1p10}, 300) == expected);
 }
+
+}  // namespace test_units

@@ -9,6 +9,8 @@
 
 #include <carom/carom.hpp>
 
+namespace test_welded_loops {
+
 using namespace carom;
 
 namespace {
@@ -181,3 +183,5 @@ TEST_CASE_TEMPLATE("a welded crate that spins freely keeps its energy and pulls 
 }
 
 TEST_SUITE_END();
+
+}  // namespace test_welded_loops

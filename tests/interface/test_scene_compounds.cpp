@@ -5,6 +5,8 @@
 
 #include <string>
 
+namespace test_scene_compounds {
+
 using namespace carom;
 using namespace carom::test;
 using namespace carom::tool;
@@ -63,3 +65,5 @@ TEST_SUITE("interface: compounds and sensors") {
             ErrorCode::inconsistent, "/bodies/0/sensor", "expected a shape with an area");
     }
 }
+
+}  // namespace test_scene_compounds

@@ -5,6 +5,8 @@
 
 #include <string>
 
+namespace test_scene_filters {
+
 using namespace carom;
 using namespace carom::test;
 using namespace carom::tool;
@@ -41,3 +43,5 @@ TEST_SUITE("interface: filters") {
                             "mask");
     }
 }
+
+}  // namespace test_scene_filters

@@ -5,6 +5,8 @@
 
 #include <string>
 
+namespace test_scene_joints {
+
 using namespace carom;
 using namespace carom::test;
 using namespace carom::tool;
@@ -83,3 +85,5 @@ TEST_SUITE("interface: joints") {
                             "/joints/0/wheel/length", "length");
     }
 }
+
+}  // namespace test_scene_joints

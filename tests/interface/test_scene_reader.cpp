@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+namespace test_scene_reader {
+
 using namespace carom;
 using namespace carom::tool;
 
@@ -491,3 +493,5 @@ TEST_SUITE("interface/scene_reader") {
         CHECK(code(std::filesystem::temp_directory_path().string()) == ErrorCode::unreadable);
     }
 }
+
+}  // namespace test_scene_reader

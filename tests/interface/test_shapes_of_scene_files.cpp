@@ -4,6 +4,8 @@
 
 #include <string>
 
+namespace test_shapes_of_scene_files {
+
 using namespace carom;
 using namespace carom::test;
 using namespace carom::tool;
@@ -53,3 +55,5 @@ TEST_CASE("what is wrong with a shape in a scene file is said with its place the
     check_refused(R"({"polygon": {"vertices": [[0, 0], [1, 0], [0.2, 0.2], [0, 1]]}})", inconsistent,
                   "polygon/vertices/2", "a dent at vertex 2, [0.2, 0.2]; expected a convex polygon");
 }
+
+}  // namespace test_shapes_of_scene_files

@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace test_against_events {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -111,3 +113,5 @@ TEST_SUITE("physics/against events") {
         check_against_oracle<float>(scene, 0.5);
     }
 }
+
+}  // namespace test_against_events

@@ -11,6 +11,8 @@
 #include <doctest/doctest.h>
 #include <carom/carom.hpp>
 
+namespace test_axles {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -224,3 +226,5 @@ TEST_SUITE("wheels and sliders of crowds") {
         CHECK(world.joint_torque(JointId::of(0, 0)) == doctest::Approx(torque).epsilon(1e-3));
     }
 }
+
+}  // namespace test_axles

@@ -9,6 +9,8 @@
 
 #include <carom/carom.hpp>
 
+namespace test_bounces_of_shapes {
+
 using namespace carom;
 
 namespace {
@@ -63,3 +65,5 @@ TEST_CASE_TEMPLATE("shapes bounce as high as they should", W, World, World64) {
                         CHECK(found.unexplained < 1e-4);
                     }
 }
+
+}  // namespace test_bounces_of_shapes

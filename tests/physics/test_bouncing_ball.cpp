@@ -11,6 +11,8 @@
 #include <cmath>
 #include <vector>
 
+namespace test_bouncing_ball {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -168,3 +170,5 @@ TEST_SUITE("physics/bouncing ball") {
         }
     }
 }
+
+}  // namespace test_bouncing_ball

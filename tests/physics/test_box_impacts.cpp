@@ -10,6 +10,8 @@
 #include <cmath>
 #include <numbers>
 
+namespace test_box_impacts {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -241,3 +243,5 @@ TEST_SUITE("physics/box impacts") {
         }
     }
 }
+
+}  // namespace test_box_impacts

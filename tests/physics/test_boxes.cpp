@@ -12,6 +12,8 @@
 #include <numbers>
 #include <vector>
 
+namespace test_boxes {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -267,3 +269,5 @@ TEST_SUITE("physics/boxes") {
         }
     }
 }
+
+}  // namespace test_boxes

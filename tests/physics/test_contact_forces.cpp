@@ -12,6 +12,8 @@
 #include <map>
 #include <vector>
 
+namespace test_contact_forces {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -142,3 +144,5 @@ TEST_SUITE("physics/contact forces") {
         CHECK(wrong == 0);
     }
 }
+
+}  // namespace test_contact_forces

@@ -11,6 +11,8 @@
 #include <cmath>
 #include <numbers>
 
+namespace test_edges {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -331,3 +333,5 @@ TEST_SUITE("physics/edges") {
         }
     }
 }
+
+}  // namespace test_edges

@@ -10,6 +10,8 @@
 
 #include <cmath>
 
+namespace test_elastic_gas {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -96,3 +98,5 @@ TEST_SUITE("physics/elastic gas") {
         CHECK(std::abs(mean - 2) < 3 * deviation);
     }
 }
+
+}  // namespace test_elastic_gas

@@ -12,6 +12,8 @@
 #include <cmath>
 #include <cstdint>
 
+namespace test_event_solver {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -164,3 +166,5 @@ TEST_SUITE("physics/event solver") {
         trial.check();
     }
 }
+
+}  // namespace test_event_solver

@@ -11,6 +11,8 @@
 #include <cmath>
 #include <vector>
 
+namespace test_free_flight {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -168,3 +170,5 @@ TEST_SUITE("physics/free flight") {
         trial.check();
     }
 }
+
+}  // namespace test_free_flight

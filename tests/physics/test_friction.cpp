@@ -10,6 +10,8 @@
 #include <cmath>
 #include <vector>
 
+namespace test_friction {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -181,3 +183,5 @@ TEST_SUITE("physics/friction") {
         CHECK(in_float < 1e-4);
     }
 }
+
+}  // namespace test_friction

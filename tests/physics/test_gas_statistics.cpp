@@ -16,6 +16,8 @@
 #include <cmath>
 #include <numbers>
 
+namespace test_gas_statistics {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -150,3 +152,5 @@ TEST_SUITE("physics/gas statistics") {
         }
     }
 }
+
+}  // namespace test_gas_statistics

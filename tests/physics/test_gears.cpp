@@ -8,6 +8,8 @@
 
 #include <doctest/doctest.h>
 
+namespace test_gears {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -125,3 +127,5 @@ TEST_SUITE("physics: gears") {
         CHECK(message_of([&](Joints j) { gear_of(j) = {}; }).find("no two bodies") != std::string::npos);
     }
 }
+
+}  // namespace test_gears

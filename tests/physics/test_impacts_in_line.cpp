@@ -11,6 +11,8 @@
 #include <cmath>
 #include <vector>
 
+namespace test_impacts_in_line {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -237,3 +239,5 @@ TEST_SUITE("physics/impacts in line") {
                 }
     }
 }
+
+}  // namespace test_impacts_in_line

@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace test_impulse_against_event {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -73,3 +75,5 @@ TEST_SUITE("physics/impulse against event") {
         CHECK(energy == doctest::Approx(1).epsilon(0.02));
     }
 }
+
+}  // namespace test_impulse_against_event

@@ -9,6 +9,8 @@
 
 #include <doctest/doctest.h>
 
+namespace test_joints {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -468,3 +470,5 @@ TEST_SUITE("physics: joints") {
               1e-3 * std::hypot(ledger.momentum_by_cause.gravity.x, ledger.momentum_by_cause.gravity.y));
     }
 }
+
+}  // namespace test_joints

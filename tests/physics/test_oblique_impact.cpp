@@ -10,6 +10,8 @@
 #include <array>
 #include <cmath>
 
+namespace test_oblique_impact {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -193,3 +195,5 @@ TEST_SUITE("physics/oblique impact") {
         });
     }
 }
+
+}  // namespace test_oblique_impact

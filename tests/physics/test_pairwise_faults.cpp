@@ -16,6 +16,8 @@
 #include <string>
 #include <vector>
 
+namespace test_pairwise_faults {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -207,3 +209,5 @@ TEST_SUITE("pairwise/faults") {
         CHECK(world.counts().wall_contacts == 2);
     }
 }
+
+}  // namespace test_pairwise_faults

@@ -10,6 +10,8 @@
 #include <cstdio>
 #include <string>
 
+namespace test_pairwise_seed {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -108,3 +110,5 @@ TEST_SUITE("pairwise/seed") {
         }
     }
 }
+
+}  // namespace test_pairwise_seed

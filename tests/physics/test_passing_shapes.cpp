@@ -14,6 +14,8 @@
 #include <variant>
 #include <vector>
 
+namespace test_passing_shapes {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -302,3 +304,5 @@ TEST_SUITE("physics/passing shapes") {
             }
     }
 }
+
+}  // namespace test_passing_shapes

@@ -9,6 +9,8 @@
 
 #include <doctest/doctest.h>
 
+namespace test_rattle {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -147,3 +149,5 @@ TEST_SUITE("physics: rattle") {
         CHECK(world.joint_errors().max < 1e-6);
     }
 }
+
+}  // namespace test_rattle

@@ -10,6 +10,8 @@
 #include "support/report.hpp"
 #include "support/scenes.hpp"
 
+namespace test_rocking {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -86,3 +88,5 @@ TEST_SUITE("physics/rocking") {
         }
     }
 }
+
+}  // namespace test_rocking

@@ -8,6 +8,8 @@
 
 #include <cmath>
 
+namespace test_rolling_resistance {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -164,3 +166,5 @@ TEST_SUITE("physics/rolling resistance") {
         CHECK(std::abs(ledger.energy_by_cause.unexplained) < 1e-12 * started);
     }
 }
+
+}  // namespace test_rolling_resistance

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+namespace test_rolling_shapes {
+
 using namespace carom;
 
 namespace {
@@ -105,3 +107,5 @@ TEST_SUITE("physics/rolling resistance of shapes") {
         CHECK(angle_of(0.5) == doctest::Approx(angle_of(0)).epsilon(1e-9));
     }
 }
+
+}  // namespace test_rolling_shapes

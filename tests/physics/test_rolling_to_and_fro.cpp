@@ -11,6 +11,8 @@
 #include "support/report.hpp"
 #include "support/scenes.hpp"
 
+namespace test_rolling_to_and_fro {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -179,3 +181,5 @@ TEST_SUITE("physics/rolling to and fro") {
         check<Real>("disc in a bowl, 1 rad", disc_in_bowl(1), false, 0.75, false);
     }
 }
+
+}  // namespace test_rolling_to_and_fro

@@ -14,6 +14,8 @@
 #include <cmath>
 #include <numbers>
 
+namespace test_rough_gas {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -210,3 +212,5 @@ TEST_SUITE("physics/rough gas") {
         }
     }
 }
+
+}  // namespace test_rough_gas

@@ -13,6 +13,8 @@
 #include <cstdint>
 #include <numbers>
 
+namespace test_rough_impacts {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -359,3 +361,5 @@ TEST_SUITE("physics/rough impacts") {
             }
     }
 }
+
+}  // namespace test_rough_impacts

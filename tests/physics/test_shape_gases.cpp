@@ -10,6 +10,8 @@
 #include <cmath>
 #include <vector>
 
+namespace test_shape_gases {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -88,3 +90,5 @@ TEST_SUITE("physics/shape gases") {
         CHECK(worst < (sizeof(Real) == sizeof(float) ? 1e-6 : 1e-14));
     }
 }
+
+}  // namespace test_shape_gases

@@ -12,6 +12,8 @@
 #include <cmath>
 #include <cstdint>
 
+namespace test_soft_against_event {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -143,3 +145,5 @@ TEST_SUITE("physics/soft against event") {
         }
     }
 }
+
+}  // namespace test_soft_against_event

@@ -12,6 +12,8 @@
 #include <cmath>
 #include <numbers>
 
+namespace test_struck_mechanisms {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -262,3 +264,5 @@ TEST_SUITE("physics: struck mechanisms") {
             }
     }
 }
+
+}  // namespace test_struck_mechanisms

@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <string>
 
+namespace test_zero_valued_effects {
+
 using namespace carom;
 using namespace carom::test;
 using tool::PricedEffect;
@@ -130,3 +132,5 @@ TEST_SUITE("physics/zero-valued effects") {
             }
     }
 }
+
+}  // namespace test_zero_valued_effects

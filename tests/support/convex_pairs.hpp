@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "isa/select_isa.hpp"
 #include "state/columns/column.hpp"
 #include "support/convex_oracle.hpp"
+#include "support/draw.hpp"
 
 // Pairs of convex shapes for kernels that find manifolds, each pair with two bodies of its own, and random
 // ones of every class.
@@ -106,21 +106,6 @@ class ConvexPairs {
     Column<std::int32_t> a_, b_;
     Column<Real> margin_;
     Column<Real> out_[10];
-};
-
-/// Random numbers that are the same with every library.
-class Draw {
-  public:
-    explicit Draw(unsigned seed) : random_(seed) {}
-    double operator()(double low, double high) {
-        return low + (high - low) * static_cast<double>(random_()) / 4294967295.0;
-    }
-    /// As likely in each power of ten.
-    double size(double low, double high) { return low * std::pow(high / low, (*this)(0, 1)); }
-    std::size_t below(std::size_t count) { return random_() % count; }
-
-  private:
-    std::mt19937 random_;
 };
 
 enum class ShapeKind { disc, capsule, box, rounded_box, triangle, polygon, octagon, thin };

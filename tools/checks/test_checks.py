@@ -184,6 +184,12 @@ class CheckNames(WithFolder):
         self.write("engine/c.cpp", "constexpr int kMost = 3;\n")
         self.assertEqual(check_names.check(self.root), [])
 
+    def test_a_file_of_tests_is_a_namespace(self):
+        self.write("tests/physics/test_falls.cpp", "#include <vector>\nnamespace test_falls {\nint f();\n}\n")
+        self.assertEqual(check_names.check(self.root), [])
+        self.write("tests/physics/test_falls.cpp", "#include <vector>\nnamespace {\nint f();\n}\n")
+        self.assertEqual(check_names.check(self.root), ["tests/physics/test_falls.cpp: has no namespace test_falls"])
+
 
 class CheckIncludes(WithFolder):
     def setUp(self):

@@ -11,6 +11,8 @@
 #include <set>
 #include <utility>
 
+namespace test_edge_candidates {
+
 using namespace carom;
 
 namespace {
@@ -127,3 +129,5 @@ TEST_SUITE("broadphase/edge_candidates") {
         CHECK(steps < 1000);
     }
 }
+
+}  // namespace test_edge_candidates

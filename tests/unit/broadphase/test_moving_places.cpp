@@ -9,6 +9,8 @@
 
 #include "math/vec2_math.hpp"
 
+namespace test_moving_places {
+
 using namespace carom;
 
 namespace {
@@ -106,3 +108,5 @@ TEST_SUITE("broadphase/moving places") {
         CHECK(flock.places.velocity(kCount - 1) == Vec2{});
     }
 }
+
+}  // namespace test_moving_places

@@ -14,6 +14,8 @@
 #include "isa/select_isa.hpp"
 #include "support/effort.hpp"
 
+namespace test_own_margins {
+
 using namespace carom;
 
 namespace {
@@ -227,3 +229,5 @@ TEST_SUITE("broadphase/own margins") {
         CHECK(counts.rebuilds == 1);  // 1.7 m in 100 steps, a margin being 0.06 m
     }
 }
+
+}  // namespace test_own_margins

@@ -8,6 +8,8 @@
 #include <random>
 #include <set>
 
+namespace test_row_names {
+
 using namespace carom;
 
 namespace {
@@ -142,3 +144,5 @@ TEST_SUITE("broadphase/row names") {
         CHECK(names.name_of(3) == 3);
     }
 }
+
+}  // namespace test_row_names

@@ -18,6 +18,8 @@
 #include "support/convex_pairs.hpp"
 #include "support/effort.hpp"
 
+namespace test_slim_bodies {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -193,3 +195,5 @@ TEST_SUITE("broadphase/slim bodies") {
         CHECK(!slim.empty());
     }
 }
+
+}  // namespace test_slim_bodies

@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+namespace test_uniform_grid {
+
 using carom::CandidatePairs;
 using carom::Column;
 using carom::Executor;
@@ -377,3 +379,5 @@ TEST_SUITE("broadphase/uniform_grid") {
         }
     }
 }
+
+}  // namespace test_uniform_grid

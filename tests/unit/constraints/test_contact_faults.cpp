@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+namespace test_contact_faults {
+
 using namespace carom;
 
 namespace {
@@ -102,3 +104,5 @@ TEST_CASE("a support has a body of its chunk and something that holds it") {
     gone.supports.b[0] = Partner::gone().stored();
     CHECK(gone.fault_of_supports() == "a contact's other side is gone");
 }
+
+}  // namespace test_contact_faults

@@ -12,6 +12,8 @@
 
 #include "isa/select_isa.hpp"
 
+namespace test_contact_graph {
+
 using namespace carom;
 
 namespace {
@@ -234,3 +236,5 @@ TEST_SUITE("constraints/contact graph") {
                          three.graph.pairs.b.end()));
     }
 }
+
+}  // namespace test_contact_graph

@@ -15,6 +15,8 @@
 #include <utility>
 #include <vector>
 
+namespace test_impulse_memory {
+
 using namespace carom;
 
 namespace {
@@ -221,3 +223,5 @@ TEST_SUITE("constraints/impulse memory") {
         CHECK(kept > 800);
     }
 }
+
+}  // namespace test_impulse_memory

@@ -8,6 +8,8 @@
 #include "constraints/joints/free_rows.hpp"
 #include "constraints/joints/joint_system.hpp"
 
+namespace test_joint_answers {
+
 using namespace carom;
 
 namespace {
@@ -244,3 +246,5 @@ TEST_SUITE("unit: joint answers") {
         }
     }
 }
+
+}  // namespace test_joint_answers

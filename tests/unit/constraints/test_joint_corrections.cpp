@@ -8,6 +8,8 @@
 
 #include "constraints/coupled_impulses.hpp"
 
+namespace test_joint_corrections {
+
 using namespace carom;
 
 namespace {
@@ -210,3 +212,5 @@ TEST_SUITE("joint corrections") {
         }
     }
 }
+
+}  // namespace test_joint_corrections

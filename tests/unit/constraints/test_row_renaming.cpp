@@ -4,6 +4,8 @@
 
 #include <vector>
 
+namespace test_row_renaming {
+
 using carom::RowRenaming;
 
 TEST_SUITE("constraints/row renaming") {
@@ -52,3 +54,5 @@ TEST_SUITE("constraints/row renaming") {
         CHECK(trail.new_rows() == std::vector<std::int32_t>{RowRenaming::kGone});
     }
 }
+
+}  // namespace test_row_renaming

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+namespace test_fair_rounding {
+
 using namespace carom;
 
 namespace {
@@ -57,3 +59,5 @@ TEST_SUITE("effects/fair rounding") {
         }
     }
 }
+
+}  // namespace test_fair_rounding

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <string>
 
+namespace test_select_isa {
+
 namespace {
 
 /// CAROM_ISA for the length of a test.
@@ -65,3 +67,5 @@ TEST_SUITE("isa/select_isa") {
         CHECK(message_for("auto").find("CAROM_ISA is \"mmx\"") != std::string::npos);
     }
 }
+
+}  // namespace test_select_isa

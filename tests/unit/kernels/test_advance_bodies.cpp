@@ -10,6 +10,8 @@
 #include <random>
 #include <vector>
 
+namespace test_advance_bodies {
+
 using namespace carom;
 
 namespace {
@@ -337,3 +339,5 @@ TEST_SUITE("kernels/advance bodies") {
         });
     }
 }
+
+}  // namespace test_advance_bodies

@@ -17,6 +17,8 @@
 #include <utility>
 #include <vector>
 
+namespace test_close_bundles {
+
 using namespace carom;
 
 namespace {
@@ -364,3 +366,5 @@ TEST_SUITE("kernels/close bundles") {
         }
     }
 }
+
+}  // namespace test_close_bundles

@@ -10,6 +10,8 @@
 #include <random>
 #include <vector>
 
+namespace test_find_contacts {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -307,3 +309,5 @@ TEST_SUITE("kernels/find contacts") {
         }
     }
 }
+
+}  // namespace test_find_contacts

@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <vector>
 
+namespace test_find_deep {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -81,3 +83,5 @@ TEST_SUITE("kernels/find deep") {
                 }
     }
 }
+
+}  // namespace test_find_deep

@@ -10,6 +10,8 @@
 #include "isa/select_isa.hpp"
 #include "state/columns/column.hpp"
 
+namespace test_find_impacts_near {
+
 using namespace carom;
 
 namespace {
@@ -151,3 +153,5 @@ TEST_SUITE("kernels/find_impacts_near") {
         }
     }
 }
+
+}  // namespace test_find_impacts_near

@@ -6,6 +6,8 @@
 
 #include <limits>
 
+namespace test_find_manifolds {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -172,3 +174,5 @@ TEST_SUITE("kernels/find manifolds") {
         }
     }
 }
+
+}  // namespace test_find_manifolds

@@ -10,6 +10,8 @@
 #include "isa/select_isa.hpp"
 #include "state/columns/column.hpp"
 
+namespace test_flight {
+
 using namespace carom;
 
 namespace {
@@ -208,3 +210,5 @@ TEST_SUITE("kernels/flight") {
         }
     }
 }
+
+}  // namespace test_flight

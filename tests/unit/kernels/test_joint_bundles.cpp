@@ -14,6 +14,8 @@
 #include <random>
 #include <vector>
 
+namespace test_joint_bundles {
+
 using namespace carom;
 
 namespace {
@@ -309,3 +311,5 @@ TEST_SUITE("kernels/joint bundles") {
         }
     }
 }
+
+}  // namespace test_joint_bundles

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace test_manifold_symmetries {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -132,3 +134,5 @@ TEST_SUITE("kernels/find manifolds") {
             });
     }
 }
+
+}  // namespace test_manifold_symmetries

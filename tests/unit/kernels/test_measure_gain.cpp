@@ -8,6 +8,8 @@
 #include <random>
 #include <vector>
 
+namespace test_measure_gain {
+
 using namespace carom;
 
 namespace {
@@ -108,3 +110,5 @@ TEST_SUITE("kernels/measure gain") {
         }
     }
 }
+
+}  // namespace test_measure_gain

@@ -12,6 +12,8 @@
 #include <cmath>
 #include <vector>
 
+namespace test_path_loads {
+
 using namespace carom;
 using carom::test::have_equal_bits;
 
@@ -207,3 +209,5 @@ TEST_SUITE("kernels/paths/path_loads") {
             }
     }
 }
+
+}  // namespace test_path_loads

@@ -12,6 +12,8 @@
 #include <cmath>
 #include <vector>
 
+namespace test_questions {
+
 using namespace carom;
 using carom::test::Draw;
 
@@ -21,7 +23,7 @@ constexpr std::size_t kRows = 500, kContacts = 800;
 constexpr double kStep = 1.0 / 64;
 
 std::int32_t row_of(Draw& draw) {
-    return static_cast<std::int32_t>(draw.between(0, kRows));
+    return static_cast<std::int32_t>(draw(0, kRows));
 }
 
 /// Contacts with gaps of all sizes, of bodies that fly past each other at all speeds.
@@ -41,22 +43,21 @@ struct Gaps {
             column->resize(kContacts);
         for (std::size_t row = 0; row < kRows; ++row) {
             const double speed = draw.chance(0.3) ? 20 : 0.2;
-            velocity_x[row] = real(draw.between(-speed, speed));
-            velocity_y[row] = real(draw.between(-speed, speed));
-            spin[row] = real(draw.between(-speed, speed)), radius[row] = real(draw.between(0.2, 1));
+            velocity_x[row] = real(draw(-speed, speed));
+            velocity_y[row] = real(draw(-speed, speed));
+            spin[row] = real(draw(-speed, speed)), radius[row] = real(draw(0.2, 1));
         }
         for (std::size_t i = 0; i < kContacts; ++i) {
             a[i] = row_of(draw), b[i] = row_of(draw);
-            const double angle = draw.between(-3, 3);
+            const double angle = draw(-3, 3);
             normal_x[i] = real(std::cos(angle)), normal_y[i] = real(std::sin(angle));
-            thickness[i] = real(draw.between(0.1, 0.5)), restitution[i] = real(draw.chance(0.5) ? 0.0 : 0.5);
+            thickness[i] = real(draw(0.1, 0.5)), restitution[i] = real(draw.chance(0.5) ? 0.0 : 0.5);
             for (Column<Real>* lever : {&lever_a1, &lever_a2, &lever_b1, &lever_b2})
-                (*lever)[i] = real(draw.between(-0.5, 0.5));
+                (*lever)[i] = real(draw(-0.5, 0.5));
             const double far = draw.chance(0.5) ? 0.5 : 0.02;
-            separation1[i] = real(draw.chance(0.2) ? kNoPoint : draw.between(-0.1 * far, far));
-            separation2[i] = real(draw.chance(0.5) ? kNoPoint : draw.between(-0.1 * far, far));
-            if (draw.chance(0.05))
-                separation1[i] = real(draw.between(-2e-4, 2e-4)), separation2[i] = real(kNoPoint);
+            separation1[i] = real(draw.chance(0.2) ? kNoPoint : draw(-0.1 * far, far));
+            separation2[i] = real(draw.chance(0.5) ? kNoPoint : draw(-0.1 * far, far));
+            if (draw.chance(0.05)) separation1[i] = real(draw(-2e-4, 2e-4)), separation2[i] = real(kNoPoint);
         }
     }
 };
@@ -154,8 +155,8 @@ TEST_SUITE("kernels/questions") {
         Column<Real> velocity(4 * kRows), foreseen(4 * kRows), displacement(2 * kRows), turn(kRows);
         for (std::size_t row = 0; row < kRows; ++row) {
             const double speed = draw.chance(0.1) ? 1e4 : draw.chance(0.5) ? 0.1 : 0.02;
-            for (std::size_t k = 0; k < 3; ++k) velocity[4 * row + k] = real(draw.between(-speed, speed));
-            velocity[4 * row + 3] = real(draw.between(-2, 2));  // 1/kg
+            for (std::size_t k = 0; k < 3; ++k) velocity[4 * row + k] = real(draw(-speed, speed));
+            velocity[4 * row + 3] = real(draw(-2, 2));  // 1/kg
         }
         Column<PathLink<Real>> links(kBundles * kLength);
         Column<std::int32_t> heads(kBundles * kPathLanes);
@@ -165,20 +166,20 @@ TEST_SUITE("kernels/questions") {
         for (PathLink<Real>& link : links)
             for (std::size_t lane = 0; lane < kPathLanes; ++lane) {
                 link.body[lane] = row_of(draw);
-                const double angle = draw.between(-3, 3);
+                const double angle = draw(-3, 3);
                 link.normal_x[lane] = real(std::cos(angle)), link.normal_y[lane] = real(std::sin(angle));
                 for (Real* lever : {link.near1, link.near2, link.far1, link.far2})
-                    lever[lane] = real(draw.between(-1, 1));
-                if (draw.chance(0.5)) link.normal1[lane] = real(draw.between(0, 0.01));
-                if (draw.chance(0.1)) link.normal2[lane] = real(draw.between(0, 10));
-                link.separation1[lane] = real(draw.between(-0.001, 0.003));
-                link.separation2[lane] = real(draw.chance(0.5) ? kNoPoint : draw.between(-0.001, 0.003));
+                    lever[lane] = real(draw(-1, 1));
+                if (draw.chance(0.5)) link.normal1[lane] = real(draw(0, 0.01));
+                if (draw.chance(0.1)) link.normal2[lane] = real(draw(0, 10));
+                link.separation1[lane] = real(draw(-0.001, 0.003));
+                link.separation2[lane] = real(draw.chance(0.5) ? kNoPoint : draw(-0.001, 0.003));
             }
         for (std::size_t row = 0; row < kRows; ++row) {
             for (std::size_t k = 0; k < 4; ++k)
-                foreseen[4 * row + k] = velocity[4 * row + k] + real(k < 3 ? draw.between(-0.02, 0.02) : 0.0);
-            for (std::size_t k = 0; k < 2; ++k) displacement[2 * row + k] = real(draw.between(-0.001, 0.001));
-            turn[row] = real(draw.between(-0.001, 0.001));
+                foreseen[4 * row + k] = velocity[4 * row + k] + real(k < 3 ? draw(-0.02, 0.02) : 0.0);
+            for (std::size_t k = 0; k < 2; ++k) displacement[2 * row + k] = real(draw(-0.001, 0.001));
+            turn[row] = real(draw(-0.001, 0.001));
         }
         std::vector<std::uint32_t> found, found_to_come;
         for (const KernelTables* tables : runnable_kernel_tables()) {
@@ -260,3 +261,5 @@ TEST_SUITE("kernels/questions") {
         CHECK(told_coming + 3 >= coming);
     }
 }
+
+}  // namespace test_questions

@@ -12,6 +12,8 @@
 #include <random>
 #include <vector>
 
+namespace test_solve_chains {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -178,3 +180,5 @@ TEST_SUITE("kernels/solve chains") {
             }
     }
 }
+
+}  // namespace test_solve_chains

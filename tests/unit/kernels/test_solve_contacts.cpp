@@ -6,6 +6,8 @@
 
 #include <limits>
 
+namespace test_solve_contacts {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -239,3 +241,5 @@ TEST_SUITE("kernels/solve contacts") {
                 }
     }
 }
+
+}  // namespace test_solve_contacts

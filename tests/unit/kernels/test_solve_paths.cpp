@@ -15,6 +15,8 @@
 #include <limits>
 #include <vector>
 
+namespace test_solve_paths {
+
 using namespace carom;
 using carom::test::have_equal_bits;
 
@@ -380,3 +382,5 @@ TEST_SUITE("kernels/paths/solve_paths") {
         }
     }
 }
+
+}  // namespace test_solve_paths

@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+namespace test_sum_work {
+
 using namespace carom;
 
 namespace {
@@ -187,3 +189,5 @@ TEST_SUITE("kernels/sum work") {
             }
     }
 }
+
+}  // namespace test_sum_work

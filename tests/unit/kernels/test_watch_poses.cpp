@@ -10,6 +10,8 @@
 #include <cmath>
 #include <vector>
 
+namespace test_watch_poses {
+
 using namespace carom;
 using carom::test::Draw;
 
@@ -34,15 +36,15 @@ struct Rows {
         pose.resize(4 * room), base.resize(4 * room), come.resize(2 * room), has_moved.resize(room);
         const auto real = [](double value) { return static_cast<Real>(value); };
         for (std::size_t row = 0; row < kRows; ++row) {
-            x[row] = real(draw.between(-1, 1)), y[row] = real(draw.between(-1, 1));
-            radius[row] = real(draw.between(0.2, 1)), rim[row] = real(draw.between(0.1, 0.8));
-            angle[row] = real(turns ? draw.between(-1, 1) : 0);
-            thinnest[row] = real(draw.chance(0.1) ? 0 : draw.between(0.1, 0.5));
+            x[row] = real(draw(-1, 1)), y[row] = real(draw(-1, 1));
+            radius[row] = real(draw(0.2, 1)), rim[row] = real(draw(0.1, 0.8));
+            angle[row] = real(turns ? draw(-1, 1) : 0);
+            thinnest[row] = real(draw.chance(0.1) ? 0 : draw(0.1, 0.5));
             const double far = draw.chance(0.3) ? 1e-2 : 1e-5, turn = !turns             ? 0
                                                                       : draw.chance(0.3) ? 0.1
                                                                                          : 2e-4;
             const auto near = [&](Real value, double by) {
-                return real(static_cast<double>(value) + draw.between(-by, by));
+                return real(static_cast<double>(value) + draw(-by, by));
             };
             pose[4 * row] = near(x[row], far), pose[4 * row + 1] = near(y[row], far);
             base[4 * row] = near(x[row], far), base[4 * row + 1] = near(y[row], far);
@@ -50,9 +52,8 @@ struct Rows {
             last_angle[row] = draw.chance(0.5) ? angle[row] : near(angle[row], turn);
             pose[4 * row + 2] = 1;
             const double speed = draw.chance(0.2) ? 20 : 0.1;
-            velocity_x[row] = real(draw.between(-speed, speed)),
-            velocity_y[row] = real(draw.between(-speed, speed));
-            spin[row] = real(draw.between(-speed, speed));
+            velocity_x[row] = real(draw(-speed, speed)), velocity_y[row] = real(draw(-speed, speed));
+            spin[row] = real(draw(-speed, speed));
         }
     }
     WatchPoses<Real> arguments(bool turns) {
@@ -159,9 +160,9 @@ TEST_SUITE("kernels/watch poses") {
             start_rim(padded(kRows)), inradius(padded(kRows)), joined(padded(kRows));
         for (std::size_t row = 0; row < kRows; ++row) {
             const double speed = draw.chance(0.5) ? 10 : 0.01;
-            for (std::size_t k = 0; k < 3; ++k) velocity[4 * row + k] = real(draw.between(-speed, speed));
-            start_x[row] = real(draw.between(-0.1, 0.1)), start_y[row] = real(draw.between(-0.1, 0.1));
-            start_rim[row] = real(draw.between(-0.1, 0.1)), inradius[row] = real(draw.between(0.1, 1));
+            for (std::size_t k = 0; k < 3; ++k) velocity[4 * row + k] = real(draw(-speed, speed));
+            start_x[row] = real(draw(-0.1, 0.1)), start_y[row] = real(draw(-0.1, 0.1));
+            start_rim[row] = real(draw(-0.1, 0.1)), inradius[row] = real(draw(0.1, 1));
             joined[row] = draw.chance(0.2) ? Real(1) : Real(0);
         }
         std::size_t all = 0;
@@ -205,3 +206,5 @@ TEST_SUITE("kernels/watch poses") {
         CHECK(all < kRows);
     }
 }
+
+}  // namespace test_watch_poses

@@ -5,6 +5,8 @@
 
 #include <vector>
 
+namespace test_cycle_finder {
+
 using namespace carom;
 
 namespace {
@@ -64,3 +66,5 @@ TEST_SUITE("unit: cycle finder") {
         CHECK(cycle.same_at({1}, 2, 9) == 9);
     }
 }
+
+}  // namespace test_cycle_finder

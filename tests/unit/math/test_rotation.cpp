@@ -10,6 +10,8 @@
 
 #include "isa/select_isa.hpp"
 
+namespace test_rotation {
+
 using namespace carom;
 
 namespace {
@@ -80,3 +82,5 @@ TEST_SUITE("math/rotation") {
         }
     }
 }
+
+}  // namespace test_rotation

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+namespace test_complexity {
+
 using namespace carom::measure;
 
 namespace {
@@ -95,3 +97,5 @@ TEST_SUITE("measure/complexity") {
         CHECK(found.size.median < 1000);
     }
 }
+
+}  // namespace test_complexity

@@ -13,6 +13,8 @@
 #include "measure/machine.hpp"
 #include "measure/text.hpp"
 
+namespace test_scaling {
+
 using namespace carom::measure;
 
 namespace {
@@ -173,3 +175,5 @@ TEST_SUITE("measure/machine") {
         CHECK(grouped(-123456) == "-123,456");
     }
 }
+
+}  // namespace test_scaling

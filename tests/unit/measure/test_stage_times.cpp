@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+namespace test_stage_times {
+
 using namespace carom;
 using namespace carom::measure;
 
@@ -29,3 +31,5 @@ TEST_SUITE("measure/stage times") {
         CHECK(time_of_stage(times, "impacts").calls == 0);
     }
 }
+
+}  // namespace test_stage_times

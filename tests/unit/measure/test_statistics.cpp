@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+namespace test_statistics {
+
 using namespace carom::measure;
 
 TEST_SUITE("measure/statistics") {
@@ -60,3 +62,5 @@ TEST_SUITE("measure/statistics") {
         CHECK(once.high == again.high);
     }
 }
+
+}  // namespace test_statistics

@@ -5,6 +5,8 @@
 #include <initializer_list>
 #include <limits>
 
+namespace test_coincident {
+
 using namespace carom;
 
 TEST_SUITE("narrowphase/coincident") {
@@ -33,3 +35,5 @@ TEST_SUITE("narrowphase/coincident") {
         CHECK(seen == 15);
     }
 }
+
+}  // namespace test_coincident

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <numeric>
 
+namespace test_convex_edge {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -297,3 +299,5 @@ TEST_SUITE("narrowphase/convex edge") {
         }
     }
 }
+
+}  // namespace test_convex_edge

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+namespace test_disc_edge {
+
 using namespace carom;
 
 namespace {
@@ -139,3 +141,5 @@ TEST_SUITE("narrowphase/disc_edge") {
         CHECK(edges.remove({7, 0}).count == 0);
     }
 }
+
+}  // namespace test_disc_edge

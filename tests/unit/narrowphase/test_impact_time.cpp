@@ -6,6 +6,8 @@
 #include <random>
 #include <string>
 
+namespace test_impact_time {
+
 using namespace carom;
 
 // The oracle shares no formula with the engine: it flies bodies by x(t) with exp() and log(), looks for the
@@ -176,3 +178,5 @@ TEST_SUITE("narrowphase/impact_time") {
         CHECK(accelerated_impact_time(thrown, 1, window, 1e-13) == doctest::Approx(0.8).epsilon(1e-12));
     }
 }
+
+}  // namespace test_impact_time

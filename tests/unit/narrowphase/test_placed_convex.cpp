@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+namespace test_placed_convex {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -145,3 +147,5 @@ TEST_SUITE("narrowphase/convex") {
         CHECK(impact_time(a, {square, {1.5, 0}, {0, 0}, 0, 0}, 1, 1e-3).time == 0);
     }
 }
+
+}  // namespace test_placed_convex

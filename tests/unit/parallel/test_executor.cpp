@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 #include <vector>
 
+namespace test_executor {
+
 namespace {
 
 struct Chunk {
@@ -51,3 +53,5 @@ TEST_SUITE("parallel/executor") {
         CHECK(calls == 1);
     }
 }
+
+}  // namespace test_executor

@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+namespace test_phases {
+
 using namespace carom;
 
 namespace {
@@ -125,3 +127,5 @@ TEST_SUITE("parallel/team") {
         CHECK(count == 100);
     }
 }
+
+}  // namespace test_phases

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+namespace test_team_trial {
+
 using carom::TeamTrial;
 
 namespace {
@@ -37,3 +39,5 @@ TEST_SUITE("parallel/team_trial") {
         CHECK(run(trial, 4 * TeamTrial::kMostStepsBetween, 1, 2) > 2 * TeamTrial::kMostStepsBetween);
     }
 }
+
+}  // namespace test_team_trial

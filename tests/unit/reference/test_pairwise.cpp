@@ -10,6 +10,8 @@
 #include <limits>
 #include <string>
 
+namespace test_pairwise {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -185,3 +187,5 @@ TEST_SUITE("reference/pairwise") {
         CHECK(world.centre_of_mass().y == 1);
     }
 }
+
+}  // namespace test_pairwise

@@ -6,6 +6,8 @@
 
 #include "report/readers/csv_reader.hpp"
 
+namespace test_csv_reader {
+
 using namespace carom::report;
 
 namespace {
@@ -48,3 +50,5 @@ TEST_SUITE("report/csv_reader") {
         }
     }
 }
+
+}  // namespace test_csv_reader

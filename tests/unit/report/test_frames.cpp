@@ -12,6 +12,8 @@
 #include "report/frames/quantised_frame.hpp"
 #include "report/page/base64.hpp"
 
+namespace test_frames {
+
 using namespace carom::report;
 
 namespace {
@@ -148,3 +150,5 @@ TEST_SUITE("report/base64") {
         }
     }
 }
+
+}  // namespace test_frames

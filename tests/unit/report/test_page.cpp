@@ -7,6 +7,8 @@
 #include "report/kinds/kinds.hpp"
 #include "report/page/page.hpp"
 
+namespace test_page {
+
 using carom::report::Chart;
 using carom::report::Json;
 using carom::report::kNone;
@@ -190,3 +192,5 @@ TEST_SUITE("report/kinds") {
                              "/nonexistent/run.json: cannot be read", carom::report::ResultError);
     }
 }
+
+}  // namespace test_page

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+namespace test_generators {
+
 using namespace carom;
 
 namespace {
@@ -287,3 +289,5 @@ TEST_SUITE("scene/generators") {
         CHECK(found->statement.find("no walls") != std::string::npos);
     }
 }
+
+}  // namespace test_generators

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+namespace test_shape_generators {
+
 using namespace carom;
 
 namespace {
@@ -91,3 +93,5 @@ TEST_CASE("a lattice places any shape with an area, and draws radii for discs al
     CHECK_THROWS_WITH_AS(add_gas(walled, {.count = 3, .body = {.shape = Box{1, 1}}}),
                          doctest::Contains("expected a disc"), Error);
 }
+
+}  // namespace test_shape_generators

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+namespace test_shape_validation {
+
 using namespace carom;
 
 namespace {
@@ -113,3 +115,5 @@ TEST_CASE("the largest reach of a scene is held against the smallest inradius") 
     REQUIRE(found.has_value());
     CHECK(found->pointer == "/bodies/1/shape/box");
 }
+
+}  // namespace test_shape_validation

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+namespace test_validation {
+
 using namespace carom;
 
 namespace {
@@ -418,3 +420,5 @@ TEST_SUITE("scene/validation") {
         CHECK_FALSE(solver_named("magic").has_value());
     }
 }
+
+}  // namespace test_validation

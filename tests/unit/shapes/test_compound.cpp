@@ -9,6 +9,8 @@
 #include "shapes/compound.hpp"
 #include "shapes/convex_geometry.hpp"
 
+namespace test_compound {
+
 using namespace carom;
 
 namespace {
@@ -140,3 +142,5 @@ TEST_SUITE("shapes: compounds") {
         CHECK(pointer_of({std::vector<Piece>(257)}) == "/bodies/1/shape/compound/shapes");
     }
 }
+
+}  // namespace test_compound

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+namespace test_convex_geometry {
+
 using namespace carom;
 
 namespace {
@@ -92,3 +94,5 @@ TEST_CASE("a shape reaches in a direction as far as its farthest point does") {
         CHECK(reach >= kite.inradius - 1e-12);
     }
 }
+
+}  // namespace test_convex_geometry

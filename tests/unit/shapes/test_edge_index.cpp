@@ -8,6 +8,8 @@
 #include <random>
 #include <vector>
 
+namespace test_edge_index {
+
 using namespace carom;
 
 TEST_SUITE("shapes/edge_index") {
@@ -62,3 +64,5 @@ TEST_SUITE("shapes/edge_index") {
         CHECK(found.size() == 400);
     }
 }
+
+}  // namespace test_edge_index

@@ -9,6 +9,8 @@
 
 #include "narrowphase/disc_edge.hpp"
 
+namespace test_edges {
+
 using namespace carom;
 
 namespace {
@@ -86,3 +88,5 @@ TEST_SUITE("shapes/edges") {
         CHECK(ask(store, random, 1).missing == 0);
     }
 }
+
+}  // namespace test_edges

@@ -12,6 +12,8 @@
 #include <random>
 #include <vector>
 
+namespace test_mass_properties {
+
 using namespace carom;
 
 namespace {
@@ -124,3 +126,5 @@ TEST_CASE("segments and chains have no area") {
     CHECK(mass_properties_of(Segment{}).area == 0);
     CHECK(mass_properties_of(Chain{{{0, 0}, {1, 0}, {1, 1}}, true}).second_moment == 0);
 }
+
+}  // namespace test_mass_properties

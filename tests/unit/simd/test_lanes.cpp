@@ -11,9 +11,11 @@
 #include <type_traits>
 #include <vector>
 
-using carom::Column;
-
 extern const LaneProbes kLanesOnScalar, kLanesOnSse2, kLanesOnAvx2, kLanesOnAvx512;
+
+namespace test_lanes {
+
+using carom::Column;
 
 namespace {
 
@@ -435,3 +437,5 @@ TEST_SUITE("simd/lanes") {
         }
     }
 }
+
+}  // namespace test_lanes

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+namespace test_islands {
+
 using carom::Islands;
 
 namespace {
@@ -87,3 +89,5 @@ TEST_SUITE("sleeping/islands") {
         CHECK(islands.island_of(kRows / 2) == 0);
     }
 }
+
+}  // namespace test_islands

@@ -11,6 +11,8 @@
 #include "support/scenes.hpp"
 #include "support/trial.hpp"
 
+namespace test_check_energy {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -174,3 +176,5 @@ TEST_SUITE("solvers/check energy") {
         CHECK(inside.excess().passive == close_to(11 - round_off<Real>(25 + 36)));
     }
 }
+
+}  // namespace test_check_energy

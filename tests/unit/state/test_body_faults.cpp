@@ -5,6 +5,8 @@
 #include <functional>
 #include <string>
 
+namespace test_body_faults {
+
 using namespace carom;
 
 namespace {
@@ -55,3 +57,5 @@ TEST_SUITE("state/body faults") {
         }
     }
 }
+
+}  // namespace test_body_faults

@@ -4,6 +4,8 @@
 
 #include <vector>
 
+namespace test_chunked_list {
+
 using namespace carom;
 
 TEST_SUITE("state/chunked_list") {
@@ -26,3 +28,5 @@ TEST_SUITE("state/chunked_list") {
         CHECK(list.bytes() < 4 * kRowPadding * sizeof(std::int32_t));
     }
 }
+
+}  // namespace test_chunked_list

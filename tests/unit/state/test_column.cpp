@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 #include <cstdint>
 
+namespace test_column {
+
 using carom::Column;
 
 TEST_SUITE("state/column") {
@@ -59,3 +61,5 @@ TEST_SUITE("state/column") {
         CHECK(column.size() == 3);
     }
 }
+
+}  // namespace test_column

@@ -8,6 +8,8 @@
 
 #include <doctest/doctest.h>
 
+namespace test_column_memory {
+
 using namespace carom;
 
 namespace {
@@ -93,3 +95,5 @@ TEST_SUITE("state/column memory") {
         CHECK(whole == std::vector<int>{1, 1, 1, 1});
     }
 }
+
+}  // namespace test_column_memory

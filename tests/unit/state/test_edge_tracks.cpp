@@ -12,6 +12,8 @@
 #include "narrowphase/disc_edge.hpp"
 #include "support/effort.hpp"
 
+namespace test_edge_tracks {
+
 using namespace carom;
 
 namespace {
@@ -242,3 +244,5 @@ TEST_SUITE("state/edge_tracks") {
         CHECK(world.edges.empty());
     }
 }
+
+}  // namespace test_edge_tracks

@@ -6,6 +6,8 @@
 #include <random>
 #include <vector>
 
+namespace test_handles {
+
 using namespace carom;
 
 namespace {
@@ -123,3 +125,5 @@ TEST_SUITE("state/handles") {
         CHECK(world.state_hash() == hash);
     }
 }
+
+}  // namespace test_handles

@@ -8,6 +8,8 @@
 #include <random>
 #include <vector>
 
+namespace test_radii {
+
 using namespace carom;
 
 namespace {
@@ -75,3 +77,5 @@ TEST_SUITE("state/radii") {
         CHECK(measure_radii(bodies).largest == 0);
     }
 }
+
+}  // namespace test_radii

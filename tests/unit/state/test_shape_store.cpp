@@ -10,6 +10,8 @@
 #include <random>
 #include <vector>
 
+namespace test_shape_store {
+
 using namespace carom;
 
 TEST_CASE("bodies of the same shape share one geometry until the last of them is gone") {
@@ -80,3 +82,5 @@ TEST_CASE("a store holds what was added and not removed, through thousands of bo
     check(restored);
     for (const auto& [width, of] : bodies_of) CHECK(restored.add(Box{0.1 * width, 1}) == of.second);
 }
+
+}  // namespace test_shape_store

@@ -21,6 +21,8 @@
 #include "support/ragdoll.hpp"
 #include "support/scenes.hpp"
 
+namespace test_stage_claims {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -402,3 +404,5 @@ TEST_CASE("what a stage does not name does not matter to it") {
         }
     }
 }
+
+}  // namespace test_stage_claims

@@ -6,6 +6,8 @@
 
 #include "torture/envelopes/bracket.hpp"
 
+namespace test_brackets {
+
 namespace {
 
 using namespace carom::torture;
@@ -94,3 +96,5 @@ TEST_SUITE("unit/brackets") {
 }
 
 }  // namespace
+
+}  // namespace test_brackets

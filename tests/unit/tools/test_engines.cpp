@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace test_engines {
+
 using namespace carom;
 using namespace carom::accuracy;
 
@@ -133,3 +135,5 @@ TEST_SUITE("tools/engines") {
         CHECK_THROWS_AS((Stepper(scene, {.dt = 0.1, .engine = "ODE"}, 1)), Error);
     }
 }
+
+}  // namespace test_engines

@@ -12,6 +12,8 @@
 #include "torture/envelopes/envelope.hpp"
 #include "torture/hard/hard_case.hpp"
 
+namespace test_hard_cases {
+
 namespace {
 
 using namespace carom;
@@ -73,3 +75,5 @@ TEST_SUITE("unit/hard cases") {
 }
 
 }  // namespace
+
+}  // namespace test_hard_cases

@@ -4,6 +4,8 @@
 
 #include <random>
 
+namespace test_huffman_code {
+
 using namespace carom::tool;
 
 namespace {
@@ -59,3 +61,5 @@ TEST_SUITE("tools/huffman_code") {
         }
     }
 }
+
+}  // namespace test_huffman_code

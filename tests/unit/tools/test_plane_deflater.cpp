@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+namespace test_plane_deflater {
+
 using namespace carom::tool;
 
 namespace {
@@ -110,3 +112,5 @@ TEST_SUITE("tools/plane_deflater") {
         }
     }
 }
+
+}  // namespace test_plane_deflater

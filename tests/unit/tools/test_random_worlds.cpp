@@ -10,6 +10,8 @@
 #include "torture/worlds/traits.hpp"
 #include "torture/worlds/world.hpp"
 
+namespace test_random_worlds {
+
 namespace {
 
 using namespace carom;
@@ -92,3 +94,5 @@ TEST_CASE("all shapes, kinds of bodies and kinds of joints come up in random wor
 }
 
 }  // namespace
+
+}  // namespace test_random_worlds

@@ -6,6 +6,8 @@
 #include "measure/clocks.hpp"
 #include "profiling/shared_loops.hpp"
 
+namespace test_shared_loops {
+
 using carom::ParallelFor;
 using carom::tool::SharedLoops;
 
@@ -50,3 +52,5 @@ TEST_SUITE("tools") {
         CHECK(loops.seconds().tasks == doctest::Approx(even.tasks + uneven.tasks));
     }
 }
+
+}  // namespace test_shared_loops

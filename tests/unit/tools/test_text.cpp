@@ -11,6 +11,8 @@
 #include <cmath>
 #include <limits>
 
+namespace test_text {
+
 using namespace carom::tool;
 
 TEST_SUITE("tools/text") {
@@ -79,3 +81,5 @@ TEST_SUITE("tools/text") {
         CHECK(split_at_commas(",") == std::vector<std::string>{"", ""});
     }
 }
+
+}  // namespace test_text

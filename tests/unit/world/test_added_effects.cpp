@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+namespace test_added_effects {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -112,3 +114,5 @@ TEST_SUITE("world/added effects") {
               doctest::Approx(3 * std::exp(-1.0)).epsilon(1e-4));
     }
 }
+
+}  // namespace test_added_effects

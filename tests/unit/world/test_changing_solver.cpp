@@ -7,6 +7,8 @@
 
 #include <string>
 
+namespace test_changing_solver {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -198,3 +200,5 @@ TEST_SUITE("world/changing solver") {
         CHECK(world.state_hash() == hash);
     }
 }
+
+}  // namespace test_changing_solver

@@ -11,6 +11,8 @@
 #include <thread>
 #include <vector>
 
+namespace test_failing_host {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -138,3 +140,5 @@ TEST_SUITE("world/failing host") {
         CHECK(world.state_hash() == untouched.state_hash());
     }
 }
+
+}  // namespace test_failing_host

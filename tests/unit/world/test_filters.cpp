@@ -9,6 +9,8 @@
 #include <cmath>
 #include <vector>
 
+namespace test_filters {
+
 using namespace carom;
 
 namespace {
@@ -318,3 +320,5 @@ TEST_SUITE("world: filters") {
         CHECK_THROWS_AS(static_cast<void>(world.filter(body)), Error);
     }
 }
+
+}  // namespace test_filters

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+namespace test_interrupted_steps {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -260,3 +262,5 @@ TEST_SUITE("world/interrupted steps") {
         CHECK(world.profile().impacts == 31415);
     }
 }
+
+}  // namespace test_interrupted_steps

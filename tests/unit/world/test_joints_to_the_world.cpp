@@ -7,6 +7,8 @@
 #include <optional>
 #include <type_traits>
 
+namespace test_joints_to_the_world {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -112,3 +114,5 @@ TEST_SUITE("world/joints to the world") {
         }
     }
 }
+
+}  // namespace test_joints_to_the_world

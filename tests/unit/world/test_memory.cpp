@@ -69,9 +69,11 @@ void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
     std::free(memory);
 }
 
-namespace {
+namespace test_memory {
 
 using namespace carom;
+
+namespace {
 
 /// Discs between walls at packing fraction .3; what varies from test to test is set by the caller.
 Scene box_of_discs(std::int64_t count, RadiusRange radius) {
@@ -213,3 +215,5 @@ TEST_SUITE("world/memory") {
               1.5 * static_cast<double>(near_by.profile().bytes));
     }
 }
+
+}  // namespace test_memory

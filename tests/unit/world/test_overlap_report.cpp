@@ -10,6 +10,8 @@
 #include <cmath>
 #include <vector>
 
+namespace test_overlap_report {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -169,3 +171,5 @@ TEST_SUITE("world/overlap report") {
         CHECK(report.mean == report.max);
     }
 }
+
+}  // namespace test_overlap_report

@@ -5,6 +5,8 @@
 
 #include <string>
 
+namespace test_precision_limit {
+
 namespace {
 
 using namespace carom;
@@ -55,3 +57,5 @@ TEST_CASE("a mass that contacts of shapes have no numbers for is named, with the
 }
 
 }  // namespace
+
+}  // namespace test_precision_limit

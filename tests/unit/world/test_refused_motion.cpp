@@ -6,6 +6,8 @@
 
 #include <string>
 
+namespace test_refused_motion {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -90,3 +92,5 @@ TEST_SUITE("world/refused motion") {
         CHECK(world.state(rogue).velocity == Vec2{});
     }
 }
+
+}  // namespace test_refused_motion

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+namespace test_sensors {
+
 using namespace carom;
 
 namespace {
@@ -212,3 +214,5 @@ TEST_SUITE("world: sensors") {
         CHECK_THROWS_WITH_AS(World{scene}, doctest::Contains("expected a shape with an area"), Error);
     }
 }
+
+}  // namespace test_sensors

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+namespace test_shapes {
+
 using namespace carom;
 
 namespace {
@@ -283,3 +285,5 @@ TEST_CASE("how deep a turned box is in a wall is measured at its lowest corner")
     CHECK(report.touching == 1);
     CHECK(report.max == doctest::Approx(0.05 / 0.5).epsilon(1e-6));
 }
+
+}  // namespace test_shapes

@@ -13,6 +13,8 @@
 #include <random>
 #include <vector>
 
+namespace test_coarse_correction {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -262,3 +264,5 @@ TEST_SUITE("solvers/contact_sets/coarse_correction") {
         CHECK(!coarse.is_due(100, 64));  // too few bodies
     }
 }
+
+}  // namespace test_coarse_correction

@@ -9,6 +9,8 @@
 
 #include "math/random.hpp"
 
+namespace test_contact_relaxation {
+
 using namespace carom;
 
 namespace {
@@ -169,3 +171,5 @@ TEST_SUITE("solvers/contact_sets/contact_relaxation") {
         }
     }
 }
+
+}  // namespace test_contact_relaxation

@@ -10,6 +10,8 @@
 #include <random>
 #include <vector>
 
+namespace test_local_solve {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -159,3 +161,5 @@ TEST_SUITE("solvers/contact_sets/local_solve") {
         for (std::size_t row = 0; row < 2; ++row) CHECK(bench.velocity[4 * row + 1] == 0);
     }
 }
+
+}  // namespace test_local_solve

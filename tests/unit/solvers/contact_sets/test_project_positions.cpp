@@ -8,6 +8,8 @@
 #include <random>
 #include <vector>
 
+namespace test_project_positions {
+
 using namespace carom;
 
 namespace {
@@ -154,3 +156,5 @@ TEST_SUITE("solvers/contact_sets/project_positions") {
         CHECK(crowd.are_flags_right());
     }
 }
+
+}  // namespace test_project_positions

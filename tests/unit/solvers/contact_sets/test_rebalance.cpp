@@ -9,6 +9,8 @@
 #include <limits>
 #include <vector>
 
+namespace test_rebalance {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -235,3 +237,5 @@ TEST_SUITE("solvers/contact_sets/rebalance") {
         CHECK(std::equal(supports.begin(), supports.end(), bench.supports.normal_impulse.begin()));
     }
 }
+
+}  // namespace test_rebalance

@@ -11,6 +11,8 @@
 
 #include "math/vec2_math.hpp"
 
+namespace test_support_normals {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -98,3 +100,5 @@ TEST_SUITE("solvers/contact_sets/support_normals") {
         CHECK(supports[1].impulse == 0.25);
     }
 }
+
+}  // namespace test_support_normals

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <random>
 
+namespace test_tridiagonal_contacts {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -97,3 +99,5 @@ TEST_SUITE("solvers/contact_sets/tridiagonal_contacts") {
                   doctest::Approx(kMass * kFall * static_cast<double>(kCount - n)).epsilon(1e-9));
     }
 }
+
+}  // namespace test_tridiagonal_contacts

@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+namespace test_event_cells {
+
 using namespace carom;
 
 TEST_SUITE("solvers/event/event_cells") {
@@ -79,3 +81,5 @@ TEST_SUITE("solvers/event/event_cells") {
         CHECK(fall_time(1e-16, -1, -10) == doctest::Approx(1e-16).epsilon(1e-12));  // no cancellation
     }
 }
+
+}  // namespace test_event_cells

@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace test_event_dynamics {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -186,3 +188,5 @@ TEST_SUITE("solvers/event/event_dynamics") {
         CHECK(dynamics.counters().impacts > 500);
     }
 }
+
+}  // namespace test_event_dynamics

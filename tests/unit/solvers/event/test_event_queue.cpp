@@ -6,6 +6,8 @@
 #include <random>
 #include <vector>
 
+namespace test_event_queue {
+
 using namespace carom;
 
 TEST_SUITE("solvers/event/event_queue") {
@@ -28,3 +30,5 @@ TEST_SUITE("solvers/event/event_queue") {
         }
     }
 }
+
+}  // namespace test_event_queue

@@ -9,6 +9,8 @@
 #include <tuple>
 #include <vector>
 
+namespace test_impact_calendar {
+
 using namespace carom;
 
 namespace {
@@ -113,3 +115,5 @@ TEST_SUITE("solvers/impulse/impact_calendar") {
         }
     }
 }
+
+}  // namespace test_impact_calendar

@@ -11,6 +11,8 @@
 #include <random>
 #include <vector>
 
+namespace test_resting_contacts {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -143,3 +145,5 @@ TEST_SUITE("solvers/impulse/resting_contacts") {
         }
     }
 }
+
+}  // namespace test_resting_contacts

@@ -12,6 +12,8 @@
 #include <random>
 #include <vector>
 
+namespace test_simultaneous_impacts {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -155,3 +157,5 @@ TEST_SUITE("solvers/impulse/simultaneous_impacts") {
         }
     }
 }
+
+}  // namespace test_simultaneous_impacts

@@ -13,6 +13,8 @@
 #include <limits>
 #include <random>
 
+namespace test_tiles {
+
 using namespace carom;
 
 namespace {
@@ -172,3 +174,5 @@ TEST_SUITE("solvers/impulse/tiles") {
         CHECK(std::fabs(two_causes.unexplained) < 1e-10 * of_two.initial.kinetic);
     }
 }
+
+}  // namespace test_tiles

@@ -12,6 +12,8 @@
 #include <set>
 #include <utility>
 
+namespace test_distant_pairs {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -149,3 +151,5 @@ TEST_SUITE("solvers/manifolds/distant_pairs") {
         CHECK(parted_by_direction > 100);
     }
 }
+
+}  // namespace test_distant_pairs

@@ -8,6 +8,8 @@
 #include <set>
 #include <vector>
 
+namespace test_live_contacts {
+
 using namespace carom;
 
 TEST_SUITE("solvers/manifolds/live_contacts") {
@@ -81,3 +83,5 @@ TEST_SUITE("solvers/manifolds/live_contacts") {
         CHECK(known > 300);
     }
 }
+
+}  // namespace test_live_contacts

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+namespace test_manifold_index {
+
 using namespace carom;
 
 namespace {
@@ -81,3 +83,5 @@ TEST_SUITE("solvers/manifolds/manifold_index") {
         }
     }
 }
+
+}  // namespace test_manifold_index

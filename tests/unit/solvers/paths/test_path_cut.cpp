@@ -11,6 +11,8 @@
 #include "kernels/paths/path_arguments.hpp"
 #include "math/random.hpp"
 
+namespace test_path_cut {
+
 using namespace carom;
 
 namespace {
@@ -403,3 +405,5 @@ TEST_SUITE("solvers/paths/path_cut") {
         CHECK(cut.colours() == 0);
     }
 }
+
+}  // namespace test_path_cut

@@ -16,6 +16,8 @@
 #include "support/drawn_link.hpp"
 #include "support/equal_bits.hpp"
 
+namespace test_path_pieces {
+
 using namespace carom;
 using carom::test::have_equal_bits;
 
@@ -195,3 +197,5 @@ TEST_SUITE("solvers/paths/path_pieces") {
                                   net.heads, net.still));
     }
 }
+
+}  // namespace test_path_pieces

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+namespace test_contact_settings {
+
 using namespace carom;
 
 TEST_SUITE("solvers/soft/contact_settings") {
@@ -74,3 +76,5 @@ TEST_SUITE("solvers/soft/contact_settings") {
         }
     }
 }
+
+}  // namespace test_contact_settings

@@ -14,6 +14,8 @@
 #include <string_view>
 #include <vector>
 
+namespace test_end_of_joints {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -151,3 +153,5 @@ TEST_CASE("unit: joints that can hardly be closed do not throw their bodies apar
     }
     CHECK(largest < 2);
 }
+
+}  // namespace test_end_of_joints

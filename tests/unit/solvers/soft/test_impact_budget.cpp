@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+namespace test_impact_budget {
+
 using namespace carom;
 
 namespace {
@@ -80,3 +82,5 @@ TEST_SUITE("solvers/soft/impact_budget") {
         CHECK(inelastic(1) <= inelastic(0) + 1);
     }
 }
+
+}  // namespace test_impact_budget

@@ -18,6 +18,8 @@
 #include <optional>
 #include <utility>
 
+namespace test_impacts {
+
 using namespace carom;
 using namespace carom::test;
 
@@ -258,3 +260,5 @@ TEST_SUITE("solvers/soft/impacts") {
         }
     }
 }
+
+}  // namespace test_impacts

@@ -13,6 +13,8 @@
 #include "support/report.hpp"
 #include "torture/hard/uneven_pile.hpp"
 
+namespace test_uneven_contacts {
+
 using namespace carom;
 using namespace carom::test;
 using torture::UnevenPile;
@@ -91,3 +93,5 @@ TEST_SUITE("solvers/soft/uneven_contacts") {
         CHECK(Pile<float>({.columns = 12, .ratio = 1e3, .friction = 0}, 2).sweeps_at_rest == 0);
     }
 }
+
+}  // namespace test_uneven_contacts

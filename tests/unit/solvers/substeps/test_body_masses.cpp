@@ -4,6 +4,8 @@
 
 #include <vector>
 
+namespace test_body_masses {
+
 using namespace carom;
 
 namespace {
@@ -71,3 +73,5 @@ TEST_SUITE("solvers/substeps/body_masses") {
         CHECK_FALSE(masses.are_uneven());
     }
 }
+
+}  // namespace test_body_masses
