@@ -22,11 +22,11 @@ constexpr Item kStackItem{"the stack has", "", -1, ""};
 constexpr Item kPyramidItem{"the pyramid has", "", -1, ""};
 constexpr Item kGasItem{"the gas has", "", -1, ""};
 
-constexpr Quantity kCount{"count", "", 1, static_cast<double>(kLargestBodyCount),
-                          "Each generator makes at least one body."};
+constexpr Quantity kCountOfBodies{"count", "", 1, static_cast<double>(kLargestBodyCount),
+                                  "Each generator makes at least one body."};
 constexpr Quantity kBase{"base", "", 1, static_cast<double>(kLargestBodyCount),
                          "Give the number of boxes in the bottom row."};
-constexpr Quantity kSpacing{
+constexpr Quantity kSpacingOfBodies{
     "spacing", "m", 0, kLargestPosition,
     "It goes from centre to centre; a gap of 0 between discs is a spacing of 2 radii."};
 constexpr Quantity kJitter{"jitter", "m", 0, kLargestPosition,
@@ -144,7 +144,7 @@ std::variant<GasPlan, Problem> plan_gas(const Gas& gas, const Scene& scene) {
 }
 
 std::optional<Problem> find_gas_settings_problem(const Gas& gas, const Scene& scene) {
-    if (auto found = check(kGasItem, "/count", static_cast<double>(gas.count), kCount)) return found;
+    if (auto found = check(kGasItem, "/count", static_cast<double>(gas.count), kCountOfBodies)) return found;
     if (auto found = check_range(kGasItem, gas.radius)) return found;
     if (auto found = check_pattern(kGasItem, gas.body, gas.radius.max)) return found;
     if (auto found = check_velocity_rms(kGasItem, gas.velocity_rms, gas.body, gas.count)) return found;
@@ -159,12 +159,12 @@ std::optional<Problem> find_gas_settings_problem(const Gas& gas, const Scene& sc
 std::optional<Problem> find_problem(const Lattice& lattice) {
     const auto& item = kLatticeItem;
     const auto count_x = static_cast<double>(lattice.count_x), count_y = static_cast<double>(lattice.count_y);
-    if (auto found = check(item, "/count/0", count_x, kCount)) return found;
-    if (auto found = check(item, "/count/1", count_y, kCount)) return found;
+    if (auto found = check(item, "/count/0", count_x, kCountOfBodies)) return found;
+    if (auto found = check(item, "/count/1", count_y, kCountOfBodies)) return found;
     if (auto found = check_total(item, count_x * count_y)) return found;
     if (auto found = check_origin(item, lattice.origin)) return found;
-    if (auto found = check(item, "/spacing/0", lattice.spacing.x, kSpacing)) return found;
-    if (auto found = check(item, "/spacing/1", lattice.spacing.y, kSpacing)) return found;
+    if (auto found = check(item, "/spacing/0", lattice.spacing.x, kSpacingOfBodies)) return found;
+    if (auto found = check(item, "/spacing/1", lattice.spacing.y, kSpacingOfBodies)) return found;
     if (auto found = check(item, "/jitter", lattice.jitter, kJitter)) return found;
     if (lattice.radius_range)
         if (auto found = check_range(item, *lattice.radius_range)) return found;
@@ -175,7 +175,8 @@ std::optional<Problem> find_problem(const Lattice& lattice) {
 }
 
 std::optional<Problem> find_problem(const Stack& stack) {
-    if (auto found = check(kStackItem, "/count", static_cast<double>(stack.count), kCount)) return found;
+    if (auto found = check(kStackItem, "/count", static_cast<double>(stack.count), kCountOfBodies))
+        return found;
     if (auto found = check_origin(kStackItem, stack.origin)) return found;
     if (auto found = check(kStackItem, "/gap", stack.gap, kGap)) return found;
     return check_pattern(kStackItem, stack.body, std::nullopt);

@@ -12,11 +12,12 @@
 namespace carom {
 namespace {
 
-constexpr Quantity kCount{"count", "", 1, static_cast<double>(kLargestBodyCount), "Give whole numbers."};
-constexpr Quantity kSpacing{"spacing", "m", kShortestRod, kLargestPosition, kUseMetres};
+constexpr Quantity kCountOfJoinedBodies{"count", "", 1, static_cast<double>(kLargestBodyCount),
+                                        "Give whole numbers."};
+constexpr Quantity kSpacingOfJoinedBodies{"spacing", "m", kShortestRod, kLargestPosition, kUseMetres};
 
 std::optional<Problem> check_count(const Item& item, std::string_view tail, std::int64_t count) {
-    return check(item, tail, static_cast<double>(count), kCount);
+    return check(item, tail, static_cast<double>(count), kCountOfJoinedBodies);
 }
 
 /// A link of the kind asked for, with its anchor midway.
@@ -54,7 +55,7 @@ BodyId id_at(std::size_t index) {
 std::optional<Problem> find_problem(const BodyChain& chain) {
     static constexpr Item kItem{"the chain has", "", -1, ""};
     if (auto found = check_count(kItem, "/count", chain.count)) return found;
-    if (auto found = check(kItem, "/spacing", chain.spacing, kSpacing)) return found;
+    if (auto found = check(kItem, "/spacing", chain.spacing, kSpacingOfJoinedBodies)) return found;
     const double squared = chain.direction.x * chain.direction.x + chain.direction.y * chain.direction.y;
     if (!(squared > 0) || squared - squared != 0)
         return problem(ErrorCode::out_of_range, kItem, "/direction", "direction ", chain.direction,
@@ -66,8 +67,8 @@ std::optional<Problem> find_problem(const Net& net) {
     static constexpr Item kItem{"the net has", "", -1, ""};
     if (auto found = check_count(kItem, "/count/0", net.count_x)) return found;
     if (auto found = check_count(kItem, "/count/1", net.count_y)) return found;
-    if (auto found = check(kItem, "/spacing/0", net.spacing.x, kSpacing)) return found;
-    if (auto found = check(kItem, "/spacing/1", net.spacing.y, kSpacing)) return found;
+    if (auto found = check(kItem, "/spacing/0", net.spacing.x, kSpacingOfJoinedBodies)) return found;
+    if (auto found = check(kItem, "/spacing/1", net.spacing.y, kSpacingOfJoinedBodies)) return found;
     return check_link(kItem, net.link);
 }
 

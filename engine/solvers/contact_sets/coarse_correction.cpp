@@ -15,7 +15,7 @@ constexpr double kFewestRows = 32;
 constexpr double kBodiesOfSmallCell = 24;  // likewise
 constexpr double kLeast = -0.9;            // least s: a contact never pulls, and keeps some load
 constexpr double kMost = 4;                // largest s
-constexpr int kSweeps = 20;                // over the nodes
+constexpr int kSweepsOverNodes = 20;
 // A correction is small if it takes less than either of these; then the pause after it is twice as long.
 /// Share of the energy that gravity gives to the pile in a substep from rest.
 constexpr double kSmallDrop = 0.1;
@@ -187,7 +187,7 @@ void CoarseCorrection<Real>::add_cells() {
 template <class Real>
 void CoarseCorrection<Real>::solve() {
     const std::size_t count = nodes_.size();
-    for (int sweep = 0; sweep < kSweeps; ++sweep)
+    for (int sweep = 0; sweep < kSweepsOverNodes; ++sweep)
         for (std::size_t n = 0; n < count; ++n) {
             const std::size_t at = sweep % 2 == 0 ? n : count - 1 - n, i = at % width_, j = at / width_;
             Node& node = nodes_[at];

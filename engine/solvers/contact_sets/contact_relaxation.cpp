@@ -19,11 +19,11 @@ constexpr double kGivesWayMost = 0.2, kStiffening = 10;
 /// Coulomb's law calls for another round if a share of it changes by more than this.
 constexpr double kShareOff = 0.1;
 constexpr int kRounds = 2;
-constexpr int kSweeps = 10;  // a round, at most
+constexpr int kSweepsOfRound = 10;  // a round, at most
 /// Steps of Newton's method for one body, whose contacts come and go with its velocity.
 constexpr int kSteps = 4;
 /// A body is where it should be if its velocity is as near as this share of what gravity adds to it.
-constexpr double kAccuracy = 0.1;
+constexpr double kAccuracyOfBody = 0.1;
 /// Mass of a rim that does not turn, in masses of its body.
 constexpr double kRimMass = 1e20;
 /// What contacts may add to the energy of all bodies in a substep, in units of m (what gravity adds to a
@@ -284,7 +284,7 @@ bool ContactRelaxation<kSize>::relax(std::size_t body) {
         double largest = 0;
         for (std::size_t k = 0; k < kSize; ++k)
             largest = std::max(largest, std::fabs(gradient[k]) / mass_[body][k]);
-        if (!(largest > kAccuracy * fall_)) break;
+        if (!(largest > kAccuracyOfBody * fall_)) break;
         has_moved = true;
         solve_small<kSize>(second, gradient);
         for (std::size_t k = 0; k < kSize; ++k) velocity_[body][k] -= gradient[k];
@@ -296,7 +296,7 @@ bool ContactRelaxation<kSize>::relax(std::size_t body) {
 template <int kSize>
 void ContactRelaxation<kSize>::sweep() {
     is_due_.assign(mass_.size(), 1);
-    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (int sweep = 0; sweep < kSweepsOfRound; ++sweep) {
         bool any = false;
         for (std::size_t body = 0; body < mass_.size(); ++body) {
             if (!is_due_[body]) continue;

@@ -13,7 +13,7 @@ constexpr std::size_t kFewContacts = 128;
 constexpr int kMostRings = 64;
 /// The system is solved when no contact's velocity changes by more than this share of what gravity adds to a
 /// velocity in a substep.
-constexpr double kAccuracy = 1e-3;
+constexpr double kAccuracyOfContact = 1e-3;
 /// Contacts solved in a substep at most, 20 ns each.
 constexpr std::size_t kMostSolves = 8192;
 
@@ -213,7 +213,7 @@ double LocalSolve<Real>::solve(const SolveContacts<Real>& of_pairs, const SolveC
     for (std::size_t sweeps = 1;; ++sweeps) {
         for (Contact& c : contacts_) c.before = c.impulses;
         left = rolls ? sweep<kEveryEffect>() : sweep<kDoesNotRoll>();
-        if (left <= kAccuracy * fall) break;
+        if (left <= kAccuracyOfContact * fall) break;
         // The change by a sweep is the gradient of what is to become least.
         const double now = change();
         if (sweeps == 1) first = now, first_records_ = records_, first_contacts_ = contacts_;

@@ -7,7 +7,7 @@
 namespace carom {
 namespace {
 
-constexpr int kSweeps = 32;  // what is left is pushed apart in the next step
+constexpr int kSweepsOfProjection = 32;  // what is left is pushed apart in the next step
 /// A push of less than this share of what a pair may overlap is not worth another sweep.
 constexpr double kCloseEnough = 0.1;
 
@@ -46,7 +46,7 @@ bool PositionProjection::push_from_planes() {
 
 bool PositionProjection::part() {
     bool any = false;
-    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (int sweep = 0; sweep < kSweepsOfProjection; ++sweep) {
         bool goes_on = false;
         for (const Pair& pair : pairs) goes_on |= push_pair(pair);
         goes_on |= push_from_planes();

@@ -8,8 +8,6 @@
 namespace carom {
 namespace {
 
-constexpr std::size_t kColours = 64;  // as many as a word has bits
-
 /// Sorts parts by colour: greedily, in the order of the slots, a bit for each colour that a body has.
 /// @return the number of colours; 0: there are not enough
 std::size_t sort_by_colour(std::vector<MechanismPart>& parts, std::size_t bodies) {
@@ -20,7 +18,7 @@ std::size_t sort_by_colour(std::vector<MechanismPart>& parts, std::size_t bodies
         std::uint64_t &of_a = taken[static_cast<std::size_t>(part.a)],
                       &of_b = taken[static_cast<std::size_t>(part.b)];
         const auto colour = static_cast<std::size_t>(std::countr_one(of_a | of_b));
-        if (colour == kColours) return 0;
+        if (colour == kMostColoursOfJoints) return 0;
         of_a |= std::uint64_t{1} << colour, of_b |= std::uint64_t{1} << colour;
         coloured.push_back({colour, part}), colours = std::max(colours, colour + 1);
     }

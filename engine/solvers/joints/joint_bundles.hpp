@@ -9,6 +9,8 @@
 
 namespace carom {
 
+inline constexpr std::size_t kMostColoursOfJoints = 64;  // bits of the word a body has for those it is in
+
 /// A part of a joint of a mechanism, that of its points or that of its angle.
 struct MechanismPart {
     std::size_t slot;

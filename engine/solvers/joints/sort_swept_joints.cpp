@@ -9,7 +9,6 @@
 namespace carom {
 namespace {
 
-constexpr std::size_t kColours = 64;             // bits of the word a body has for those it is in
 constexpr std::size_t kFewestChunks = 8;         // or one: four tasks for the threads to share
 constexpr std::size_t kFewestRowsOfChunk = 512;  // fewer: too many short colours
 
@@ -152,7 +151,7 @@ std::vector<std::size_t> SweptJoints<Real>::sort(const WorldState<Real>& world,
         for (const std::int32_t row : {entry.a, entry.b})
             if (moves(row)) both |= of(row);
         entry.colour = static_cast<std::size_t>(std::countr_one(both));
-        if (entry.colour == kColours) {
+        if (entry.colour == kMostColoursOfJoints) {
             left_over.push_back(entry.slot);
             continue;
         }
@@ -169,7 +168,7 @@ std::vector<std::size_t> SweptJoints<Real>::sort(const WorldState<Real>& world,
         Kind& own = kinds_[kind];
         std::vector<Entry> of_kind;
         for (const Entry& entry : entries)
-            if (entry.kind == kind && entry.colour != kColours) of_kind.push_back(entry);
+            if (entry.kind == kind && entry.colour != kMostColoursOfJoints) of_kind.push_back(entry);
         put_blocks_first(of_kind, moves);
         std::vector<std::pair<std::size_t, const Entry*>> places;
         std::size_t place = 0, colour = SIZE_MAX, of_group = SIZE_MAX;

@@ -17,7 +17,7 @@ MeanVelocity mean_of(const BodyRecords<Real>& records, std::int32_t row) {
 }
 
 // For the executor: contacts of a task, and ns for each on one thread.
-constexpr std::size_t kContactsPerTask = 1024;
+constexpr std::size_t kContactsPerTaskOfBooks = 1024;
 constexpr double kNanosecondsToBook = 20;
 
 template <class Real>
@@ -49,8 +49,8 @@ void book_paths(const PathSolver<Real>& paths, const BodyRecords<Real>& records,
     if (!books.is_open) return;
     paths.rolling().book(records, books);
     const std::size_t contacts = paths.manifolds.live().size();
-    parts.assign((contacts + kContactsPerTask - 1) / kContactsPerTask, {});
-    executor.for_each_chunk(contacts, kContactsPerTask, kNanosecondsToBook,
+    parts.assign((contacts + kContactsPerTaskOfBooks - 1) / kContactsPerTaskOfBooks, {});
+    executor.for_each_chunk(contacts, kContactsPerTaskOfBooks, kNanosecondsToBook,
                             [&](std::size_t chunk, std::size_t first, std::size_t last) {
                                 paths.for_each_of(first, last, [&](const PathContact<Real>& contact) {
                                     book_contact(contact, records, parts[chunk]);

@@ -12,12 +12,12 @@ namespace {
 
 // ns on one thread, for the executor.
 constexpr double kNanosecondsToFill = 10, kNanosecondsToKeep = 5;
-constexpr std::size_t kBundlesPerTask = 4, kContactsPerTask = 256;
+constexpr std::size_t kBundlesPerTask = 4, kContactsPerTaskOfLayout = 256;
 
 /// Calls fn(n) for n below `count`, on all threads.
 template <class Fn>
 void for_each_number(std::size_t count, double nanoseconds, const Executor& executor, const Fn& fn) {
-    executor.for_each_chunk(count, kContactsPerTask, nanoseconds,
+    executor.for_each_chunk(count, kContactsPerTaskOfLayout, nanoseconds,
                             [&](std::size_t, std::size_t first, std::size_t last) {
                                 for (std::size_t n = first; n < last; ++n) fn(n);
                             });

@@ -16,7 +16,7 @@ namespace {
 /// energy that gravity gives a body at rest in it.
 constexpr double kLeastOfFall = 1e-4;
 /// Times that by which work is left where velocities and impulses are rounded to the world's precision.
-[[maybe_unused]] constexpr double kRoundOff = 4;
+[[maybe_unused]] constexpr double kRoundOffOfWork = 4;
 /// Share that is taken at once, while there are smaller impulses from which some could be taken, too.
 constexpr double kMostTaken = 0.5;
 /// Impulses count as largest above a speed that is this share of the largest one's, then of that speed, and
@@ -207,7 +207,8 @@ void ContactGains<Real>::take(const SolvedSubstep<Real>& solved) {
     }
     scale(solved);
     has_taken_ = true;
-    assert(!(find_givers(solved) > kRoundOff * all.least) && "contacts of discs that bounce give no energy");
+    assert(!(find_givers(solved) > kRoundOffOfWork * all.least) &&
+           "contacts of discs that bounce give no energy");
 }
 
 template <class Real>

@@ -22,7 +22,7 @@ constexpr double kLastShare = 0.01;
 /// will: what such bends give is no bound for themselves.
 constexpr double kShareOfBends = kMostBend * kMostBend;
 /// Share of the energy of all bodies that is the round-off of its sums.
-constexpr double kRoundOff = 1e-5;
+constexpr double kRoundOffOfEnergy = 1e-5;
 
 /// By row, of bodies that joints connect the smallest row; -1: none.
 template <class Real>
@@ -52,14 +52,14 @@ void PassiveSubsteps<Real>::make_room(std::size_t rows) {
 template <class Real>
 bool PassiveSubsteps<Real>::world_gains(const SolvedSubstep<Real>& solved) const {
     const auto [gain, before] = solved.contacts.records.gain(solved.contacts.terms, solved.contacts.loops);
-    if (gain <= kRoundOff * before) return false;
+    if (gain <= kRoundOffOfEnergy * before) return false;
     double work = 0, effort = 0, bend = 0, effort_of_bend = 0;
     for_each_drive(solved, [&](std::int32_t, std::int32_t, double done, double of_bend) {
         work += done, effort += std::fabs(done), bend += of_bend, effort_of_bend += std::fabs(of_bend);
     });
     const double most = kShareOfBends * (before + effort);
     work += std::clamp(bend, -most, most), effort += std::fmin(effort_of_bend, most);
-    return !(gain - work <= kRoundOff * (before + effort));  // also where it is not a number
+    return !(gain - work <= kRoundOffOfEnergy * (before + effort));  // also where it is not a number
 }
 
 /// Marks the groups of bodies that have more energy than free flight left them.

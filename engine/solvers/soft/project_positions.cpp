@@ -19,7 +19,7 @@ constexpr double kDeflected = 0.05;
 /// What is left of an overlap, in radii of the smaller body.
 constexpr double kLeftOver = 0.02;
 /// A body that is pushed may be pushed into others, which are looked at in the next of so many rounds.
-constexpr int kRounds = 32;
+constexpr int kRoundsOfProjection = 32;
 /// A body that is deeper in another after that, in radii of the smaller, is put back.
 constexpr double kStuck = 0.06;
 /// The mark of a row that was deflected; others are marked by 1.
@@ -248,7 +248,7 @@ void EndProjection<Real>::list_supports(const Inputs& in) {
 
 template <class Real>
 void EndProjection<Real>::push_in_rounds(const Inputs& in, bool any_deflected) {
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kRoundsOfProjection; ++round) {
         projection_.pairs.clear(), projection_.planes.clear();
         find_thrown(in);
         list_supports(in);

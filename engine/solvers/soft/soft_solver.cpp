@@ -29,7 +29,7 @@ constexpr double kJointsSettled = 0.001;
 /// have changed by more than this share of the same. docs/decisions/0098-turns-around-what-is-restless.md.
 constexpr double kJointsRestless = 0.01;
 /// Times at most that energy is bounded in a substep, with a turn between each two.
-constexpr int kRounds = 6;
+constexpr int kRoundsOfEnergy = 6;
 /// Sweeps where contacts of discs have done work.
 constexpr int kSweepsOfGain = 2;
 /// Bodies; in fewer contacts may do work: to look at it would take 2 to 3 % of a world of three.
@@ -243,7 +243,7 @@ void SoftSolver<Real>::bound_energy(WorldState<Real>& world) {
     const SolvedSubstep<Real> solved{step, contacts, paths, joints};
     double before = std::numeric_limits<double>::infinity();  // J, gained at the round before
     const auto bound_passive = [&] {
-        for (int round = 1; round < kRounds; ++round) {
+        for (int round = 1; round < kRoundsOfEnergy; ++round) {
             const double gained = passive_.bound(solved, false);
             if (!(gained > 0)) return;
             // Where exact solves of joints give energy, further turns would only give more.

@@ -13,8 +13,8 @@ namespace {
 // a pile that is too deep for that converges over several steps.
 constexpr std::size_t kMostUpdates = 1000000;  // updates of single contacts: some 10 ms
 constexpr std::size_t kFewestSweeps = 200;
-constexpr std::size_t kMostSweeps = 10000;  // so that the work is bounded by the contacts there are
-constexpr double kConverged = 1e-13;
+constexpr std::size_t kMostSweepsAtRest = 10000;  // so that the work is bounded by the contacts there are
+constexpr double kConvergedAtRest = 1e-13;
 
 // Parts of the rest speed, which is itself a small part of what gravity adds in a step.
 constexpr double kLeaving = 1e-2;
@@ -45,8 +45,8 @@ void RestingContacts<Real>::carry(Flights<Real>& flights, std::vector<PressedMee
         if (!contacts[i].meeting.with_wall()) accelerate(contacts[i].meeting.b, force);
     };
     for (std::size_t i = 0; i < contacts.size(); ++i) press(i, contacts[i].force);
-    const std::size_t most_sweeps =
-        std::clamp(kMostUpdates / std::max<std::size_t>(contacts.size(), 1), kFewestSweeps, kMostSweeps);
+    const std::size_t most_sweeps = std::clamp(kMostUpdates / std::max<std::size_t>(contacts.size(), 1),
+                                               kFewestSweeps, kMostSweepsAtRest);
     for (std::size_t sweep = 0; sweep < most_sweeps; ++sweep) {
         if (flights.is_interrupted_after(contacts.size() * Interruption::kUpdate)) return;
         double largest_change = 0, largest = 0;
@@ -64,7 +64,7 @@ void RestingContacts<Real>::carry(Flights<Real>& flights, std::vector<PressedMee
             largest_change = std::fmax(largest_change, std::fabs(change));
             largest = std::fmax(largest, force);
         }
-        if (largest_change <= kConverged * largest) break;
+        if (largest_change <= kConvergedAtRest * largest) break;
     }
 }
 

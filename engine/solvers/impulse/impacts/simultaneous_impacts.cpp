@@ -9,8 +9,8 @@ namespace carom {
 namespace {
 
 // Sweeps end when no impulse changes a velocity by more than this part of the fastest approach.
-constexpr int kMostSweeps = 1000;
-constexpr double kConverged = 1e-15;
+constexpr int kMostSweepsOfImpacts = 1000;
+constexpr double kConvergedInImpacts = 1e-15;
 
 constexpr std::int32_t kNoRow = -1;
 
@@ -95,7 +95,7 @@ template <class Real>
 void SimultaneousImpacts<Real>::solve(const Flights<Real>& flights, double negligible) {
     double fastest = 0;
     for (const Impact& i : impacts_) fastest = std::fmax(fastest, -i.encounter.normal_velocity);
-    for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    for (int sweep = 0; sweep < kMostSweepsOfImpacts; ++sweep) {
         if (flights.is_interrupted_after(impacts_.size() * Interruption::kUpdate)) return;
         double largest_change = 0;
         for (Impact& i : impacts_) {
@@ -105,7 +105,7 @@ void SimultaneousImpacts<Real>::solve(const Flights<Real>& flights, double negli
             i.impulse = normal.impulse;
             add_impulses(i, {normal.added, 0});
         }
-        if (largest_change <= std::fmax(kConverged * fastest, negligible)) break;
+        if (largest_change <= std::fmax(kConvergedInImpacts * fastest, negligible)) break;
     }
 }
 
@@ -117,7 +117,7 @@ void SimultaneousImpacts<Real>::solve_friction(const Flights<Real>& flights, dou
         i.slip_bounced = slip(i);
         fastest = std::fmax(fastest, std::fmax(-i.encounter.normal_velocity, std::fabs(i.slip_bounced)));
     }
-    for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    for (int sweep = 0; sweep < kMostSweepsOfImpacts; ++sweep) {
         if (flights.is_interrupted_after(impacts_.size() * Interruption::kUpdate)) return;
         double largest_change = 0;
         for (Impact& i : impacts_) {
@@ -128,7 +128,7 @@ void SimultaneousImpacts<Real>::solve_friction(const Flights<Real>& flights, dou
             i.friction_impulse = tangent.impulse;
             add_impulses(i, {0, tangent.added});
         }
-        if (largest_change <= std::fmax(kConverged * fastest, negligible)) break;
+        if (largest_change <= std::fmax(kConvergedInImpacts * fastest, negligible)) break;
     }
 }
 

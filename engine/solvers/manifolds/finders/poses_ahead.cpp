@@ -19,8 +19,8 @@ constexpr double kLargestWayOfLoad = 0.25;
 
 constexpr std::array kLeads{Lead::none, Lead::half, Lead::whole};
 
-constexpr std::size_t kRowsPerTask = 1024;  // some microseconds of work
-constexpr double kNanosecondsToLook = 3;    // a row, on one thread, for the executor
+constexpr std::size_t kRowsPerTaskAhead = 1024;  // some microseconds of work
+constexpr double kNanosecondsToLookAhead = 3;    // a row, on one thread, for the executor
 
 /// Whether some contact may have no friction. Pieces have materials of their own, which are not looked at.
 template <class Real>
@@ -75,7 +75,7 @@ void PosesAhead<Real>::look(const WorldState<Real>& world, double dt, const Pose
     const bool others_stay = written == written_ && now.rows_looked_at() < rows;
     const std::size_t all = others_stay ? now.rows_looked_at() : rows;
     if (asked && !others_stay) written_ = {};
-    executor.for_each_chunk(asked ? asked->size() : all, kRowsPerTask, kNanosecondsToLook,
+    executor.for_each_chunk(asked ? asked->size() : all, kRowsPerTaskAhead, kNanosecondsToLookAhead,
                             [&](std::size_t, std::size_t first, std::size_t last) {
                                 const auto h = static_cast<Real>(dt);
                                 if (!asked) return look_at(world.bodies, h, now, first, last);

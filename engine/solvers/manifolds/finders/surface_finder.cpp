@@ -17,7 +17,7 @@
 namespace carom {
 namespace {
 
-constexpr double kNanosecondsToLook = 1;  // a row, on one thread, for the executor
+constexpr double kNanosecondsToLookForWalls = 1;  // a row, on one thread, for the executor
 /// Share by which a reach may be off through rounding.
 constexpr double kRoundingOfReach = 1e-6;
 
@@ -150,7 +150,7 @@ void SurfaceFinder<Real>::list_near_walls(const Inputs& in, const Executor& exec
     const Bodies<Real>& bodies = in.world.bodies;
     const Enclosure<double> enclosure(&*in.world.walls);
     const double radii = 2 + in.near.share, fall = in.near.fall;
-    rows_near_walls_.choose(bodies.moving(), kNanosecondsToLook, executor, [&](std::size_t row) {
+    rows_near_walls_.choose(bodies.moving(), kNanosecondsToLookForWalls, executor, [&](std::size_t row) {
         const double most =
             radii * static_cast<double>(bodies.radius[row]) + fall + static_cast<double>(in.poses.way(row));
         return enclosure.clearance(bodies.position_x[row], bodies.position_y[row]) <

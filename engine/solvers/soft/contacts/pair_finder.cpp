@@ -7,7 +7,7 @@ namespace carom {
 namespace {
 
 // ns a contact on one thread, for the executor: docs/decisions/0012-threads-of-soft.md.
-constexpr double kNanosecondsToFind = 3;
+constexpr double kNanosecondsToFindPair = 3;
 
 /// Computes what stays the same in a group until the pairs change.
 /// @param inverse  1/kg, of bodies, with any sign; null: all have the same
@@ -127,7 +127,7 @@ bool PairFinder<Real>::find(const StepView<Real>& step, const Bodies<Real>& bodi
     const FindContacts<Real> k = arguments(pairs, step.settings, step.terms.dt, motion);
     frames_.clear();
     if (flies_together) frames_.find(graph, bodies, motion);
-    const double work = kNanosecondsToFind * static_cast<double>(pairs.a.size());
+    const double work = kNanosecondsToFindPair * static_cast<double>(pairs.a.size());
     step.loops.executor->for_each_task(graph.groups.count(), work, [&](std::size_t group) {
         if (are_all_new || (is_new && group == graph.groups.far()))
             describe_group(pairs, group, bodies, masses.inverse());

@@ -23,7 +23,7 @@ template <class Real>
 constexpr Real kHeldByTurn = Real(1e-30);
 /// |x| + |y| of a vector, in lengths of it, at most.
 constexpr double kBothAxes = 1.415;
-constexpr double kNanosecondsToFind = 10;  // a support on one thread, for the executor
+constexpr double kNanosecondsToFindSupport = 10;  // a support on one thread, for the executor
 
 /// What gravity adds to velocities in a step [m/s].
 Vec2 fall_of(const SubstepTerms& terms) {
@@ -84,7 +84,7 @@ void SupportFinder<Real>::find(const StepView<Real>& step, const WorldState<Real
     const Search search{step, world, edges};
     hold_.clear();
     if (!world.edges.empty()) note_pressing(search), lead_discs(search, joined, books);
-    const double work = kNanosecondsToFind * static_cast<double>(candidates.a.size());
+    const double work = kNanosecondsToFindSupport * static_cast<double>(candidates.a.size());
     step.loops.executor->for_each_task(groups, work,
                                        [&](std::size_t group) { find_in_group(group, search); });
     left_edges_.clear();

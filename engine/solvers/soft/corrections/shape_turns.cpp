@@ -16,10 +16,10 @@ namespace {
 /// Turns over contacts of shapes in a substep, at most: a share of the largest ratio of masses of two that
 /// touch, and whatever that is. docs/decisions/0064-uneven-masses-in-sweeps.md has what fewer leave.
 constexpr double kTurnsOfRatio = 0.05;
-constexpr int kMostTurns = 31;
+constexpr int kMostTurnsOfShapes = 31;
 /// And in a step: where it has many substeps each begins with what the one before came to, and falls less.
 /// docs/decisions/0086-steps-that-stall.md.
-constexpr double kMostTurnsOfStep = 4 * kMostTurns;
+constexpr double kMostTurnsOfStep = 4 * kMostTurnsOfShapes;
 /// They end when a sweep changes no velocity by more than this share of what gravity adds in a substep, and
 /// after a few where the change has not become less.
 constexpr double kSettled = 0.2;
@@ -56,7 +56,7 @@ void ShapeTurns<Real>::begin_step(const WorldState<Real>& world, const PathSolve
     // A single path is solved exactly: sweeps would only add their round-off, in units of the heaviest body.
     if (paths.is_single_path()) return;
     if (lost * static_cast<double>(world.bodies.moving()) > kHeavyLost * world.dynamic_mass) {
-        most_ = most_of_struck_ = kMostTurns, settled_ = kSettledOfLost;
+        most_ = most_of_struck_ = kMostTurnsOfShapes, settled_ = kSettledOfLost;
         return;
     }
     if (!masses.are_uneven()) return;
@@ -80,7 +80,7 @@ void ShapeTurns<Real>::begin_step(const WorldState<Real>& world, const PathSolve
     }
     if (uneven_.empty()) return;
     most_ = static_cast<int>(
-        std::min(kTurnsOfRatio * static_cast<double>(most), static_cast<double>(kMostTurns)));
+        std::min(kTurnsOfRatio * static_cast<double>(most), static_cast<double>(kMostTurnsOfShapes)));
     const bool are_mixed = kMixed * count_heavy(world.bodies.count) >= world.bodies.moving();
     const bool can_lie = length_squared(world.gravity) > 0;
     most_of_struck_ = !can_lie ? kTurnsWithoutGravity : are_mixed ? most_ : kTurnsOfStruck;

@@ -17,7 +17,7 @@ constexpr double kOfFall = 1e-3;
 constexpr double kOfSpeed = 1e-5;
 /// Turns of normals and friction at most. Where friction holds what is squeezed they come to no end, and what
 /// the sweeps gave stays.
-constexpr int kMostTurns = 64;
+constexpr int kMostTurnsOfWedges = 64;
 /// Turns beyond the second of all bodies in a substep, at most: a tenth of a millisecond, so that many discs
 /// which friction holds under a plate do not take the step's time.
 constexpr int kMostFurtherTurns = 1024;
@@ -147,7 +147,7 @@ void WedgedBodies<Real>::solve(const Wedged& wedged, const StepView<Real>& step,
         contacts_.push_back(contact);
     }
     for (int turn = 1; true; ++turn) {
-        if (turn > kMostTurns || (turn > 2 && further_turns_-- <= 0)) return;
+        if (turn > kMostTurnsOfWedges || (turn > 2 && further_turns_-- <= 0)) return;
         if (!solve_normals(body, contacts_, normals_, tolerance)) return;
         if (sweep(body, contacts_) <= tolerance) break;
     }

@@ -11,7 +11,7 @@ namespace carom {
 namespace {
 
 /// Rounds over all contacts in a substep: what a blow sets in motion may hit the next body in the same one.
-constexpr int kRounds = 8;
+constexpr int kRoundsOfShapeImpacts = 8;
 
 /// The impact of shapes of which joints hold one at least: held_impacts.hpp.
 /// @param meets  which of the two points
@@ -239,7 +239,7 @@ std::int64_t ShapeImpacts<Real>::carry_out(PathSolver<Real>& paths, const Subste
                 bodies.is_disc(static_cast<std::size_t>(row)))
                 deflected_.push_back(row);
     };
-    for (int round = 0; round < kRounds && goes_on; ++round) {
+    for (int round = 0; round < kRoundsOfShapeImpacts && goes_on; ++round) {
         goes_on = false;
         due_.for_each(look_at);
     }

@@ -12,16 +12,16 @@ namespace carom {
 namespace {
 
 /// What moves less than this share of its inradius towards what it touches is still held by its contact.
-constexpr double kSmallestWay = 0.5;
+constexpr double kSmallestWayOfShape = 0.5;
 
 /// A body that is put back may get behind something else by that. In the last round it is kept from passing
 /// what is static alone: what is squeezed against that stays on its side.
-constexpr int kRounds = 4;
+constexpr int kRoundsOfShapeTunnelling = 4;
 
 /// The core of a body, in inradii: where another one is in it, their contact may take the wrong side.
 constexpr double kCore = 0.5;
 
-constexpr double kNanosecondsToLook = 1;  // a body or a contact, on one thread, for the executor
+constexpr double kNanosecondsToLookAtShape = 1;  // a body or a contact, on one thread, for the executor
 
 /// A disc that moves straight on for a time of 1.
 MovingConvex moving_disc(Vec2 from, Vec2 to, double radius) {
@@ -92,11 +92,11 @@ void ShapeTunnelling<Real>::list_swift(const Inputs& in, const Manifolds<Real>& 
                                        const Executor& executor) {
     const Bodies<Real>& bodies = in.world.bodies;
     const auto dt = static_cast<Real>(in.flight.dt);
-    const auto least = static_cast<Real>(kSmallestWay);
+    const auto least = static_cast<Real>(kSmallestWayOfShape);
     const Real* displacement = in.records.displacement.data();
     const Real* motion = in.flight.motion.data();
     swift_.clear(), is_swift_.resize(bodies.rows());
-    chosen_.choose(bodies.moving(), kNanosecondsToLook, executor, [&](std::size_t row) {
+    chosen_.choose(bodies.moving(), kNanosecondsToLookAtShape, executor, [&](std::size_t row) {
         const Real foreseen = dt * way_along_axes(motion + 4 * row + 2);
         return way_along_axes(displacement + 2 * row) > foreseen + bodies.inradius(row);
     });
@@ -123,7 +123,7 @@ void ShapeTunnelling<Real>::list_swift(const Inputs& in, const Manifolds<Real>& 
             of_other += dt * std::fabs(bodies.angular_velocity[other]) * bodies.radius[other];
         return comes_far(static_cast<std::size_t>(list.a[i]), of_other);
     };
-    chosen_.choose(live.size(), kNanosecondsToLook, executor, is_swift);
+    chosen_.choose(live.size(), kNanosecondsToLookAtShape, executor, is_swift);
     chosen_.for_each([&](std::int32_t n) {
         const std::int32_t contact = live[static_cast<std::size_t>(n)];
         mark(static_cast<std::size_t>(manifolds.list_of(contact).a[Manifolds<Real>::place_of(contact)]));
@@ -147,7 +147,7 @@ bool ShapeTunnelling<Real>::comes_upon_edges(const Inputs& in, std::span<const E
     const Bodies<Real>& bodies = in.world.bodies;
     const auto row = static_cast<std::size_t>(pairs[0].row);
     const Real thickness = bodies.inradius(row);
-    const Real least = static_cast<Real>(kSmallestWay) * thickness,
+    const Real least = static_cast<Real>(kSmallestWayOfShape) * thickness,
                come = way_along_axes(in.records.displacement.data() + 2 * row);
     const double core = kCore * static_cast<double>(thickness);
     const bool has_core = !bodies.is_disc(row);
@@ -191,8 +191,8 @@ void ShapeTunnelling<Real>::look_at(const Inputs& in, std::size_t row) {
         way.turned = static_cast<double>(in.records.turn()[row]) / static_cast<double>(bodies.rim(row));
         way.angle = static_cast<double>(bodies.angle[row]) - way.turned;
     }
-    for (int round = 0; round < kRounds; ++round) {
-        const Passed passed = first_passed(in, way, round + 1 == kRounds);
+    for (int round = 0; round < kRoundsOfShapeTunnelling; ++round) {
+        const Passed passed = first_passed(in, way, round + 1 == kRoundsOfShapeTunnelling);
         if (passed.time > 1) return;
         put_back(in, way, passed, round > 0);
     }

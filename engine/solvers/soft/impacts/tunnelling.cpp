@@ -13,16 +13,16 @@ namespace {
 
 /// A disc that moves less than this share of its radius in a step in which its centre gets past an edge was
 /// pressed into it: it goes back to where it was.
-constexpr double kSmallestWay = 0.5;
+constexpr double kSmallestWayOfDisc = 0.5;
 
 /// A disc is looked at by itself if the fastest body moves more than this share of the disc's radius.
 constexpr double kFastWay = 0.25;
 
-constexpr double kNanosecondsToLook = 3;  // a disc, on one thread, for the executor
+constexpr double kNanosecondsToLookAtDisc = 3;  // on one thread, for the executor
 
 /// A disc that is put back may get behind another edge by that. In the last round what moves by itself is
 /// left out: what a kinematic edge presses against a static one stays on its side of that.
-constexpr int kRounds = 4;
+constexpr int kRoundsOfTunnelling = 4;
 
 }  // namespace
 
@@ -98,7 +98,7 @@ void Tunnelling<Real>::find_strays(const WorldState<Real>& world, const StepFlig
         return std::sqrt(squared) - margin + candidates.farther_than_first(row) > flight.edges.allowance();
     };
     strays_.prepare(bodies.moving(), kRowsPerChunk);
-    executor.for_each_chunk(bodies.moving(), kRowsPerChunk, kNanosecondsToLook,
+    executor.for_each_chunk(bodies.moving(), kRowsPerChunk, kNanosecondsToLookAtDisc,
                             [&](std::size_t chunk, std::size_t first, std::size_t last) {
                                 std::size_t count = 0;
                                 for (std::size_t row = first; row < last; ++row)
@@ -112,8 +112,8 @@ template <class Real>
 void Tunnelling<Real>::undo(WorldState<Real>& world, const StepFlight<Real>& flight,
                             const ContactRows<Real>& supports, const Executor& executor) {
     find_strays(world, flight, executor);
-    for (int round = 0; round < kRounds; ++round) {
-        is_last_ = round + 1 == kRounds;
+    for (int round = 0; round < kRoundsOfTunnelling; ++round) {
+        is_last_ = round + 1 == kRoundsOfTunnelling;
         find_crossings(world, flight, supports);
         if (crossings_.empty()) return;
         std::int32_t done = -1;
@@ -139,7 +139,7 @@ void Tunnelling<Real>::put_back(WorldState<Real>& world, const StepFlight<Real>&
     const double length = std::sqrt(length_squared(along));
     const double side = cross(along, passed.from - edge.a) > 0 ? 1 / length : -1 / length;
     const Vec2 out = side * Vec2{-along.y, along.x};
-    const double radius = bodies.radius[row], least = kSmallestWay * radius * passed.time;
+    const double radius = bodies.radius[row], least = kSmallestWayOfDisc * radius * passed.time;
     const bool is_slow = length_squared(passed.point - passed.from) < least * least;
     const Vec2 place = to_start || is_slow ? passed.from : passed.point + radius * out;
     const Vec2 x = pose.end_position + rotate(pose.end_turn, place);

@@ -10,7 +10,7 @@ namespace {
 
 /// What contacts may give a group, above round-off and the bends of joints: a share of the energy that free
 /// flight leaves it, and that of so many times the speed that gravity adds in a substep.
-constexpr double kLeastShare = 1e-3, kFalls = 2;
+constexpr double kLeastShare = 1e-3, kFallsOfGroup = 2;
 
 constexpr double kNanosecondsToLook = 3;    // a body, on one thread, for the executor
 constexpr std::size_t kGroupsPerTask = 16;  // some microseconds of work
@@ -82,7 +82,7 @@ bool ForeseenBlows<Real>::find_risen(const JointStep<Real>& step, const StepLoop
                     mass_sum += mass, before += energy_of(mass, velocities.free(row));
                     now += energy_of(mass, body_at(step.records.velocity, row));
                 }
-                const double fall = kFalls * step.terms.fall_speed();
+                const double fall = kFallsOfGroup * step.terms.fall_speed();
                 least_[group] = kLeastShare * before + 0.5 * mass_sum * fall * fall;
                 is_thrown_[group] = now > before + least_[group];
             }

@@ -26,12 +26,10 @@ constexpr double kTolerance = 1e-3;
 /// approached so many times as fast as they do, and so many times what gravity adds in a substep faster:
 /// 4 mm at 1/60 s and four substeps. Bridges under loads open as with all contacts (decision 0082).
 constexpr double kFaster = 2;
-constexpr double kFalls = 25;
+constexpr double kFallsOfContact = 25;
 /// Motors that have less than this share of the inverse mass that they would have alone drive what others
 /// hold.
 constexpr double kLeastOfAlone = 1e-6;
-
-constexpr std::size_t kTangent = HeldContact::kPoints;
 
 JointBlow unit_blow(const HeldContact& contact, std::size_t side, std::size_t direction) {
     return {contact.row[side], contact.impulse_on(side, direction), contact.at_rim[side][direction]};
@@ -128,7 +126,8 @@ bool HeavyLoads<Real>::may_press(const HeldContact& contact, const HeldContacts<
     const HeldContact::Values parting = contacts.parting(contact);
     for (std::size_t point = 0; point < HeldContact::kPoints; ++point) {
         if (!contact.acts[point]) continue;
-        const double nearer = std::fmax(0, -kFaster * parting[point]) + kFalls * step.terms.fall_speed();
+        const double nearer =
+            std::fmax(0, -kFaster * parting[point]) + kFallsOfContact * step.terms.fall_speed();
         if (contacts.separation(contact, point) < step.terms.substep_dt * nearer) return true;
     }
     return false;
@@ -344,7 +343,7 @@ double HeavyLoads<Real>::solve(const HeldContacts<Real>& contacts, const JointSt
     read_motors(step, joints);
     more_ = impulses_.given;
     const auto bound = [&](std::size_t i, double wanted) {
-        if (i % kDirections < kTangent) return std::fmax(wanted, 0);
+        if (i % kDirections < HeldContact::kTangent) return std::fmax(wanted, 0);
         const double limit =
             contacts_[i / kDirections].friction * (impulses_.given[i - 2] + impulses_.given[i - 1]);
         return std::clamp(wanted, -limit, limit);

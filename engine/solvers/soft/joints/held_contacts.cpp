@@ -3,8 +3,6 @@
 namespace carom {
 namespace {
 
-constexpr std::size_t kTangent = HeldContact::kPoints;
-
 template <class Real>
 double value_at(const Column<Real>& column, std::size_t i, double without) {
     return column.empty() ? without : static_cast<double>(column[i]);
@@ -92,7 +90,7 @@ HeldContact::Values HeldContacts<Real>::lack(const HeldContact& contact) const {
         const ContactRows<Real>& rows = rows_of(contact);
         lack[0] = static_cast<double>(rows.floor[contact.number]) -
                   value_at(rows.surface_normal, contact.number, 0);
-        lack[kTangent] = -value_at(rows.surface_tangent, contact.number, 0);
+        lack[HeldContact::kTangent] = -value_at(rows.surface_tangent, contact.number, 0);
     }
     const HeldContact::Values parting_now = parting(contact);
     for (std::size_t d = 0; d < HeldContact::kDirections; ++d) lack[d] -= parting_now[d];
@@ -123,7 +121,7 @@ HeldContact::Values HeldContacts<Real>::impulses(const HeldContact& contact) con
     } else {
         const ContactRows<Real>& rows = rows_of(contact);
         impulses[0] = static_cast<double>(rows.normal_impulse[contact.number]);
-        impulses[kTangent] = value_at(rows.friction_impulse, contact.number, 0);
+        impulses[HeldContact::kTangent] = value_at(rows.friction_impulse, contact.number, 0);
     }
     return impulses;
 }
@@ -134,7 +132,7 @@ void HeldContacts<Real>::add(const HeldContact& contact, const HeldContact::Valu
     ContactRows<Real>& rows = rows_of(contact);
     rows.normal_impulse[contact.number] += static_cast<Real>(more[0]);
     if (!rows.friction_impulse.empty())
-        rows.friction_impulse[contact.number] += static_cast<Real>(more[kTangent]);
+        rows.friction_impulse[contact.number] += static_cast<Real>(more[HeldContact::kTangent]);
 }
 
 template class HeldContacts<float>;

@@ -13,7 +13,7 @@ namespace carom {
 /// A contact in whichever store, with what a unit impulse along each of its directions does: along its normal
 /// at the first and at the second point, and along its tangent. Rolling resistance has none.
 struct HeldContact {
-    static constexpr std::size_t kDirections = 3, kPoints = 2;
+    static constexpr std::size_t kDirections = 3, kPoints = 2, kTangent = kPoints;
     static constexpr std::int32_t kNothing = -1;
     using Values = std::array<double, kDirections>;  // by direction
     enum class Store : std::uint8_t { path, pair, support };
