@@ -7,6 +7,7 @@
 #include <functional>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "measure/gas.hpp"
@@ -14,7 +15,7 @@
 
 // 200 discs, and what has nothing to do with them: static discs far away, the rest of a long terrain of one
 // chain or of separate segments, also one of which a segment is taken and put back, a speed that all share, a
-// disc much smaller than the others; and piles in which some discs are heavier.
+// disc much smaller than the others, grains in the gaps of a pile; and piles in which some discs are heavier.
 //     strangers/<case>/<float|double>
 // `ratio` is the median time of a step over that of the same scene without it, both in processor time of the
 // thread. docs/decisions/0033-costs-of-strangers.md has the figures, 0064-uneven-masses-in-sweeps.md those of
@@ -102,6 +103,24 @@ Scene with_small(double radius) {
     return scene;
 }
 
+/// 200 discs that fall into a pile, and twelve grains that fall into its gaps, where their radius is above
+/// zero [m].
+Scene with_grains(double radius, unsigned seed) {
+    Scene scene = rough();
+    scene.walls = Walls{.min = {0, 0}, .max = {15.2, 200}, .top = false, .material = material_of(0.5, 0)};
+    std::mt19937 random(seed);
+    const auto offset = [&] { return 0.2 * static_cast<double>(random()) / 4294967295.0; };
+    for (int i = 0; i < 200; ++i)
+        scene.add({.shape = Disc{0.5},
+                   .position = {0.7 + 1.22 * (i % 12) + offset(), 0.6 + 1.05 * (i / 12)},
+                   .material = material_of(0.5, 0)});
+    for (int i = 0; i < 12 && radius > 0; ++i)
+        scene.add({.shape = Disc{radius},
+                   .position = {1.2 + 1.1 * i + offset(), 19.5 + offset()},
+                   .material = material_of(0.5, 0)});
+    return scene;
+}
+
 /// A pile of so many columns and as many rows in which one disc in `every` at random is heavier.
 Scene of_masses(int columns, double friction, double ratio, unsigned every) {
     constexpr double kPitch = 1.05;  // m
@@ -147,14 +166,14 @@ Make make(Fn scene_of, Args... args) {
     return [=] { return scene_of(args...); };
 }
 
-/// @return s, median of a step
+/// @param first  steps before those that are measured  @return s, median of a step
 template <class World>
-double time_of_step(const Scene& scene, bool is_touched) {
+double time_of_step(const Scene& scene, int first, bool is_touched) {
     const auto now = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
     constexpr int kTogether = 5;  // steps: the clock ticks in microseconds
     World world(scene, {.threads = 1});
     TouchedSegment<World> segment(world, scene);
-    for (int i = 0; i < kFirst; ++i) world.step(kStep);
+    for (int i = 0; i < first; ++i) world.step(kStep);
     std::vector<double> times;
     for (int i = 0; i < kMeasured / kTogether; ++i) {
         const double start = now();
@@ -169,29 +188,36 @@ double time_of_step(const Scene& scene, bool is_touched) {
     return *middle;
 }
 
+struct Strangers {
+    Make with, without;
+    bool is_touched = false;
+    int first = kFirst;  // steps before those that are measured
+};
+
 template <class World>
-void run_strangers(benchmark::State& state, const Make& with, const Make& without, bool is_touched) {
+void run_strangers(benchmark::State& state, const Strangers& strangers) {
     double time = 0;
     for (auto _ : state) {
-        time = time_of_step<World>(with(), is_touched);
+        time = time_of_step<World>(strangers.with(), strangers.first, strangers.is_touched);
         state.SetIterationTime(time);
     }
-    state.counters["ratio"] = time / time_of_step<World>(without(), false);
+    state.counters["ratio"] = time / time_of_step<World>(strangers.without(), strangers.first, false);
 }
 
 const bool kAdded = [] {
-    const auto add = [](const std::string& name, const Make& with, const Make& without,
-                        bool is_touched = false) {
+    const auto add_all = [](const std::string& name, const Strangers& strangers) {
         const auto add_for = [&](const char* precision, auto run) {
-            benchmark::RegisterBenchmark(
-                measure::joined("strangers/", name, "/", precision).c_str(),
-                [=](benchmark::State& state) { run(state, with, without, is_touched); })
+            benchmark::RegisterBenchmark(measure::joined("strangers/", name, "/", precision).c_str(),
+                                         [=](benchmark::State& state) { run(state, strangers); })
                 ->Unit(benchmark::kMicrosecond)
                 ->UseManualTime()
                 ->Iterations(1);
         };
         add_for("float", &run_strangers<World>);
         add_for("double", &run_strangers<World64>);
+    };
+    const auto add = [&](const std::string& name, const Make& with, const Make& without) {
+        add_all(name, {.with = with, .without = without});
     };
     for (const int strangers : {10000, 100000})
         for (const Solver solver : {Solver::soft, Solver::impulse})
@@ -204,11 +230,21 @@ const bool kAdded = [] {
         const Make with = make(on_terrain, points, Terrain::segments),
                    without = make(on_terrain, 201, Terrain::segments);
         add("segments-" + std::to_string(points - 1), with, without);
-        add("segment-touched-of-" + std::to_string(points - 1), with, without, true);
+        add_all("segment-touched-of-" + std::to_string(points - 1),
+                {.with = with, .without = without, .is_touched = true});
     }
     add("falling-150", make(falling, 150), make(falling, 0));
     add("small-1e-3", make(with_small, 1e-3), make(with_small, 0));
     add("small-1e-6", make(with_small, 1e-6), make(with_small, 0));
+    for (const auto& [size, radius] : {std::pair{"2e-2", 2e-2}, {"5e-3", 5e-3}})
+        for (const unsigned seed : {1u, 2u, 3u, 4u, 5u})
+            for (const int first : {kFirst, 10 * kFirst}) {
+                const std::string when = first > kFirst ? "lie-" : "fall-";
+                add_all(measure::joined("grains-", when, size, "-", std::to_string(seed)),
+                        {.with = make(with_grains, radius, seed),
+                         .without = make(with_grains, 0, seed),
+                         .first = first});
+            }
     for (const int ratio : {30, 100, 300})
         for (const double friction : {0.5, 0.0})
             add((friction > 0 ? "half-heavier-" : "half-heavier-smooth-") + std::to_string(ratio),

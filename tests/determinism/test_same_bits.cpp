@@ -42,7 +42,7 @@ constexpr Golden kGolden[] = {
     {"woken sleepers", 0x77fa00849de7a9ee, 0xe5c36c16593eee67},
     {"falling compounds", 0x3fba9fac5562a5f8, 0xbbafc864b2858d77},
     {"discs about one place", 0x42b99e272e415c71, 0x064f8cc5da90374b},
-    {"uneven discs about one place", 0x73f23059a3b733ca, 0xbf7d43822caca4fd},
+    {"uneven discs about one place", 0x73f23059a3b733ca, 0x330bfe60ec193eba},
 };
 
 }  // namespace

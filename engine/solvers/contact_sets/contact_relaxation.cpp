@@ -18,17 +18,11 @@ constexpr double kGivesWay = 1;
 constexpr double kGivesWayMost = 0.2, kStiffening = 10;
 /// Coulomb's law calls for another round if a share of it changes by more than this.
 constexpr double kShareOff = 0.1;
-constexpr int kRounds = 2;
 constexpr int kSweepsOfRound = 10;  // a round, at most
 /// Steps of Newton's method for one body, whose contacts come and go with its velocity.
 constexpr int kSteps = 4;
-/// A body is where it should be if its velocity is as near as this share of what gravity adds to it.
-constexpr double kAccuracyOfBody = 0.1;
 /// Mass of a rim that does not turn, in masses of its body.
 constexpr double kRimMass = 1e20;
-/// What contacts may add to the energy of all bodies in a substep, in units of m (what gravity adds to a
-/// velocity)²: a load that is let go gives back what its contacts gave way by.
-constexpr double kSlack = 10;
 /// Largest load of a contact, in what stops all bodies that touch each other within a substep: arches and
 /// wedges carry some times what they hold up.
 constexpr double kMostLoad = 1000;
@@ -224,7 +218,7 @@ template <int kSize>
 double ContactRelaxation<kSize>::gain() const {
     double gain = 0;
     for (std::size_t body = 0; body < mass_.size(); ++body) {
-        gain -= kSlack * mass_[body][0] * fall_ * fall_;
+        gain -= slack_ * mass_[body][0] * fall_ * fall_;
         for (std::size_t k = 0; k < kSize; ++k) {
             const double from = free_[body][k], to = velocity_[body][k];
             gain += 0.5 * mass_[body][k] * (to - from) * (to + from);
@@ -284,7 +278,7 @@ bool ContactRelaxation<kSize>::relax(std::size_t body) {
         double largest = 0;
         for (std::size_t k = 0; k < kSize; ++k)
             largest = std::max(largest, std::fabs(gradient[k]) / mass_[body][k]);
-        if (!(largest > kAccuracyOfBody * fall_)) break;
+        if (!(largest > accurate_)) break;
         has_moved = true;
         solve_small<kSize>(second, gradient);
         for (std::size_t k = 0; k < kSize; ++k) velocity_[body][k] -= gradient[k];
@@ -378,7 +372,7 @@ void ContactRelaxation<kSize>::fit_impulses() {
     if (!any) return;
     for (std::size_t body = 0; body < mass_.size(); ++body) {
         Fit& fit = fit_of(body);
-        fit.energy += kSlack * mass_[body][0] * fall_ * fall_;
+        fit.energy += slack_ * mass_[body][0] * fall_ * fall_;
         for (std::size_t k = 0; k < kSize; ++k) {
             const double given = given_[body][k], mass = mass_[body][k], from = free_[body][k],
                          to = velocity_[body][k];
@@ -407,7 +401,9 @@ void ContactRelaxation<kSize>::give(const Law& law, bool is_b, const Rows& impul
 }
 
 template <int kSize>
-void ContactRelaxation<kSize>::solve(std::span<LocalContact> contacts, double fall) {
+void ContactRelaxation<kSize>::solve(std::span<LocalContact> contacts, double fall,
+                                     const RelaxationEffort& effort) {
+    accurate_ = effort.accuracy * fall, slack_ = effort.slack;
     describe(contacts, fall);
     // What the sweeps over impulses made of the velocities may be worse than those of before.
     find_shares();
@@ -415,7 +411,7 @@ void ContactRelaxation<kSize>::solve(std::span<LocalContact> contacts, double fa
     swept_ = velocity_, velocity_ = start_;
     if (!(value() < by_sweeps)) velocity_ = swept_;
     find_shares();
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < effort.rounds; ++round) {
         sweep();
         if (gain() > 0) {
             start_without_loads();
@@ -423,7 +419,7 @@ void ContactRelaxation<kSize>::solve(std::span<LocalContact> contacts, double fa
             if (gain() > 0) take_back();
             break;
         }
-        if (round + 1 == kRounds) break;
+        if (round + 1 == effort.rounds) break;
         const bool slides = find_shares(), gives_way = stiffen();
         if (!slides && !gives_way) break;
         for (std::size_t i = 0; i < laws_.size(); ++i) laws_[i].carried = impulses_[i];

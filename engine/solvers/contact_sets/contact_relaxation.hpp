@@ -9,6 +9,15 @@
 
 namespace carom {
 
+/// How near contacts are brought to their laws, and what they may add to the energy meanwhile.
+struct RelaxationEffort {
+    int rounds;       // at most
+    double accuracy;  // share of what gravity adds to a velocity by which that of a body may be off
+    /// Of all bodies in a substep, in units of m (what gravity adds to a velocity)²: a load that is let go
+    /// gives back what its contacts gave way by.
+    double slack;
+};
+
 /// Contacts solved for the velocities of their bodies in place of their impulses, one body after the other,
 /// so that light bodies between heavy ones follow these at once, however large the ratio of their masses.
 ///
@@ -45,7 +54,7 @@ class ContactRelaxation {
     /// @param contacts  with the impulses to begin with; out: with new ones
     /// @param fall  m/s, what gravity adds in a substep, above zero
     /// Cost: O(contacts) times a few dozen at most; less where few move.
-    void solve(std::span<LocalContact> contacts, double fall);
+    void solve(std::span<LocalContact> contacts, double fall, const RelaxationEffort& effort);
     const Velocity& velocity(std::size_t body) const { return velocity_[body]; }
 
     std::size_t bytes() const;
@@ -92,7 +101,7 @@ class ContactRelaxation {
     static void give(const Law& law, bool is_b, const Rows& impulses, Velocity& given);
     void fit_impulses();
 
-    double fall_ = 0;                               // m/s
+    double fall_ = 0, accurate_ = 0, slack_ = 0;    // m/s
     Islands touching_;                              // bodies that touch each other, supports left out
     std::vector<double> most_;                      // N s, of each body's contacts
     std::vector<Law> laws_;                         // of the contacts

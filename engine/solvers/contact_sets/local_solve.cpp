@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace carom {
 namespace {
@@ -112,6 +113,7 @@ void LocalSolve<Real>::begin_step(const ContactRows<Real>& pairs, const ContactR
             contacts_.push_back(contact);
         });
     for (const std::int32_t row : rows_) number_of_[static_cast<std::size_t>(row)] = -1;
+    smooth_.begin_step(), rough_.begin_step();
 }
 
 /// Calls fn(a, b) with the sides of a contact, and keeps what it does to their velocities.
@@ -170,7 +172,8 @@ template <class Real>
 template <unsigned kVariant>
 double LocalSolve<Real>::sweep() {
     double largest = 0;
-    for (Contact& c : contacts_) {
+    for (const std::uint32_t i : swept_) {
+        Contact& c = contacts_[i];
         Impulses added{};
         with_sides(c, [&](auto& a, auto& b) {
             added = solve_contact<kVariant>(a, b, c.terms, c.impulses, [](double wanted) { return wanted; });
@@ -184,14 +187,18 @@ double LocalSolve<Real>::sweep() {
 template <class Real>
 double LocalSolve<Real>::change() const {
     double sum = 0;
-    for (const Contact& c : contacts_) sum += squares_of(c.impulses - c.before) / c.terms.mass;
+    for (const std::uint32_t i : swept_) {
+        const Contact& c = contacts_[i];
+        sum += squares_of(c.impulses - c.before) / c.terms.mass;
+    }
     return sum;
 }
 
 /// Goes on in the direction of the sweeps so far. @param share  of the step before, 0 ... 1
 template <class Real>
 void LocalSolve<Real>::conjugate_step(double share) {
-    for (Contact& c : contacts_) {
+    for (const std::uint32_t i : swept_) {
+        Contact& c = contacts_[i];
         const Impulses by_sweep = c.impulses - c.before, added = share * c.step;
         c.impulses = c.impulses + added;
         if (largest_of(added) > 0)
@@ -203,15 +210,34 @@ void LocalSolve<Real>::conjugate_step(double share) {
 }
 
 template <class Real>
+template <int kSize>
+std::size_t LocalSolve<Real>::relax(LightGroups<kSize>& groups, double fall) {
+    groups.solve(contacts_, records_, kUneven, fall);
+    swept_.assign(groups.left().begin(), groups.left().end());
+    return groups.unsolved();
+}
+
+template <class Real>
+std::size_t LocalSolve<Real>::begin(const SolveContacts<Real>& of_pairs,
+                                    const SolveContacts<Real>& of_supports, double fall) {
+    if (contacts_.empty()) return 0;
+    load(of_pairs, of_supports);
+    return of_pairs.contacts.friction_impulse ? relax(rough_, fall) : relax(smooth_, fall);
+}
+
+template <class Real>
 double LocalSolve<Real>::solve(const SolveContacts<Real>& of_pairs, const SolveContacts<Real>& of_supports,
                                double fall) {
     if (contacts_.empty()) return 0;
-    load(of_pairs, of_supports);
+    if (swept_.empty()) {
+        store(of_pairs, of_supports);
+        return 0;
+    }
     const bool rolls = of_pairs.contacts.rolling_impulse != nullptr;
     const std::size_t most = std::max<std::size_t>(kMostSolves / contacts_.size(), 1);
     double first = 0, before = 0, left = 0;
     for (std::size_t sweeps = 1;; ++sweeps) {
-        for (Contact& c : contacts_) c.before = c.impulses;
+        for (const std::uint32_t i : swept_) contacts_[i].before = contacts_[i].impulses;
         left = rolls ? sweep<kEveryEffect>() : sweep<kDoesNotRoll>();
         if (left <= kAccuracyOfContact * fall) break;
         // The change by a sweep is the gradient of what is to become least.
@@ -225,7 +251,7 @@ double LocalSolve<Real>::solve(const SolveContacts<Real>& of_pairs, const SolveC
         if (share <= 1) {
             conjugate_step(share);
         } else {
-            for (Contact& c : contacts_) c.step = {};
+            for (const std::uint32_t i : swept_) contacts_[i].step = {};
         }
         before = now;
     }

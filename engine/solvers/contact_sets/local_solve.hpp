@@ -6,6 +6,7 @@
 
 #include "constraints/contact_rows.hpp"
 #include "kernels/contacts/contact_arguments.hpp"
+#include "solvers/contact_sets/light_groups.hpp"
 #include "solvers/contact_sets/local_contact.hpp"
 
 namespace carom {
@@ -38,9 +39,13 @@ class LocalSolve {
     void begin_step(const ContactRows<Real>& pairs, const ContactRows<Real>& supports);
     /// Leaves all to others in this step.
     void leave_step() { rows_.clear(), contacts_.clear(); }
-    /// After the sweeps of a substep.
+    /// After the sweeps of a substep: relaxes groups of few light bodies.
     /// @param k  of pairs and of supports
     /// @param fall  m/s, what gravity adds in a substep
+    /// @return how many contacts are left to be solved
+    std::size_t begin(const SolveContacts<Real>& of_pairs, const SolveContacts<Real>& of_supports,
+                      double fall);
+    /// Solves what is left, and stores all.
     /// @return m/s, the largest change of the last sweep over contacts
     double solve(const SolveContacts<Real>& of_pairs, const SolveContacts<Real>& of_supports, double fall);
 
@@ -58,6 +63,8 @@ class LocalSolve {
     double sweep();
     double change() const;
     void conjugate_step(double share);
+    template <int kSize>
+    std::size_t relax(LightGroups<kSize>& groups, double fall);
 
     std::vector<std::uint32_t> pairs_;     // that may touch until the pairs change
     std::vector<std::uint8_t> is_near_;    // by row: how many contacts from a heavy body, at least 1
@@ -66,6 +73,9 @@ class LocalSolve {
     std::vector<double> records_;          // [bodies][4], as in the velocity records
     std::vector<Contact> contacts_;        // of this step: pairs, then supports
     std::size_t pair_count_ = 0;
+    LightGroups<2> smooth_;
+    LightGroups<3> rough_;
+    std::vector<std::uint32_t> swept_;   // those of contacts_ that are left to sweeps
     std::vector<double> first_records_;  // after the first sweep
     std::vector<Contact> first_contacts_;
 };

@@ -16,6 +16,10 @@ namespace {
 constexpr double kMuch = 0.002;
 /// Sweeps leave little if none is off by this.
 constexpr double kLittle = 0.02;
+/// In a pile two rounds are enough: docs/decisions/0032-piles-of-uneven-masses.md.
+constexpr RelaxationEffort kEffort{.rounds = 2, .accuracy = 0.1, .slack = 10};
+/// All contacts are relaxed only where the local solve has more contacts to sweep than one in so many bodies.
+constexpr std::size_t kBodiesAContact = 8;
 /// Steps in which sweeps must leave little before contacts are solved locally again.
 constexpr int kPatience = 60;
 
@@ -88,7 +92,7 @@ void UnevenContacts<Real>::begin_step(const StepView<Real>& step, const WorldSta
         local_.leave_step(), list_runs(step.graph.pairs), list_swept(step);
     else
         local_.begin_step(step.graph.pairs, step.supports);
-    is_listed_ = false;
+    is_listed_ = false, is_first_ = true;
     may_relax_ = are_mixed && world.joints.empty() && !world.bodies.has_shapes && step.terms.fall_speed() > 0;
     if (!may_relax_) steps_left_ = 0;
     if (steps_left_ == 0) return;
@@ -177,7 +181,7 @@ void UnevenContacts<Real>::relax(const StepView<Real>& step, ContactRelaxation<k
         if constexpr (kSize > 2) free[2] = terms.spin_decay * start[2];
         relaxation.set_body(body, record.record[3], start, free, swept);
     }
-    relaxation.solve(contacts_, terms.fall_speed());
+    relaxation.solve(contacts_, terms.fall_speed(), kEffort);
     for (std::size_t body = 0; body < rows_.size(); ++body)
         for (std::size_t k = 0; k < kSize; ++k)
             step.records.velocity[4 * index(rows_[body]) + k] =
@@ -286,9 +290,14 @@ int UnevenContacts<Real>::solve(const StepView<Real>& step, ContactSweeps<Real>&
     const SolveContacts<Real> on_pairs = ContactSweeps<Real>::arguments(step, step.graph.pairs),
                               on_supports = ContactSweeps<Real>::with_rows(on_pairs, step.supports);
     const double fall = step.terms.fall_speed();
+    if (!is_listed_ || is_first_) {
+        const std::size_t few = step.records.count() / kBodiesAContact;
+        has_many_left_ = local_.begin(on_pairs, on_supports, fall) > few;
+    }
+    is_first_ = false;
     if (!is_listed_) {
         const double left = local_.solve(on_pairs, on_supports, fall);
-        if (!may_relax_ || !(left > kMuch * fall)) return 0;
+        if (!may_relax_ || !has_many_left_ || !(left > kMuch * fall)) return 0;
         list(step);
     }
     const auto arguments = [&](std::size_t i) -> const SolveContacts<Real>& {
@@ -296,7 +305,7 @@ int UnevenContacts<Real>::solve(const StepView<Real>& step, ContactSweeps<Real>&
     };
     for (std::size_t i = 0; i < contacts_.size(); ++i) load(step, arguments(i), contacts_[i]);
     if (residual(step) > kLittle * fall) {
-        steps_left_ = kPatience;
+        if (has_many_left_) steps_left_ = kPatience;
         if (step.settings.has_rotation)
             relax(step, rough_);
         else

@@ -13,7 +13,7 @@ namespace carom {
 
 /// What the sweeps of a substep leave where masses are uneven.
 ///
-/// Few contacts around light bodies are solved for their impulses (solvers/contact_sets/local_solve.hpp).
+/// Few contacts around light bodies are solved by themselves (solvers/contact_sets/local_solve.hpp).
 /// Many are swept again until that changes little, where masses differ by up to a thousand times, without
 /// friction up to three hundred: docs/decisions/0064-uneven-masses-in-sweeps.md. Where masses differ by more
 /// and the impulses are still off, since heavy and light bodies are mixed in a pile, all contacts of the
@@ -76,6 +76,8 @@ class UnevenContacts {
     ContactRelaxation<3> rough_;
     bool may_relax_ = false;              // in this step
     bool is_listed_ = false;              // likewise
+    bool is_first_ = false;               // substep of the step
+    bool has_many_left_ = false;          // contacts, the local solve, when it was asked last
     int steps_left_ = 0;                  // for which all contacts are looked at
     std::vector<LocalContact> contacts_;  // of the step: pairs, then supports
     std::size_t pair_count_ = 0;

@@ -44,7 +44,7 @@ struct System {
             free[1] -= gravity;
             relaxation.set_body(i, 1 / mass[i], velocity[i], free, free);
         }
-        relaxation.solve(contacts, kFall);
+        relaxation.solve(contacts, kFall, {.rounds = 2, .accuracy = 0.1, .slack = 10});
         for (std::size_t i = 0; i < mass.size(); ++i) velocity[i] = relaxation.velocity(i);
     }
     double kinetic_energy() const {
