@@ -28,7 +28,7 @@ add_test(NAME ${embed}.apply_example
     COMMAND ${CAROM_PYTHON} ${embed_folder}/apply_example.py ${PROJECT_SOURCE_DIR} ${embed_work}/effect)
 set_tests_properties(${embed}.apply_example PROPERTIES FIXTURES_SETUP effect_sources COST 70)
 carom_add_embed_test(subdirectory -DCMAKE_CXX_COMPILER=${CAROM_CLANG} -DCAROM_FOLDER=${embed_work}/effect -DEMBED_EFFECT=ON
-                     -DCAROM_OPENMP=OFF -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCAROM_ISAS=scalar -DCAROM_PRECOMPILE_ENGINE=ON)
+                     -DCAROM_OPENMP=OFF -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCAROM_ISAS=scalar -DCAROM_PRECOMPILE_ENGINE=ON -DCAROM_UNITY_ENGINE=ON)
 set_tests_properties(${embed}.subdirectory PROPERTIES COST 60 FIXTURES_REQUIRED effect_sources FIXTURES_SETUP effect)
 add_test(NAME ${embed}.effect COMMAND ${embed_work}/subdirectory/effect)
 set_tests_properties(${embed}.effect PROPERTIES FIXTURES_REQUIRED "effect_sources;effect" COST 40)
