@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "effects/contact_law.hpp"
+#include "math/vec2_math.hpp"
 #include "state/columns/index.hpp"
 
 namespace carom {
@@ -67,7 +68,7 @@ void LightGroups<kSize>::find(std::span<const LocalContact> contacts, std::span<
 
 /// How far the contacts of a group are from their laws, each on its own [m/s].
 template <int kSize>
-double LightGroups<kSize>::off(std::span<const double> records) const {
+double LightGroups<kSize>::off() const {
     double largest = 0;
     for (const LocalContact& c : contacts_) {
         const auto look_at = [&](DoubleBody a, auto b) {
@@ -78,11 +79,11 @@ double LightGroups<kSize>::off(std::span<const double> records) const {
                                             std::fabs(added.rolling));
             largest = std::fmax(largest, change / c.terms.mass);
         };
-        const DoubleBody a{DoubleLanes::load_rows4(records.data(), &c.a)};
+        const DoubleBody a{DoubleLanes::load_rows4(records_.data(), &c.a)};
         if (c.b < 0)
             look_at(a, DoubleSurface{c.surface_normal, c.surface_tangent, c.surface_rolling});
         else
-            look_at(a, DoubleBody{DoubleLanes::load_rows4(records.data(), &c.b)});
+            look_at(a, DoubleBody{DoubleLanes::load_rows4(records_.data(), &c.b)});
     }
     return largest;
 }
@@ -102,12 +103,21 @@ bool LightGroups<kSize>::carries(double fall) const {
     return stands && largest * lightest > kManyWeights * fall;
 }
 
-/// Speed of the fastest body [m/s].
+/// Velocity of the heaviest body of the group [m/s].
 template <int kSize>
-double LightGroups<kSize>::fastest(std::span<const double> records) {
+Vec2 LightGroups<kSize>::velocity_of_heaviest() const {
+    std::size_t heaviest = 0;
+    for (std::size_t at = 0; at < records_.size(); at += 4)
+        if (std::fabs(records_[at + 3]) < std::fabs(records_[heaviest + 3])) heaviest = at;
+    return {records_[heaviest], records_[heaviest + 1]};
+}
+
+/// Speed of the fastest body of the group, seen from what moves so [m/s].
+template <int kSize>
+double LightGroups<kSize>::fastest(Vec2 from) const {
     double square = 0;
-    for (std::size_t at = 0; at < records.size(); at += 4)
-        square = std::fmax(square, records[at] * records[at] + records[at + 1] * records[at + 1]);
+    for (std::size_t at = 0; at < records_.size(); at += 4)
+        square = std::fmax(square, length_squared(Vec2{records_[at], records_[at + 1]} - from));
     return std::sqrt(square);
 }
 
@@ -154,10 +164,11 @@ bool LightGroups<kSize>::relax(const Group& group, std::span<LocalContact> conta
     }
     for (const std::int32_t body : bodies_) number_of_[index(body)] = -1;
     const auto limit = [&] { return (carries(fall) ? kOffCarrying : kOff) * fall; };
-    const double before = off(records_);
+    const double before = off();
     if (before <= limit()) return true;
     if (!(before <= kQuiet * fall)) return false;
-    const double fastest_before = fastest(records_);
+    const Vec2 from = velocity_of_heaviest();
+    const double fastest_before = fastest(from);
     give_impulses(-1);
     relaxation_.begin(contacts_, bodies_.size());
     for (std::size_t body = 0; body < bodies_.size(); ++body) {
@@ -169,7 +180,7 @@ bool LightGroups<kSize>::relax(const Group& group, std::span<LocalContact> conta
     relaxation_.solve(contacts_, fall, kEffort);
     // Not the velocities of the relaxation, which moves no heavy body by less than it looks at.
     give_impulses(1);
-    if (!(off(records_) <= limit()) || !(fastest(records_) <= fastest_before + fall)) return false;
+    if (!(off() <= limit()) || !(fastest(from) <= fastest_before + fall)) return false;
     for (std::size_t body = 0; body < bodies_.size(); ++body)
         std::copy_n(&records_[4 * body], kSize, &records[4 * index(bodies_[body])]);
     for (std::uint32_t i = group.first; i < group.last; ++i)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <carom/vec2.hpp>
+
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -44,10 +46,11 @@ class LightGroups {
 
     void find(std::span<const LocalContact> contacts, std::span<const double> records, double uneven);
     bool relax(const Group& group, std::span<LocalContact> contacts, std::span<double> records, double fall);
-    double off(std::span<const double> records) const;
+    double off() const;
     void give_impulses(double times);
     bool carries(double fall) const;
-    static double fastest(std::span<const double> records);
+    Vec2 velocity_of_heaviest() const;
+    double fastest(Vec2 from) const;
 
     bool are_known_ = false;
     Islands touching_;

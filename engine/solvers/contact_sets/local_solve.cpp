@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace carom {
 namespace {
@@ -264,7 +263,8 @@ std::size_t LocalSolve<Real>::bytes() const {
     return pairs_.capacity() * sizeof(std::uint32_t) + is_near_.capacity() +
            (number_of_.capacity() + rows_.capacity()) * sizeof(std::int32_t) +
            (records_.capacity() + first_records_.capacity()) * sizeof(double) +
-           (contacts_.capacity() + first_contacts_.capacity()) * sizeof(Contact);
+           (contacts_.capacity() + first_contacts_.capacity()) * sizeof(Contact) +
+           swept_.capacity() * sizeof(std::uint32_t) + smooth_.bytes() + rough_.bytes();
 }
 
 template class LocalSolve<float>;
