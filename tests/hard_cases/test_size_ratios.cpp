@@ -196,7 +196,7 @@ TEST_SUITE("hard cases/size ratios") {
     TEST_CASE_TEMPLATE("B6: a few discs of a hundredth of the size come to rest in a pile of large ones",
                        Real, float, double) {
         constexpr int kLarge = 200, kSmall = 12;
-        const int steps = scaled(900, 400), rest = scaled(600, 300);
+        const int steps = scaled(900, 600), rest = scaled(600, 500);
         for (const int substeps : {4, 8}) {
             if (substeps == 8 && is_effort_reduced()) continue;
             double deepest = 0, at_rest = 0;
