@@ -13,8 +13,8 @@ namespace carom {
 struct RelaxationEffort {
     int rounds;       // at most
     double accuracy;  // share of what gravity adds to a velocity by which that of a body may be off
-    /// Of all bodies in a substep, in units of m (what gravity adds to a velocity)²: a load that is let go
-    /// gives back what its contacts gave way by.
+    /// Energy that contacts may add to all bodies in a substep, in units of m (what gravity adds to a
+    /// velocity)²: a load that is let go gives back what its contacts gave way by.
     double slack;
 };
 

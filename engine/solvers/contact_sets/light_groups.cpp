@@ -26,6 +26,7 @@ constexpr double kQuiet = 2;
 /// be all that a heavy body lies on: it is solved to this share.
 constexpr double kManyWeights = 30;
 constexpr double kOffCarrying = 0.002;
+/// A group is small: it is relaxed as exactly as that costs little, and gains no energy.
 constexpr RelaxationEffort kEffort{.rounds = 8, .accuracy = 1e-3, .slack = 0};
 
 using Impulses = ContactImpulses<double>;
@@ -66,26 +67,12 @@ void LightGroups<kSize>::find(std::span<const LocalContact> contacts, std::span<
     are_known_ = true;
 }
 
-/// How far the contacts of a group are from their laws, each on its own [m/s].
+/// How far the contacts of the group are from their laws, each on its own [m/s].
 template <int kSize>
 double LightGroups<kSize>::off() const {
-    double largest = 0;
-    for (const LocalContact& c : contacts_) {
-        const auto look_at = [&](DoubleBody a, auto b) {
-            Impulses impulses = c.impulses;
-            const Impulses added =
-                solve_contact<kEveryEffect>(a, b, c.terms, impulses, [](double wanted) { return wanted; });
-            const double change = std::fmax(std::fmax(std::fabs(added.normal), std::fabs(added.tangent)),
-                                            std::fabs(added.rolling));
-            largest = std::fmax(largest, change / c.terms.mass);
-        };
-        const DoubleBody a{DoubleLanes::load_rows4(records_.data(), &c.a)};
-        if (c.b < 0)
-            look_at(a, DoubleSurface{c.surface_normal, c.surface_tangent, c.surface_rolling});
-        else
-            look_at(a, DoubleBody{DoubleLanes::load_rows4(records_.data(), &c.b)});
-    }
-    return largest;
+    return largest_residual(contacts_, [&](std::int32_t body) {
+        return DoubleBody{DoubleLanes::load_rows4(records_.data(), &body)};
+    });
 }
 
 /// Whether the group stands on what does not move and has impulses of many weights of its lightest body.
@@ -127,16 +114,9 @@ void LightGroups<kSize>::give_impulses(double times) {
     for (const LocalContact& c : contacts_) {
         const Impulses given{times * c.impulses.normal, times * c.impulses.tangent,
                              times * c.impulses.rolling};
-        DoubleBody a{DoubleLanes::load_rows4(records_.data(), &c.a)};
-        if (c.b < 0) {
-            DoubleSurface surface{c.surface_normal, c.surface_tangent, c.surface_rolling};
-            apply_impulses<kEveryEffect>(a, surface, c.terms.nx, c.terms.ny, c.terms.of_a, given);
-        } else {
-            DoubleBody b{DoubleLanes::load_rows4(records_.data(), &c.b)};
+        with_sides(records_.data(), c, [&](auto& a, auto& b) {
             apply_impulses<kEveryEffect>(a, b, c.terms.nx, c.terms.ny, c.terms.of_a, given);
-            DoubleLanes::store_rows4(records_.data(), &c.b, b.record);
-        }
-        DoubleLanes::store_rows4(records_.data(), &c.a, a.record);
+        });
     }
 }
 
@@ -178,7 +158,7 @@ bool LightGroups<kSize>::relax(const Group& group, std::span<LocalContact> conta
         relaxation_.set_body(body, swept_record[3], swept, free, swept);
     }
     relaxation_.solve(contacts_, fall, kEffort);
-    // Not the velocities of the relaxation, which moves no heavy body by less than it looks at.
+    // The bodies take what impulses give: the relaxation moves no heavy body by less than it looks at.
     give_impulses(1);
     if (!(off() <= limit()) || !(fastest(from) <= fastest_before + fall)) return false;
     for (std::size_t body = 0; body < bodies_.size(); ++body)

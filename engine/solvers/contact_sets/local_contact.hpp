@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <span>
 
 #include "effects/contact_law.hpp"
 #include "kernels/contacts/contact_arguments.hpp"
@@ -38,5 +40,45 @@ struct LocalContact {
         terms.of_a = value(columns.rolling_share, 0.5);
     }
 };
+
+/// Calls fn(a, b) with the bodies of a contact, b a surface where nothing moves it, and keeps what that does
+/// to their velocities.
+/// @param records  [bodies][4], as the velocity records have them
+template <class Fn>
+void with_sides(double* records, const LocalContact& contact, const Fn& fn) {
+    DoubleBody a{DoubleLanes::load_rows4(records, &contact.a)};
+    if (contact.b < 0) {
+        DoubleSurface surface{contact.surface_normal, contact.surface_tangent, contact.surface_rolling};
+        fn(a, surface);
+    } else {
+        DoubleBody b{DoubleLanes::load_rows4(records, &contact.b)};
+        fn(a, b);
+        DoubleLanes::store_rows4(records, &contact.b, b.record);
+    }
+    DoubleLanes::store_rows4(records, &contact.a, a.record);
+}
+
+/// How far contacts are from their laws, each on its own: the largest change of a velocity that one asks for
+/// [m/s].
+/// @param body_of  gives the DoubleBody of a number
+template <class BodyOf>
+double largest_residual(std::span<const LocalContact> contacts, const BodyOf& body_of) {
+    double largest = 0;
+    for (const LocalContact& c : contacts) {
+        const auto look_at = [&](DoubleBody a, auto b) {
+            ContactImpulses<double> impulses = c.impulses;
+            const ContactImpulses<double> added =
+                solve_contact<kEveryEffect>(a, b, c.terms, impulses, [](double wanted) { return wanted; });
+            const double change = std::fmax(std::fmax(std::fabs(added.normal), std::fabs(added.tangent)),
+                                            std::fabs(added.rolling));
+            largest = std::fmax(largest, change / c.terms.mass);
+        };
+        if (c.b < 0)
+            look_at(body_of(c.a), DoubleSurface{c.surface_normal, c.surface_tangent, c.surface_rolling});
+        else
+            look_at(body_of(c.a), body_of(c.b));
+    }
+    return largest;
+}
 
 }  // namespace carom

@@ -115,22 +115,6 @@ void LocalSolve<Real>::begin_step(const ContactRows<Real>& pairs, const ContactR
     smooth_.begin_step(), rough_.begin_step();
 }
 
-/// Calls fn(a, b) with the sides of a contact, and keeps what it does to their velocities.
-template <class Real>
-template <class Fn>
-void LocalSolve<Real>::with_sides(const Contact& c, const Fn& fn) {
-    DoubleBody a{DoubleLanes::load_rows4(records_.data(), &c.a)};
-    if (c.b < 0) {
-        DoubleSurface surface{c.surface_normal, c.surface_tangent, c.surface_rolling};
-        fn(a, surface);
-    } else {
-        DoubleBody b{DoubleLanes::load_rows4(records_.data(), &c.b)};
-        fn(a, b);
-        DoubleLanes::store_rows4(records_.data(), &c.b, b.record);
-    }
-    DoubleLanes::store_rows4(records_.data(), &c.a, a.record);
-}
-
 template <class Real>
 void LocalSolve<Real>::load(const SolveContacts<Real>& of_pairs, const SolveContacts<Real>& of_supports) {
     records_.resize(4 * rows_.size());
@@ -140,7 +124,7 @@ void LocalSolve<Real>::load(const SolveContacts<Real>& of_pairs, const SolveCont
         Contact& c = contacts_[i];
         const SolveContacts<Real>& k = i < pair_count_ ? of_pairs : of_supports;
         c.read(k);
-        with_sides(c, [&](const auto& a, const auto& b) {
+        with_sides(records_.data(), c, [&](const auto& a, const auto& b) {
             c.terms.mass = 1 / inverse_mass(a, b);
             c.terms.tangent_mass = tangent_mass<kEveryEffect>(a, b, c.terms.mass);
         });
@@ -174,7 +158,7 @@ double LocalSolve<Real>::sweep() {
     for (const std::uint32_t i : swept_) {
         Contact& c = contacts_[i];
         Impulses added{};
-        with_sides(c, [&](auto& a, auto& b) {
+        with_sides(records_.data(), c, [&](auto& a, auto& b) {
             added = solve_contact<kVariant>(a, b, c.terms, c.impulses, [](double wanted) { return wanted; });
         });
         largest = std::fmax(largest, largest_of(added) / c.terms.mass);
@@ -201,7 +185,7 @@ void LocalSolve<Real>::conjugate_step(double share) {
         const Impulses by_sweep = c.impulses - c.before, added = share * c.step;
         c.impulses = c.impulses + added;
         if (largest_of(added) > 0)
-            with_sides(c, [&](auto& a, auto& b) {
+            with_sides(records_.data(), c, [&](auto& a, auto& b) {
                 apply_impulses<kEveryEffect>(a, b, c.terms.nx, c.terms.ny, c.terms.of_a, added);
             });
         c.step = added + by_sweep;

@@ -57,8 +57,6 @@ class LocalSolve {
     std::int32_t body_of(std::int32_t row);
     void load(const SolveContacts<Real>& of_pairs, const SolveContacts<Real>& of_supports);
     void store(const SolveContacts<Real>& of_pairs, const SolveContacts<Real>& of_supports) const;
-    template <class Fn>
-    void with_sides(const Contact& contact, const Fn& fn);
     template <unsigned kVariant>
     double sweep();
     double change() const;

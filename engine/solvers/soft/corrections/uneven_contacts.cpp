@@ -16,7 +16,7 @@ namespace {
 constexpr double kMuch = 0.002;
 /// Sweeps leave little if none is off by this.
 constexpr double kLittle = 0.02;
-/// In a pile two rounds are enough: docs/decisions/0032-piles-of-uneven-masses.md.
+/// Two rounds are enough in a pile: docs/decisions/0032-piles-of-uneven-masses.md.
 constexpr RelaxationEffort kEffort{.rounds = 2, .accuracy = 0.1, .slack = 10};
 /// All contacts are relaxed only where the local solve has more contacts to sweep than one in so many bodies.
 constexpr std::size_t kBodiesAContact = 8;
@@ -148,22 +148,8 @@ void UnevenContacts<Real>::load(const StepView<Real>& step, const SolveContacts<
 /// How far the contacts are from their laws, each on its own [m/s].
 template <class Real>
 double UnevenContacts<Real>::residual(const StepView<Real>& step) const {
-    double largest = 0;
-    for (const LocalContact& c : contacts_) {
-        const auto look_at = [&](DoubleBody a, auto b) {
-            Impulses impulses = c.impulses;
-            const Impulses added =
-                solve_contact<kEveryEffect>(a, b, c.terms, impulses, [](double wanted) { return wanted; });
-            const double change = std::fmax(std::fabs(added.normal), std::fabs(added.tangent));
-            largest = std::fmax(largest, change / c.terms.mass);
-        };
-        const DoubleBody a = body_at(step.records.velocity, rows_[index(c.a)]);
-        if (c.b < 0)
-            look_at(a, DoubleSurface{c.surface_normal, c.surface_tangent, c.surface_rolling});
-        else
-            look_at(a, body_at(step.records.velocity, rows_[index(c.b)]));
-    }
-    return largest;
+    return largest_residual(
+        contacts_, [&](std::int32_t body) { return body_at(step.records.velocity, rows_[index(body)]); });
 }
 
 template <class Real>

@@ -50,8 +50,6 @@ class UnevenContacts {
     }
 
   private:
-    using Impulses = ContactImpulses<double>;
-
     void list_runs(const ContactRows<Real>& pairs);
     void list_swept(const StepView<Real>& step);
     bool has_changed(const StepView<Real>& step, double limit);
